@@ -1,0 +1,4 @@
+//! Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models.
+
+pub mod scene;
+pub mod sim;

@@ -1,0 +1,3 @@
+//! The program; see `localshape::cli`.
+
+fn main() {}

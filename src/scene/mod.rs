@@ -1,0 +1,70 @@
+//! Scenes: what was typed becomes what it means. After that no field says "use the default", every number is in
+//! SI units and every index is in range.
+
+mod view;
+
+pub use view::{Camera, Theme, View};
+
+use crate::sim::body::{Body, State};
+use crate::sim::contact::Obstacle;
+use crate::sim::integrate::Integrator;
+use crate::sim::model::ElasticModel;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A scene with everything in it resolved: one body, one world, several runs.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The scene's title; its file's stem when it has none.
+    pub title: String,
+    /// Stem of the scene file, which names the default output folder.
+    pub name: String,
+    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count.
+    pub digest: String,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: DVec3,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Frames per second of simulated time (1/s).
+    pub frames_per_second: f64,
+    /// The body, shared by all runs.
+    pub body: Arc<Body>,
+    /// How the body starts, the same in all runs.
+    pub initial: State,
+    /// One for each panel.
+    pub runs: Vec<Run>,
+    /// In the order in which they act.
+    pub obstacles: Vec<Obstacle>,
+    /// How it is drawn.
+    pub view: View,
+}
+
+/// One model on the scene's body, and one panel of the picture.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Unique in its scene.
+    pub name: String,
+    /// The elastic model.
+    pub model: Arc<dyn ElasticModel>,
+    /// How time is stepped.
+    pub integrator: Integrator,
+    /// Time step ΔT (s).
+    pub step: f64,
+}
+
+impl Scene {
+    /// The number of the last frame, `round(duration · frames_per_second)`; frame 0 is the start.
+    pub fn last_frame(&self) -> u64 {
+        (self.duration * self.frames_per_second).round() as u64
+    }
+
+    /// The nominal time of a frame (s).
+    pub fn frame_time(&self, frame: u64) -> f64 {
+        frame as f64 / self.frames_per_second
+    }
+
+    /// The step of a run after which a frame shows it: `round(n / (frames_per_second · ΔT))`.
+    pub fn frame_step(&self, run: usize, frame: u64) -> u64 {
+        (self.frame_time(frame) / self.runs[run].step).round() as u64
+    }
+}

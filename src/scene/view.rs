@@ -1,0 +1,51 @@
+//! How a scene is looked at, resolved.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How a scene is drawn. Plain data, kept also by builds that cannot draw, so that every scene can be checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Width and height of the picture (px).
+    pub size: [u32; 2],
+    /// Its colours.
+    pub theme: Theme,
+    /// From where; the same for all panels.
+    pub camera: Camera,
+    /// What the clock counts from, shown under the time, such as `after first contact`.
+    pub clock: String,
+    /// How many panels stand beside each other before a new row begins.
+    pub columns: usize,
+    /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
+    pub side: f64,
+}
+
+/// The colours of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Theme {
+    /// Near-white ground, for papers.
+    #[default]
+    Light,
+    /// Near-black ground, for talks.
+    Dark,
+}
+
+/// A perspective camera that looks at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Turn to the right around the vertical, from looking along −z (rad).
+    pub azimuth: f64,
+    /// Height above the horizon (rad), less than a quarter turn either way.
+    pub elevation: f64,
+    /// Vertical field of view (rad).
+    pub field_of_view: f64,
+    /// The point looked at (m).
+    pub target: DVec3,
+    /// Distance from it (m).
+    pub distance: f64,
+    /// Whether the camera rises and draws back with the highest body shown, alike in all panels. What it does then
+    /// is a function of the frame alone, so that any frame can be drawn by itself.
+    pub follow: bool,
+}

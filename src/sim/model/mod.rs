@@ -1,0 +1,89 @@
+//! The elastic models. One file each; the list below is all that the rest of the crate knows of them.
+//!
+//! To add a model, write a file with a `Parameters` (what a scene types), a resolved description that implements
+//! [`ElasticModel`], and a worker that implements [`ForceModel`]; then add it to [`ModelParameters`].
+
+pub mod mass_spring;
+pub mod shape_based;
+
+use super::body::{Body, State};
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// The list of elastic models, as a scene names them: `model = { kind = "…", … }`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum ModelParameters {
+    /// Elasticity of volume elements that keep their shape (paper, section 3).
+    ShapeBased(shape_based::Parameters),
+    /// Springs between pairs of nodes (paper, section 2).
+    MassSpring(mass_spring::Parameters),
+}
+
+impl ModelParameters {
+    /// The model for a body. `springs` are those that the body lists by hand, if it does.
+    ///
+    /// # Errors
+    /// Parameters that contradict each other or do not fit the body.
+    pub fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        Ok(match self {
+            Self::ShapeBased(parameters) => Arc::new(parameters.resolve(body)?),
+            Self::MassSpring(parameters) => Arc::new(parameters.resolve(body, springs)?),
+        })
+    }
+}
+
+/// A parameter that does not fit, said about one key of the model's table.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Misfit {
+    /// The key, as typed in the scene.
+    pub key: &'static str,
+    /// What was found, what was expected and what to do.
+    pub message: String,
+}
+
+/// An elastic model with all its parameters in SI units. It does not change; the work is done by what
+/// [`Self::prepare`] makes.
+pub trait ElasticModel: Debug + Send + Sync {
+    /// Elastic constant `k` (N/m), which sets the cycle `T = 2π√(m/k)`.
+    fn stiffness(&self) -> f64;
+
+    /// A few words for a picture's second line, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
+    fn describe(&self, body: &Body) -> String;
+
+    /// Makes the worker that evaluates the forces on `body`, starting at `initial`.
+    fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel>;
+}
+
+/// The internal forces of a body. It may keep a memory, such as the last rotation of each element.
+pub trait ForceModel: Send {
+    /// Adds elastic and damping forces (N) to `forces`, one per node. This is the one call that may change the
+    /// memory of the model.
+    fn add_forces(&mut self, state: &State, forces: &mut [DVec3]);
+
+    /// Elastic energy (J) of which the elastic forces are the negative gradient; `None` for a model without one.
+    fn energy(&self, state: &State) -> Option<f64>;
+
+    /// The largest α of Eq. (18) (rad/s²); `None` for a model without rotations.
+    fn residual(&self, state: &State) -> Option<f64>;
+}
+
+/// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0.
+fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
+    match (constant, ratio) {
+        (Some(_), Some(_)) => {
+            let message = "both `damping` and `damping_ratio` are given; keep one of them";
+            Err(Misfit { key: "damping_ratio", message: message.into() })
+        }
+        (Some(constant), None) => Ok(constant),
+        (None, Some(ratio)) => {
+            let mean_mass = body.mass.iter().sum::<f64>() / body.len() as f64;
+            Ok(2.0 * ratio * (stiffness * mean_mass).sqrt())
+        }
+        (None, None) => Ok(0.0),
+    }
+}

@@ -1,0 +1,1 @@
+//! Rotations of elements (Eqs. 6–16).

@@ -1,0 +1,88 @@
+//! What one run looks like at one moment: all that drawing, diagnostics and files ever see of a simulation.
+
+use glam::DVec3;
+
+/// Where and when a run blew up. That is a result, not an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divergence {
+    /// Time of the first step whose result could not be kept (s).
+    pub time: f64,
+    /// Number of that step, counted from 1.
+    pub step: u64,
+    /// The first element that holds a node which left all bounds; `None` if that node belongs to no element.
+    pub element: Option<usize>,
+}
+
+/// Whether a run goes on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Status {
+    /// All is well.
+    #[default]
+    Ok,
+    /// It blew up; the snapshot shows its last finite state.
+    Diverged(Divergence),
+}
+
+/// One run at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// The step after which this is (0: the start).
+    pub step: u64,
+    /// Time of that step (s). A diverged run keeps the clock of the scene: its last state is shown at later times.
+    pub time: f64,
+    /// Position of each node (m).
+    pub position: Vec<DVec3>,
+    /// Velocity of each node (m/s).
+    pub velocity: Vec<DVec3>,
+    /// Whether each element has changed sign; see [`Diagnostics::turned_over`].
+    pub turned_over: Vec<bool>,
+    /// Energies, momenta and measures of shape.
+    pub diagnostics: Diagnostics,
+    /// Whether the run goes on.
+    pub status: Status,
+}
+
+/// Numbers that describe a state. SI units; in the plane volumes are areas.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Diagnostics {
+    /// Kinetic energy (J).
+    pub kinetic: f64,
+    /// Elastic energy (J); NaN for a model without one.
+    pub elastic: f64,
+    /// Potential energy in the field of gravity (J), zero at the origin.
+    pub gravitational: f64,
+    /// Momentum (kg m/s).
+    pub momentum: DVec3,
+    /// Angular momentum about the origin (kg m²/s).
+    pub angular_momentum: DVec3,
+    /// The largest angular acceleration that approximation errors of the rotations amount to, α of Eq. (18)
+    /// (rad/s²); NaN for a model without rotations.
+    pub residual: f64,
+    /// How many elements have changed sign: signed area in the plane, signed volume in space, for elements of
+    /// other kinds the determinant of `Σ r R0ᵀ`.
+    pub turned_over: usize,
+    /// Total signed volume over the rest value.
+    pub volume_ratio: f64,
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    pub shape_error: f64,
+}
+
+/// One frame of a scene: every run asked for, at the same moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Number of the frame (0: the start).
+    pub index: u64,
+    /// Nominal time of the frame (s): its number over the frames per second. Each snapshot has the time of its step.
+    pub time: f64,
+    /// The runs shown, in the scene's order.
+    pub runs: Vec<RunFrame>,
+}
+
+/// One run in a [`Frame`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunFrame {
+    /// Index of the run in the scene.
+    pub run: usize,
+    /// Its state.
+    pub snapshot: Snapshot,
+}

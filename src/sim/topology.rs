@@ -1,0 +1,226 @@
+//! Faces and edges of each kind of element, and the springs made from them.
+
+use super::body::{Dimension, ElementKind, Faces, IndexLists};
+use std::collections::{BTreeSet, HashMap};
+
+/// The kind of an element from the number of its nodes.
+pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
+    match (dimension, nodes) {
+        (_, 2) => ElementKind::Segment,
+        (Dimension::Plane, _) => ElementKind::Polygon,
+        (Dimension::Space, 4) => ElementKind::Tetrahedron,
+        (Dimension::Space, 5) => ElementKind::Pyramid,
+        (Dimension::Space, 6) => ElementKind::Wedge,
+        (Dimension::Space, 8) => ElementKind::Hexahedron,
+        (Dimension::Space, _) => ElementKind::Other,
+    }
+}
+
+/// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
+///
+/// A polygon is its own single face and has no entry here; see [`faces_of`].
+fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
+    match kind {
+        ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
+        ElementKind::Tetrahedron => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
+        ElementKind::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
+        ElementKind::Wedge => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
+        ElementKind::Hexahedron => {
+            &[&[0, 4, 6, 2], &[1, 3, 7, 5], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 2, 3, 1], &[4, 5, 7, 6]]
+        }
+    }
+}
+
+/// The faces of one element as node indices, counter-clockwise seen from outside; a polygon is its own face.
+pub fn faces_of(kind: ElementKind, nodes: &[u32]) -> Vec<Vec<u32>> {
+    match kind {
+        ElementKind::Polygon => vec![nodes.to_vec()],
+        _ => face_table(kind).iter().map(|face| face.iter().map(|&at| nodes[at as usize]).collect()).collect(),
+    }
+}
+
+/// A list of nodes that is the same for every starting corner and either direction.
+fn unordered(nodes: &[u32]) -> Vec<u32> {
+    let mut key = nodes.to_vec();
+    key.sort_unstable();
+    key
+}
+
+/// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
+pub fn shared_faces(elements: &IndexLists, kinds: &[ElementKind]) -> Faces {
+    let mut faces = Faces::default();
+    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+    for (element, (nodes, &kind)) in (0u32..).zip(elements.iter().zip(kinds)) {
+        for face in faces_of(kind, nodes) {
+            match known.get(&unordered(&face)) {
+                Some(&at) if faces.outer[at].is_none() && kind != ElementKind::Polygon => {
+                    faces.outer[at] = Some(element);
+                }
+                _ => {
+                    known.insert(unordered(&face), faces.inner.len());
+                    faces.nodes.push(&face);
+                    faces.inner.push(Some(element));
+                    faces.outer.push(None);
+                }
+            }
+        }
+    }
+    faces
+}
+
+/// Faces given by hand; each belongs to the first element that holds all its nodes, if there is one.
+pub fn assign_faces(given: &IndexLists, elements: &IndexLists) -> Faces {
+    let mut elements_of_node: HashMap<u32, Vec<u32>> = HashMap::new();
+    for (element, nodes) in (0u32..).zip(elements.iter()) {
+        for &node in nodes {
+            elements_of_node.entry(node).or_default().push(element);
+        }
+    }
+    let holder = |face: &[u32]| {
+        let candidates = elements_of_node.get(face.first()?)?;
+        candidates.iter().copied().find(|&e| face.iter().all(|node| elements[e as usize].contains(node)))
+    };
+    let inner: Vec<_> = given.iter().map(holder).collect();
+    Faces { nodes: given.clone(), outer: vec![None; inner.len()], inner }
+}
+
+/// The edges of one element as pairs of nodes.
+pub fn edges_of(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 2]> {
+    if kind == ElementKind::Segment {
+        return vec![[nodes[0], nodes[1]]];
+    }
+    let mut edges = BTreeSet::new();
+    for face in faces_of(kind, nodes) {
+        edges.extend(around(&face).map(ordered));
+    }
+    edges.into_iter().collect()
+}
+
+/// The sides of a polygon: each node with the next.
+pub fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    face.iter().enumerate().map(|(at, &node)| [node, face[(at + 1) % face.len()]])
+}
+
+/// A pair with the smaller index first.
+pub fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// Which springs a named topology puts on an element (paper, sections 2 and 3; Fig. 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+pub enum Springs {
+    /// One spring on each edge.
+    #[serde(rename = "edges")]
+    Edges,
+    /// Edges and one diagonal of each face, as Fig. 4(b) draws them. On a hexahedron these are the six edges of
+    /// the tetrahedron on corners 0, 3, 5, 6, so that inner faces carry both diagonals; on any other
+    /// quadrilateral the diagonal through its lowest-numbered node.
+    #[serde(rename = "edges+one-diagonal")]
+    EdgesOneDiagonal,
+    /// Edges and both diagonals of each face.
+    #[serde(rename = "edges+face-diagonals")]
+    EdgesFaceDiagonals,
+    /// Edges and the diagonals through the element: those pairs of nodes that share no face.
+    #[serde(rename = "edges+body-diagonals")]
+    EdgesBodyDiagonals,
+    /// Every pair of nodes of an element.
+    #[serde(rename = "all")]
+    All,
+}
+
+/// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
+pub fn springs(topology: Springs, elements: &IndexLists, kinds: &[ElementKind]) -> Vec<[u32; 2]> {
+    let mut pairs = BTreeSet::new();
+    for (nodes, &kind) in elements.iter().zip(kinds) {
+        add_springs(topology, kind, nodes, &mut pairs);
+    }
+    pairs.into_iter().collect()
+}
+
+fn add_springs(topology: Springs, kind: ElementKind, nodes: &[u32], pairs: &mut BTreeSet<[u32; 2]>) {
+    let every = || (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])));
+    if topology == Springs::All {
+        pairs.extend(every());
+        return;
+    }
+    pairs.extend(edges_of(kind, nodes).into_iter().map(ordered));
+    let faces = faces_of(kind, nodes);
+    match topology {
+        Springs::Edges | Springs::All => {}
+        Springs::EdgesOneDiagonal if kind == ElementKind::Hexahedron => {
+            // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
+            let tetrahedron = [0, 3, 5, 6].map(|at: usize| nodes[at]);
+            pairs.extend((0..4).flat_map(|a| (0..a).map(move |b| ordered([tetrahedron[a], tetrahedron[b]]))));
+        }
+        Springs::EdgesOneDiagonal => pairs.extend(faces.iter().flat_map(|face| fan(face))),
+        Springs::EdgesFaceDiagonals => {
+            pairs.extend(
+                faces.iter().flat_map(|face| {
+                    (0..face.len()).flat_map(move |a| (0..a).map(move |b| ordered([face[a], face[b]])))
+                }),
+            );
+        }
+        Springs::EdgesBodyDiagonals => {
+            let share_a_face = |pair: &[u32; 2]| faces.iter().any(|face| pair.iter().all(|node| face.contains(node)));
+            pairs.extend(every().filter(|pair| !share_a_face(pair)));
+        }
+    }
+}
+
+/// The diagonals of a polygon from its lowest-numbered node: one for a quadrilateral, none for a triangle.
+fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let hub = (0..face.len()).min_by_key(|&at| face[at]).unwrap_or(0);
+    (2..face.len().saturating_sub(1)).map(move |step| ordered([face[hub], face[(hub + step) % face.len()]]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hexahedron() -> (IndexLists, Vec<ElementKind>) {
+        let mut elements = IndexLists::default();
+        elements.push(&[0, 1, 2, 3, 4, 5, 6, 7]);
+        (elements, vec![ElementKind::Hexahedron])
+    }
+
+    #[test]
+    fn a_cube_has_the_springs_that_each_name_says() {
+        let (elements, kinds) = hexahedron();
+        let count = |topology| springs(topology, &elements, &kinds).len();
+        assert_eq!(count(Springs::Edges), 12);
+        assert_eq!(count(Springs::EdgesOneDiagonal), 12 + 6);
+        assert_eq!(count(Springs::EdgesFaceDiagonals), 12 + 12);
+        assert_eq!(count(Springs::EdgesBodyDiagonals), 12 + 4);
+        assert_eq!(count(Springs::All), 28);
+    }
+
+    #[test]
+    fn closed_elements_have_each_edge_in_both_directions() {
+        for (kind, nodes) in [
+            (ElementKind::Tetrahedron, 4),
+            (ElementKind::Pyramid, 5),
+            (ElementKind::Wedge, 6),
+            (ElementKind::Hexahedron, 8),
+        ] {
+            let nodes: Vec<u32> = (0..nodes).collect();
+            let directed: Vec<_> =
+                faces_of(kind, &nodes).iter().flat_map(|face| around(face).collect::<Vec<_>>()).collect();
+            for &[a, b] in &directed {
+                assert_eq!(directed.iter().filter(|&&edge| edge == [b, a]).count(), 1, "{kind:?} {a}-{b}");
+            }
+            // Euler: nodes − edges + faces = 2 for anything that closes like a ball.
+            let edges = edges_of(kind, &nodes).len();
+            assert_eq!(nodes.len() + faces_of(kind, &nodes).len(), edges + 2, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn neighbours_share_one_face() {
+        let mut elements = IndexLists::default();
+        elements.push(&[0, 1, 3, 4, 6, 7, 9, 10]);
+        elements.push(&[1, 2, 4, 5, 7, 8, 10, 11]);
+        let faces = shared_faces(&elements, &[ElementKind::Hexahedron; 2]);
+        assert_eq!(faces.nodes.len(), 11);
+        assert_eq!(faces.outer.iter().flatten().collect::<Vec<_>>(), [&1]);
+    }
+}
