@@ -1,5 +1,6 @@
 //! Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models.
 
+pub mod cli;
 pub mod output;
 pub mod scene;
 pub mod sim;

@@ -22,9 +22,10 @@ pub struct PixelFrame {
 pub struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     threads: Vec<JoinHandle<Written>>,
+    written: Written,
 }
 
-/// What one thread has written.
+/// What was written, by one thread or all.
 #[derive(Debug, Default)]
 struct Written {
     frames: usize,
@@ -33,7 +34,7 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// Starts `threads` (≥ 1) threads that write into `folder`, which exists.
+    /// Starts `threads` (at least one) threads that write into `folder`, which exists.
     pub fn start(folder: &Path, threads: usize) -> Self {
         let (queue, frames) = sync_channel(threads);
         let frames = Arc::new(Mutex::new(Some(frames)));
@@ -41,28 +42,41 @@ impl FrameWriter {
             let (folder, frames) = (folder.to_owned(), Arc::clone(&frames));
             std::thread::spawn(move || write_frames(&folder, &frames))
         };
-        Self { queue: Some(queue), threads: (0..threads.max(1)).map(thread).collect() }
+        let threads = (0..threads.max(1)).map(thread).collect();
+        Self { queue: Some(queue), threads, written: Written::default() }
     }
 
-    /// Hands over one frame. Returns whether it was taken: `false` once writing has failed, which [`Self::finish`]
-    /// then reports.
-    #[must_use]
-    pub fn write(&mut self, frame: PixelFrame) -> bool {
-        self.queue.as_ref().is_some_and(|queue| queue.send(frame).is_ok())
+    /// Hands over one frame.
+    ///
+    /// # Errors
+    /// If a frame handed over earlier could not be written. Then this one and all that follow are not taken.
+    pub fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
+        match &self.queue {
+            Some(queue) if queue.send(frame).is_ok() => Ok(()),
+            _ => self.wait(),
+        }
     }
 
-    /// Waits for all frames and returns how many were written, the time it took, summed over threads, and the first
-    /// failure.
+    /// Waits for all frames handed over. Returns how many were written in all and the time that took, summed over
+    /// threads.
+    ///
+    /// # Errors
+    /// If one could not be written and [`Self::write`] did not report it.
     pub fn finish(mut self) -> (usize, Spent, Result<(), OutputError>) {
+        let result = self.wait();
+        (self.written.frames, self.written.spent, result)
+    }
+
+    fn wait(&mut self) -> Result<(), OutputError> {
         self.queue = None;
-        let mut all = Written::default();
+        let all = &mut self.written;
         for thread in self.threads.drain(..) {
             let one = thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             all.frames += one.frames;
             all.spent += one.spent;
-            all.failure = all.failure.or(one.failure);
+            all.failure = all.failure.take().or(one.failure);
         }
-        (all.frames, all.spent, all.failure.map_or(Ok(()), Err))
+        all.failure.take().map_or(Ok(()), Err)
     }
 }
 
@@ -107,7 +121,7 @@ mod tests {
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let mut writer = FrameWriter::start(folder.path(), 3);
-        assert!((0..20).all(|index| writer.write(frame(index))));
+        (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
         assert_eq!(count, 20);
@@ -119,10 +133,10 @@ mod tests {
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
         let mut writer = FrameWriter::start(&folder.path().join("absent"), 2);
-        let taken = (0..100).take_while(|&index| writer.write(frame(index))).count();
-        assert!(taken < 100);
+        let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
+        assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();
         assert_eq!(count, 0);
-        assert!(result.unwrap_err().to_string().contains("frame_"));
+        result.expect("told once");
     }
 }

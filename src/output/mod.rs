@@ -24,6 +24,7 @@ pub use frames::{FrameWriter, PixelFrame};
 pub use png::{Tags, encode, read_tags};
 pub use states::{STATES_FILE, StatesWriter, array_names};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};
+pub(crate) use timing::thread_time;
 pub use timing::{Clock, Spent, Timings};
 
 /// A number with 17 significant digits, from which the same double precision number is read again.
