@@ -14,15 +14,27 @@ struct Span {
     stride: u64,
 }
 
+/// The most frames of one command: more come from a slip of the keyboard, and their list alone would take a while.
+const MOST_FRAMES: u64 = 10_000_000;
+
 impl FrameRanges {
-    /// The frames in rising order, each once. `Err` with the first frame asked for that lies behind `last`, the
-    /// scene's last frame.
-    pub(super) fn select(&self, last: u64) -> Result<Vec<u64>, u64> {
+    /// All frames from 0 to `last`.
+    pub(super) fn all(last: u64) -> Self {
+        Self(vec![Span { first: 0, last, stride: 1 }])
+    }
+
+    /// The frames in rising order, each once, of a scene that ends with frame `last`.
+    pub(super) fn select(&self, last: u64) -> Result<Vec<u64>, String> {
         if let Some(beyond) = self.0.iter().map(|span| span.last).find(|&frame| frame > last) {
-            return Err(beyond);
+            return Err(format!("there is no frame {beyond}, the last one is {last}"));
         }
-        let mut frames: Vec<u64> =
-            self.0.iter().flat_map(|span| (span.first..=span.last).step_by(span.stride as usize)).collect();
+        let count = |span: &Span| (span.last - span.first) / span.stride;
+        let count = self.0.iter().map(count).fold(self.0.len() as u64, u64::saturating_add);
+        if count > MOST_FRAMES {
+            return Err(format!("{count} frames are too many; one command makes {MOST_FRAMES} at most"));
+        }
+        let numbers = |span: &Span| (span.first..=span.last).step_by(usize::try_from(span.stride).unwrap_or(usize::MAX));
+        let mut frames: Vec<u64> = self.0.iter().flat_map(numbers).collect();
         frames.sort_unstable();
         frames.dedup();
         Ok(frames)
@@ -93,6 +105,8 @@ mod tests {
             let error = typed.parse::<FrameRanges>().unwrap_err();
             assert!(error.contains(told), "{typed}: {error}");
         }
-        assert_eq!("0-9,170-181".parse::<FrameRanges>().unwrap().select(180), Err(181));
+        let select = |typed: &str, last| typed.parse::<FrameRanges>().unwrap().select(last).unwrap_err();
+        assert_eq!(select("0-9,170-181", 180), "there is no frame 181, the last one is 180");
+        assert!(select("0-18446744073709551615", u64::MAX).contains("too many"));
     }
 }

@@ -1,6 +1,7 @@
 //! From scene files as typed to scenes that can be run.
 
 use super::failure::{Failure, Status, complain, with_causes};
+use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
 use crate::output::Folder;
 use crate::scene::{Limits, Scene, SceneError};
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 impl SceneOptions {
     /// Reads one scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, SceneError> {
-        let limits = if self.allow_large { Limits::none() } else { Limits::default() };
+        let limits = if self.allow_large { Limits::NONE } else { Limits::default() };
         Scene::load(path, &limits)
     }
 
@@ -89,10 +90,8 @@ impl RunOptions {
 
     fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
         let last = scene.last_frame();
-        let Some(ranges) = &self.frames else { return Ok((0..=last).collect()) };
-        ranges.select(last).map_err(|beyond| {
-            Failure::usage(format!("--frames: there is no frame {beyond}; “{}” has frames 0-{last}", scene.title))
-        })
+        let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
+        ranges.select(last).map_err(|told| Failure::usage(format!("frames of “{}”: {told}", scene.title)))
     }
 }
 
