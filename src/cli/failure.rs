@@ -11,6 +11,7 @@ use std::process::ExitCode;
 pub(super) enum Status {
     Done = 0,
     Usage = 2,
+    #[cfg(feature = "render")]
     Adapter = 3,
     Files = 4,
     Interrupted = 130,

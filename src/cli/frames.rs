@@ -33,7 +33,8 @@ impl FrameRanges {
         if count > MOST_FRAMES {
             return Err(format!("{count} frames are too many; one command makes {MOST_FRAMES} at most"));
         }
-        let numbers = |span: &Span| (span.first..=span.last).step_by(usize::try_from(span.stride).unwrap_or(usize::MAX));
+        let numbers =
+            |span: &Span| (span.first..=span.last).step_by(usize::try_from(span.stride).unwrap_or(usize::MAX));
         let mut frames: Vec<u64> = self.0.iter().flat_map(numbers).collect();
         frames.sort_unstable();
         frames.dedup();
@@ -51,7 +52,10 @@ impl FromStr for FrameRanges {
 
 fn span(part: &str) -> Result<Span, String> {
     let number = |digits: &str| -> Result<u64, String> {
-        digits.trim().parse().map_err(|_| format!("`{part}` is no frame and no range such as 0-119, 0-119x3 or 5,9,40-60"))
+        digits
+            .trim()
+            .parse()
+            .map_err(|_| format!("`{part}` is no frame and no range such as 0-119, 0-119x3 or 5,9,40-60"))
     };
     let Some((first, rest)) = part.split_once('-') else {
         let frame = number(part)?;

@@ -2,6 +2,7 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status};
+use super::options::processors;
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -20,7 +21,7 @@ pub(super) struct Info {
 
 impl Info {
     pub(super) fn run(self) -> Result<Status, Failure> {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = processors();
         let version = env!("CARGO_PKG_VERSION");
         let machine = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
         let (used, present) = processor_features();
@@ -40,7 +41,7 @@ impl Info {
         let mut text = format!("localshape {version}\n");
         let mut line = |head: &str, what: &str| writeln!(text, "  {head:<12}{what}").expect("a string takes all");
         line("machine", &format!("{machine}, {threads} thread{}", if threads == 1 { "" } else { "s" }));
-        line("processor", &format!("uses {} (there is {})", list(&used), list(&present)));
+        line("features", &format!("{} in use; the processor has {}", list(&used), list(&present)));
         for (number, adapter) in graphics.lines().iter().enumerate() {
             line(if number == 0 { "adapters" } else { "" }, adapter);
         }
@@ -81,7 +82,7 @@ impl Graphics {
             return vec![format!("none: {}", crate::gpu::InitError::NoAdapter)];
         }
         let line = |(at, adapter): (usize, &crate::gpu::AdapterDescription)| {
-            let mark = if self.1 == Some(at) { "  <- chosen by --adapter auto" } else { "" };
+            let mark = if self.1 == Some(at) { ", chosen by --adapter auto" } else { "" };
             format!("{adapter}{mark}")
         };
         self.0.iter().enumerate().map(line).collect()

@@ -34,6 +34,15 @@ Exit status:
     4  reading or writing failed
   130  interrupted; what was made until then is whole";
 
+#[cfg(not(feature = "render"))]
+const EXAMPLES: &str = "\
+Examples:
+  localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
+  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+
+This program was built without the feature `render`: it draws no pictures.";
+
+#[cfg(feature = "render")]
 const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/

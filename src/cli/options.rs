@@ -52,3 +52,15 @@ pub(super) struct RunOptions {
     #[arg(long, conflicts_with = "quiet")]
     pub(super) json: bool,
 }
+
+impl RunOptions {
+    /// How many threads to work with.
+    pub(super) fn threads(&self) -> usize {
+        self.threads.map_or_else(processors, usize::from)
+    }
+}
+
+/// How many threads run at the same time on this machine.
+pub(super) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}

@@ -27,7 +27,7 @@ pub(super) trait Pictures {
 }
 
 /// Begins the pictures of a scene in a folder.
-pub(super) type BeginPictures<'a> = dyn FnMut(&Scene, &Path) -> Result<Box<dyn Pictures>, Failure> + 'a;
+pub(super) type BeginPictures<'a> = dyn for<'s> FnMut(&'s Scene, &Path) -> Result<Box<dyn Pictures + 's>, Failure> + 'a;
 
 /// Runs all scenes, one after the other, and reports on each.
 pub(super) fn run_all(
@@ -82,9 +82,8 @@ fn merge(document: &mut Value, more: Value) {
 }
 
 fn pool(options: &RunOptions) -> Result<ThreadPool, Failure> {
-    // Zero leaves the number to rayon: one for each processor.
-    let threads = options.threads.map_or(0, usize::from);
-    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|at| format!("simulate {at}")).build();
+    let pool =
+        ThreadPoolBuilder::new().num_threads(options.threads()).thread_name(|at| format!("simulate {at}")).build();
     pool.map_err(|error| Failure::usage(format!("--threads: the system does not start so many threads ({error})")))
 }
 
@@ -105,7 +104,7 @@ impl Recording<'_> {
         &mut self,
         pool: &ThreadPool,
         options: &RunOptions,
-        mut pictures: Option<Box<dyn Pictures>>,
+        mut pictures: Option<Box<dyn Pictures + '_>>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         if let Some(pictures) = &pictures {
@@ -114,7 +113,8 @@ impl Recording<'_> {
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(&self.folder)?;
         let mut diagnostics = DiagnosticsWriter::create(&self.folder, self.scene)?;
-        let mut states = options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
+        let mut states =
+            options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
 
         let bar = console::progress(&self.scene.title, self.frames.len(), options.quiet);
         let made = self.frames(pool, |frame| {
@@ -146,8 +146,9 @@ impl Recording<'_> {
         if let Some(last) = &self.last {
             summary.note_last(last);
         }
+        let drawing = rest(&self.times);
         if let Some(draw) = &mut self.times.draw {
-            draw.cpu = rest(&self.times);
+            draw.cpu = drawing;
         }
         summary.times = Some(self.times);
         let written = summary.write(&self.folder).map_err(Failure::from);

@@ -52,11 +52,9 @@ fn row(run: &RunSummary) -> [String; 4] {
 fn times(summary: &Summary) -> String {
     let Some(times) = &summary.times else { return String::new() };
     let stages = [(Some(times.simulate), "simulating"), (times.draw, "drawing"), (times.encode, "encoding")];
-    let shares: Vec<_> = stages
-        .into_iter()
-        .filter_map(|(spent, name)| Some(format!("{} {name}", seconds(spent?.wall))))
-        .collect();
-    format!("{}: {}\n", seconds(times.total.wall), shares.join(", "))
+    let shares = stages.into_iter().filter_map(|(spent, name)| Some(format!("{name} {}", seconds(spent?.wall))));
+    let overlap = if times.encode.is_some() { ", overlapping" } else { "" };
+    format!("{}: {}{overlap}\n", seconds(times.total.wall), shares.collect::<Vec<_>>().join(", "))
 }
 
 fn all_times(summary: &Summary) -> String {
@@ -81,7 +79,9 @@ fn all_times(summary: &Summary) -> String {
 }
 
 fn seconds(time: f64) -> String {
-    if time < 60.0 {
+    if time < 0.9995 {
+        format!("{:.0} ms", time * 1e3)
+    } else if time < 59.95 {
         format!("{time:.1} s")
     } else {
         let whole = time.round() as u64;

@@ -70,7 +70,8 @@ impl RunOptions {
             };
             if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
                 let (second, path) = (&scene.title, path.display());
-                let message = format!("“{first}” and “{second}” would both go to {path}; run them one at a time with -o");
+                let message =
+                    format!("“{first}” and “{second}” would both go to {path}; run them one at a time with -o");
                 return Err(Failure::usage(message));
             }
             let folder = Folder::inspect(&path, &scene, self.overwrite)?;

@@ -6,11 +6,11 @@ use crate::scene;
 use clap::Args;
 
 const EXAMPLES: &str = "\
-An editor that knows JSON Schema for TOML (such as one with the Even Better TOML extension) completes and checks scene
-files that begin with the line
-  #:schema ./scene.schema.json
-after
-  localshape schema > scene.schema.json";
+Example:
+  localshape schema > scene.schema.json
+
+An editor that knows JSON Schema for TOML then completes and checks scene files that begin with the line
+  #:schema ./scene.schema.json";
 
 /// Print the JSON Schema of scene files
 #[derive(Args, Debug)]

@@ -12,7 +12,7 @@ Examples:
   localshape simulate scenes/fig4b.toml --states -o results
   localshape simulate scenes/*.toml --json > results.json
 
-The folder then holds diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame),
+The folder then holds diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), \
 run.json (what was run and how it went) and, with --states, states.npz. A run that diverges is a result, not an error.";
 
 /// Simulate scenes without drawing them; touches no graphics device

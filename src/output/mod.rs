@@ -22,7 +22,7 @@ pub use error::OutputError;
 pub use folder::{Folder, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
 pub use png::{Tags, encode, read_tags};
-pub use states::{STATES_FILE, StatesWriter, array_names};
+pub use states::{STATES_FILE, StatesWriter};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};
 pub(crate) use timing::thread_time;
 pub use timing::{Clock, Spent, Timings};

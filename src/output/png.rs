@@ -40,8 +40,7 @@ impl Tags {
     }
 
     fn chunks(&self) -> [(&'static str, String); 6] {
-        let states: Vec<_> =
-            self.states.iter().map(|(digest, run)| format!("{digest} {}", run.replace('\n', " "))).collect();
+        let states: Vec<_> = self.states.iter().map(|(digest, run)| format!("{digest} {run}")).collect();
         [
             ("scene", self.scene.clone()),
             ("state", states.join("\n")),
@@ -81,7 +80,7 @@ pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (name, text) in tags.chunks() {
-        let (name, text) = (format!("localshape:{name}"), text.replace('\0', "\u{fffd}"));
+        let name = format!("localshape:{name}");
         // The plain text chunk knows Latin-1 only, without control characters.
         let plain = text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
         let added = if plain { encoder.add_text_chunk(name, text) } else { encoder.add_itxt_chunk(name, text) };

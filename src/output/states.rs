@@ -17,7 +17,8 @@ pub const STATES_FILE: &str = "states.npz";
 /// Writes the states of frames as they come, in memory that does not grow with their number.
 ///
 /// The archive holds `time` (F), the moment of each frame (s), and for each run `NAME.position` (m) and
-/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. Names are made by [`array_names`].
+/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. A scene lets no run have a name that
+/// does not fit into an archive.
 ///
 /// Arrays lie one behind the other in the archive but grow all at once, and how many frames come is known only
 /// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
@@ -55,11 +56,10 @@ impl StatesWriter {
         let nodes = scene.body.len();
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
-        let names: Vec<_> = runs.iter().map(|&run| scene.runs[run].name.as_str()).collect();
-        for name in array_names(&names) {
+        for &run in runs {
             for quantity in ["position", "velocity"] {
                 let length = 24 * nodes;
-                let name = format!("{name}.{quantity}");
+                let name = format!("{}.{quantity}", scene.runs[run].name);
                 arrays.push(Array { name, shape: format!(" {nodes}, 3"), offset: record, length });
                 record += length as u64;
             }
@@ -97,6 +97,17 @@ impl StatesWriter {
 
     fn arrange(&mut self, file: &mut File) -> io::Result<()> {
         let mut archive = ZipWriter::new(BufWriter::new(file));
+        match self.fill(&mut archive) {
+            Ok(()) => archive.finish()?.flush(),
+            Err(error) => {
+                // Dropped unfinished, it would try to finish on the same disk and talk on standard error.
+                std::mem::forget(archive);
+                Err(error)
+            }
+        }
+    }
+
+    fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
         let mut part = Vec::new();
         for array in &self.arrays {
             let header = header(self.frames, &array.shape);
@@ -115,27 +126,8 @@ impl StatesWriter {
                 archive.write_all(&part)?;
             }
         }
-        archive.finish()?.flush()
+        Ok(())
     }
-}
-
-/// The names under which the arrays of runs begin in `states.npz`.
-///
-/// A run's name stands as it is, except that characters which would make a path or are none (`/`, `\`, `:`,
-/// control characters) become `_`, so that the archive can also be unpacked into files. Runs whose names are then
-/// the same are told apart by `~2`, `~3`, … in the scene's order.
-pub fn array_names(runs: &[&str]) -> Vec<String> {
-    let unfit = |c: char| matches!(c, '/' | '\\' | ':') || c.is_control();
-    let mut names: Vec<String> = Vec::with_capacity(runs.len());
-    for run in runs {
-        let plain: String = run.chars().map(|c| if unfit(c) { '_' } else { c }).collect();
-        let numbered = (2..).map(|number| format!("{plain}~{number}"));
-        // A name that is fit as it is belongs to the run that has it, also when one before it would become that.
-        let free = |name: &String| !names.contains(name) && (name == run || !runs.contains(&name.as_str()));
-        let name = std::iter::once(plain.clone()).chain(numbered).find(free).expect("numbers do not end");
-        names.push(name);
-    }
-    names
 }
 
 /// The head of an array in NumPy's file format, version 1.0.
@@ -164,12 +156,6 @@ pub(super) fn vector_bytes(vector: &DVec3) -> [u8; 24] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_are_fit_for_files_and_differ() {
-        assert_eq!(array_names(&["Local shape", "Federn ½"]), ["Local shape", "Federn ½"]);
-        assert_eq!(array_names(&["a/b", "a_b", "a:b", "../x"]), ["a_b~2", "a_b", "a_b~3", ".._x"]);
-    }
 
     #[test]
     fn header_is_aligned() {

@@ -16,7 +16,10 @@ fn says_what_a_scene_holds() {
 #[test]
 fn finds_every_mistake_in_all_scenes() {
     let place = Place::with_small();
-    place.write("one.toml", &SMALL.replace("stiffness = 1e4", "stifness = 1e4").replace("friction = 0.3", "friction = -1"));
+    place.write(
+        "one.toml",
+        &SMALL.replace("stiffness = 1e4", "stifness = 1e4").replace("friction = 0.3", "friction = -1"),
+    );
     place.write("two.toml", &SMALL.replace("mass = 1.0", "mass = 0"));
     let ran = place.run("check one.toml small.toml two.toml absent.toml");
     assert_eq!(ran.status, Some(2), "{ran:?}");

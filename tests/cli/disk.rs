@@ -9,7 +9,9 @@ use std::process::Command;
 fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Option<Ran> {
     std::fs::create_dir_all(place.path("out")).unwrap();
     let program = env!("CARGO_BIN_EXE_localshape");
-    let script = format!("mount -t tmpfs -o size={size} none out || exit 99; '{program}' {arguments}; status=$?; {after}; exit $status");
+    let script = format!(
+        "mount -t tmpfs -o size={size} none out || exit 99; '{program}' {arguments}; status=$?; {after}; exit $status"
+    );
     let mut command = Command::new("unshare");
     command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).current_dir(place.path("."));
     let Ok(output) = command.output() else {
@@ -51,7 +53,9 @@ fn frames_on_a_full_disk() {
     let place = Place::new();
     place.write("long.toml", &lasting("10"));
     let after = "ls -A out";
-    let Some(ran) = on_small_disk(&place, "300k", "render long.toml -o out --size 320x240 --samples 1", after) else { return };
+    let Some(ran) = on_small_disk(&place, "300k", "render long.toml -o out --size 320x240 --samples 1", after) else {
+        return;
+    };
     if ran.status == Some(3) {
         return skip("no graphics adapter");
     }

@@ -13,7 +13,7 @@ fn place_for_long() -> Place {
 }
 
 /// Starts the program, and waits until a file is there.
-fn start(place: &Place, arguments: &str, sign: &str) -> Child {
+pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Child {
     let mut command = place.command(arguments.split(' '));
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     let started = Instant::now();
@@ -24,7 +24,7 @@ fn start(place: &Place, arguments: &str, sign: &str) -> Child {
     child
 }
 
-fn signal(child: &Child, name: &str) {
+pub(crate) fn signal(child: &Child, name: &str) {
     let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().expect("kill");
     assert!(sent.success());
 }

@@ -146,8 +146,11 @@ fn states_of_every_frame() {
 #[test]
 fn states_of_runs_with_odd_names() {
     let place = Place::new();
-    place.write("odd.toml", &SMALL.replace("Local shape", "k/m: ½").replace("Mass-spring", "../out"));
+    place.write("odd.toml", &SMALL.replace("Local shape", "k: ½ 弾性"));
     place.run("simulate odd.toml --states").good();
-    array(&place, "output/odd/states.npz", "k_m_ ½.position");
-    array(&place, "output/odd/states.npz", ".._out.velocity");
+    array(&place, "output/odd/states.npz", "k: ½ 弾性.position");
+    for name in ["../out", "line\\nbreak", ""] {
+        place.write("odd.toml", &SMALL.replace("Local shape", name));
+        place.run("simulate odd.toml --states").bad(2, &["odd.toml:14:8"]);
+    }
 }
