@@ -64,6 +64,15 @@ impl Render {
         let jobs = self.options.jobs(scenes)?;
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
+        for job in &jobs {
+            let [width, height] = job.scene.view.size;
+            let longest = gpu.longest_side();
+            if width.max(height) > longest {
+                let adapter = gpu.description();
+                let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
+                return Err(Failure::usage(message));
+            }
+        }
         let writers = self.options.threads().min(MOST_WRITERS);
         let mut begin = |scene: &Scene, folder: &Path| -> Result<Box<dyn Pictures + '_>, Failure> {
             Ok(Box::new(Drawing::begin(scene, folder, &gpu, self.samples, writers)?))
