@@ -1,7 +1,10 @@
 //! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
 
+mod digest;
 mod good;
 mod mistakes;
+mod robust;
+mod schema;
 
 use localshape::scene::{Limits, Scene, SceneError};
 
