@@ -72,7 +72,7 @@ fn sixty() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(super) enum StepFile {
-    /// Seconds.
+    /// A number of seconds.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// A fraction of the cycle T.
     Cycles(#[schemars(extend("format" = "fraction-of-T"))] super::step::FractionOfCycle),
@@ -88,10 +88,11 @@ impl Default for StepFile {
 ///
 /// It starts as given, is turned by `rotation`, moved by `offset`, set down by `lowest` and thrown with `velocity`,
 /// in this order. At rest it is never turned nor moved.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
     "oneOf" = [{ "required": ["lattice"] }, { "required": ["nodes", "elements"] }],
+    "allOf" = [{ "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } }],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
         "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"]

@@ -79,7 +79,7 @@ impl Demand {
             size(self.bytes_per_frame()),
         );
         // Indices have 32 bits, and so has the length of all element lists and that of all faces together.
-        if self.nodes > u128::from(u32::MAX) || self.corners.saturating_mul(3) > u128::from(u32::MAX) {
+        if self.nodes > u128::from(u32::MAX) || self.corners.saturating_mul(2) > u128::from(u32::MAX) {
             return Some((format!("{asked}: more than 32-bit indices can count"), "use fewer cells".into()));
         }
         let allowed = if self.nodes > u128::from(limits.nodes) {

@@ -5,43 +5,57 @@ use super::schema::{choices, variants};
 use super::step::FractionOfCycle;
 use super::words::{self, list, nearest, quoted};
 use serde_json::{Map, Value as Json};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 /// The largest magnitude of any number (SI). Beyond it squares and volumes leave the range of double precision.
 const LARGEST: f64 = 1e30;
 
-/// Checks a whole file. The result is the file as JSON, without whatever has a mistake in it: a key of the top
-/// level or an entry of a top-level array is there as a whole, or null, so that the sound parts can be looked at
-/// further.
-pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Map<String, Json> {
-    let mut walk = Walk { report, path: Vec::new() };
+/// What is left of a file when whatever has a mistake in it is taken out.
+#[derive(Debug)]
+pub(super) struct Checked {
+    /// The file as JSON. Tables of the top level lack the keys with mistakes; an entry of a top-level array, or
+    /// another value, that has one is null.
+    pub(super) sound: Map<String, Json>,
+    /// Keys of the top level that had mistakes in or below them.
+    pub(super) flawed: BTreeSet<String>,
+}
+
+/// Checks a whole file.
+pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Checked {
+    let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
-    let mut sound = Map::new();
+    let (mut sound, mut flawed) = (Map::new(), BTreeSet::new());
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
+        let before = walk.report.total();
         walk.path.push(Way::Key(name));
-        let part = match schema["properties"].get(name) {
-            None => {
+        let part = match (schema["properties"].get(name), value.get_ref()) {
+            (None, _) => {
                 walk.unknown_key(schema, name, key.span());
                 Json::Null
             }
-            Some(inner) => match value.get_ref().as_array() {
-                Some(items) if inner["type"] == "array" => {
-                    walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                    Json::Array(walk.entries(inner, items))
-                }
-                _ => walk.guarded(inner, value),
-            },
+            (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
+                walk.lengths(inner, "entries", "entry", items.len(), value.span());
+                Json::Array(walk.entries(inner, items))
+            }
+            (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => walk.table(inner, table, value.span()),
+            (Some(inner), _) => walk.guarded(inner, value),
         };
         walk.path.pop();
-        sound.insert(name.into(), part);
+        if walk.report.total() > before {
+            flawed.insert(name.to_owned());
+        }
+        sound.insert(name.to_owned(), part);
     }
-    sound
+    Checked { sound, flawed }
 }
 
 struct Walk<'r, 't, 'p> {
+    /// That of the whole file.
+    schema: &'r Json,
     report: &'r mut Report<'t>,
     path: Vec<Way<'p>>,
 }
@@ -53,6 +67,12 @@ impl<'p> Walk<'_, '_, 'p> {
 
     fn here(&self) -> String {
         written(&self.path)
+    }
+
+    /// What a key means, in its first sentence; nothing for an entry of an array.
+    fn meaning(&self, schema: &Json) -> Option<String> {
+        let keyed = matches!(self.path.last(), Some(Way::Key(_)));
+        schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
     }
 
     /// A value as JSON, or null if there is any mistake in it.
@@ -104,7 +124,7 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 
     fn wrong_type(&mut self, schema: &Json, value: &Spanned<DeValue<'_>>) -> Json {
-        let mut help = schema.get("description").and_then(Json::as_str).map(String::from);
+        let mut help = self.meaning(schema);
         if let [Way::Key(key)] = self.path[..] {
             match (schema["type"].as_str(), value.get_ref()) {
                 (Some("array"), DeValue::Table(_)) => {
@@ -173,7 +193,7 @@ impl<'p> Walk<'_, '_, 'p> {
         } else {
             range(if whole { "a whole number" } else { "a number" }, least, most, above, below)
         };
-        let help = schema.get("description").and_then(Json::as_str).map(String::from);
+        let help = self.meaning(schema);
         self.mistake(value.span(), format!("`{}` is {text}; expected {expected}", self.here()), help);
         Json::Null
     }
@@ -209,7 +229,7 @@ impl<'p> Walk<'_, '_, 'p> {
         match given.get_ref().as_str().and_then(|name| kinds.iter().find(|(known, _)| *known == name)) {
             Some((_, branch)) => self.table(branch, table, span),
             None => {
-                let found = words::found(given.get_ref());
+                let found = given.get_ref().as_str().map_or_else(|| words::found(given.get_ref()), quoted);
                 let message = format!("`{}.{tag}` is {found}; expected {}", self.here(), list(&names, "or", quoted));
                 let near = given.get_ref().as_str().and_then(|name| nearest(name, &names));
                 self.mistake(given.span(), message, near.map(|name| format!("did you mean {}?", quoted(name))));
@@ -227,7 +247,10 @@ impl<'p> Walk<'_, '_, 'p> {
             match schema["properties"].get(name) {
                 None => self.unknown_key(schema, name, key.span()),
                 Some(inner) => {
-                    json.insert(name.into(), self.value(inner, value));
+                    let inner = self.guarded(inner, value);
+                    if !inner.is_null() {
+                        json.insert(name.into(), inner);
+                    }
                 }
             }
             self.path.pop();
@@ -238,64 +261,29 @@ impl<'p> Walk<'_, '_, 'p> {
     /// Which keys a table needs, which need each other and which exclude each other.
     fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let has = |name: &str| table.contains_key(name);
-        let within = match self.path.as_slice() {
-            [] => String::new(),
-            path => format!("`{}` has ", written(path)),
-        };
         for name in strings(schema.get("required")).filter(|name| !has(name)) {
-            let property = &schema["properties"][name];
-            let missing = match (self.path.is_empty(), property["type"].as_str()) {
-                (true, Some("object")) => format!("there is no table [{name}]"),
-                (true, Some("array")) => format!("there is no table [[{name}]]"),
-                (true, _) => format!("there is no `{name}`"),
-                (false, _) => format!("{within}no `{name}`"),
-            };
-            let help = property["description"].as_str().map(|text| format!("`{name}`: {text}"));
-            self.mistake(span.clone(), missing, help);
+            self.missing_key(schema, table, name, "", span.clone());
         }
-        let sets: Vec<Vec<&str>> = match schema.get("oneOf").and_then(Json::as_array) {
-            Some(branches) => branches.iter().map(|branch| strings(branch.get("required")).collect()).collect(),
-            None => Vec::new(),
-        };
-        let first_key = |set: &Vec<&str>| set.iter().find_map(|name| table.get_key_value(*name));
-        let begun: Vec<_> = sets.iter().filter(|set| first_key(set).is_some()).collect();
-        let name_set = |set: &Vec<&str>| list(set, "and", |name| format!("`{name}`"));
-        match begun.as_slice() {
-            [] if !sets.is_empty() => {
-                let all: Vec<_> = sets.iter().map(name_set).collect();
-                self.mistake(
-                    span,
-                    format!("{within}neither {}; one is needed", list(&all, "nor", |set| set.into())),
-                    None,
-                );
-            }
-            [] => {}
-            [only] => {
-                for name in only.iter().filter(|name| !has(name)) {
-                    let given: Vec<_> = only.iter().copied().filter(|name| has(name)).collect();
-                    let message = format!("{within}{} but no `{name}`", name_set(&given));
-                    let help = schema["properties"][name]["description"].as_str();
-                    self.mistake(span.clone(), message, help.map(|text| format!("`{name}`: {text}")));
-                }
-            }
-            [one, .., other] => {
-                if let (Some((first, _)), Some((second, _))) = (first_key(one), first_key(other)) {
-                    let message = format!("{within}both `{}` and `{}`; keep one", first.get_ref(), second.get_ref());
-                    let later = if first.span().start > second.span().start { first } else { second };
-                    self.mistake(later.span(), message, None);
-                }
+        self.alternatives(schema, table, span.clone());
+        let all_of = schema.get("allOf").and_then(Json::as_array).into_iter().flatten();
+        for rule in all_of.chain([schema]).filter_map(|rule| rule.get("not")) {
+            let pair: Vec<_> = strings(rule.get("required")).filter_map(|name| table.get_key_value(name)).collect();
+            if pair.len() == strings(rule.get("required")).count() {
+                self.exclusive(&pair);
             }
         }
-        self.dependencies(schema, table, &sets);
-    }
-
-    fn dependencies(&mut self, schema: &Json, table: &DeTable<'_>, sets: &[Vec<&str>]) {
         let Some(dependent) = schema.get("dependentRequired").and_then(Json::as_object) else { return };
         for (name, needed) in dependent {
             let Some((key, _)) = table.get_key_value(name.as_str()) else { continue };
-            for other in strings(Some(needed)).filter(|other| !table.contains_key(*other)) {
-                // An alternative that is begun but not complete has been said already.
-                if !sets.iter().any(|set| set.contains(&name.as_str()) && set.contains(&other)) {
+            // Where the keys of an alternative need each other, that has been said already.
+            let partner = |other: &str| {
+                let begun = |set: &Json| {
+                    strings(Some(set)).any(|key| key == name) && strings(Some(set)).any(|key| key == other)
+                };
+                schema["oneOf"].as_array().into_iter().flatten().any(|branch| begun(&branch["required"]))
+            };
+            for other in strings(Some(needed)).filter(|other| !has(other) && !partner(other)) {
+                if !misspelt(schema, table, other) {
                     let message = format!("`{}.{name}` needs `{other}`", self.here());
                     self.mistake(key.span(), message, Some(format!("list `{other}`, or take `{name}` out")));
                 }
@@ -303,19 +291,110 @@ impl<'p> Walk<'_, '_, 'p> {
         }
     }
 
+    /// A missing key, unless there is an unknown one that is nearly it.
+    fn missing_key(&mut self, schema: &Json, table: &DeTable<'_>, name: &str, given: &str, span: Range<usize>) {
+        if misspelt(schema, table, name) {
+            return;
+        }
+        let property = &schema["properties"][name];
+        let missing = match (self.path.is_empty(), property["type"].as_str()) {
+            (true, Some("object")) => format!("there is no table [{name}]"),
+            (true, Some("array")) => format!("there is no table [[{name}]]"),
+            (true, _) => format!("there is no `{name}`"),
+            (false, _) => format!("`{}` has {given}no `{name}`", self.here()),
+        };
+        let help = property["description"].as_str().map(|text| format!("`{name}`: {}", first_sentence(text)));
+        self.mistake(span, missing, help);
+    }
+
+    /// Sets of keys of which a table has exactly one, and that whole.
+    fn alternatives(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
+        let branches = schema.get("oneOf").and_then(Json::as_array).into_iter().flatten();
+        let sets: Vec<Vec<&str>> = branches.map(|branch| strings(branch.get("required")).collect()).collect();
+        let given = |set: &Vec<&str>| -> Vec<_> { set.iter().filter_map(|name| table.get_key_value(*name)).collect() };
+        let begun: Vec<_> = sets.iter().filter(|set| !given(set).is_empty()).collect();
+        match begun.as_slice() {
+            [] if sets.iter().flatten().any(|name| misspelt(schema, table, name)) => {}
+            [] if !sets.is_empty() => {
+                let all: Vec<_> = sets.iter().map(|set| list(set, "and", |name| format!("`{name}`"))).collect();
+                let all = list(&all, "nor", |set| set.into());
+                self.mistake(span, format!("`{}` has neither {all}; one is needed", self.here()), None);
+            }
+            [] => {}
+            [only] => {
+                let there = list(&names(&given(only)), "and", |key| format!("`{key}`"));
+                for name in only.iter().filter(|name| !table.contains_key(**name)) {
+                    self.missing_key(schema, table, name, &format!("{there} but "), span.clone());
+                }
+            }
+            [one, .., other] => self.exclusive(&[given(one)[0], given(other)[0]]),
+        }
+    }
+
+    /// Keys that must not stand together; said of the later one.
+    fn exclusive(&mut self, keys: &[(&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) {
+        let last = keys.iter().map(|(key, _)| key.span()).max_by_key(|span| span.start);
+        let names = list(&names(keys), "and", |key| format!("`{key}`"));
+        self.mistake(
+            last.unwrap_or(0..0),
+            format!("`{}` has both {names}, which exclude each other", self.here()),
+            Some("keep one".into()),
+        );
+    }
+
     fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>) {
-        let known: Vec<&str> =
-            schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
+        let known = known(schema);
         let place = match &self.path[..] {
             [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
             _ => String::new(),
         };
-        let help = match nearest(name, &known) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known here: {}", known.join(", ")),
+        let help = match (nearest(name, &known), elsewhere(self.schema, name)) {
+            (Some(near), _) => format!("did you mean `{near}`?"),
+            (None, Some(other)) => format!("`{name}` belongs to `{other}`; known here: {}", known.join(", ")),
+            (None, None) => format!("known here: {}", known.join(", ")),
         };
         self.mistake(span, format!("unknown key `{}`{place}", words::shortened(name)), Some(help));
     }
+}
+
+/// The names of keys.
+fn names<'a>(keys: &[(&'a Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) -> Vec<&'a str> {
+    keys.iter().map(|(key, _)| key.get_ref().as_ref()).collect()
+}
+
+/// The keys that a table may have.
+fn known(schema: &Json) -> Vec<&str> {
+    schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect()
+}
+
+/// Whether a table has an unknown key that is nearly this one.
+fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
+    let known = known(schema);
+    let unknown = table.keys().map(|key| key.get_ref().as_ref()).filter(|key| !known.contains(key));
+    unknown.into_iter().any(|key| nearest(key, &known) == Some(name))
+}
+
+/// The table in which a key is known, as written: `view.camera`.
+fn elsewhere(schema: &Json, name: &str) -> Option<String> {
+    let mut properties = tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
+    properties.find_map(|(key, inner)| {
+        if tables(inner).any(|table| table["properties"].get(name).is_some()) {
+            return Some(key.clone());
+        }
+        elsewhere(inner, name).map(|deeper| format!("{key}.{deeper}"))
+    })
+}
+
+/// The tables that a schema describes: itself, its entries, and the variants of either.
+fn tables(schema: &Json) -> impl Iterator<Item = &Json> {
+    let both = [schema, &schema["items"]].into_iter();
+    both.flat_map(|one| std::iter::once(one).chain(one["oneOf"].as_array().into_iter().flatten()))
+}
+
+/// The first sentence of a description.
+fn first_sentence(text: &str) -> &str {
+    let ends = text.match_indices(". ").find(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
+    ends.map_or(text, |(at, _)| &text[..=at])
 }
 
 /// The strings in a JSON array.
@@ -357,7 +436,10 @@ fn expected(schema: &Json) -> String {
     .into()
 }
 
+/// The numbers that are allowed, in words.
 fn range(noun: &str, least: Option<f64>, most: Option<f64>, above: Option<f64>, below: Option<f64>) -> String {
+    // That a whole number has 32 bits is nothing that anybody asked for.
+    let most = most.filter(|&most| most < f64::from(u32::MAX));
     match (least, most, above, below) {
         (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
         (Some(least), ..) => format!("{noun} of at least {least}"),

@@ -4,13 +4,14 @@
 mod body;
 mod elements;
 mod lattice;
-mod runs;
+pub(super) mod runs;
 mod view;
 
 use super::Scene;
 use super::file::{BodyFile, Coordinates, ObstacleFile, RunFile, TimeFile, ViewFile};
 use super::limits::Limits;
-use super::report::{Report, Way};
+use super::report::{Report, Way, written};
+use super::structure::Checked;
 use super::words::count;
 use crate::sim::body::Dimension;
 use crate::sim::contact::{Obstacle, Shape};
@@ -26,6 +27,8 @@ pub(super) struct Parts {
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
+    /// Whether keys of the body are left out because of mistakes.
+    body_flawed: bool,
     runs: Vec<Option<RunFile>>,
     obstacles: Vec<Option<ObstacleFile>>,
     view: Option<ViewFile>,
@@ -33,12 +36,20 @@ pub(super) struct Parts {
 
 impl Parts {
     /// The sound parts of a checked file.
-    pub(super) fn new(file: &Map<String, Json>, report: &mut Report<'_>) -> Self {
+    pub(super) fn new(checked: &Checked, report: &mut Report<'_>) -> Self {
+        let file = &checked.sound;
+        let mut body: Option<BodyFile> = part(file, "body", report);
+        // Beside a lattice lists for each node are mistakes, which have been said.
+        if let Some(BodyFile { lattice: Some(lattice), mass, rotation, offset, lowest, velocity, .. }) = body {
+            let lattice = Some(lattice);
+            body = Some(BodyFile { lattice, mass, rotation, offset, lowest, velocity, ..BodyFile::default() });
+        }
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
             time: part(file, "time", report),
-            body: part(file, "body", report),
+            body,
+            body_flawed: checked.flawed.contains("body"),
             runs: several(file, "run", report),
             obstacles: several(file, "obstacle", report),
             view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
@@ -59,8 +70,16 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
     if json.is_null() {
         return None;
     }
-    // The schema has found it sound; should the types know better, their words are better than none.
-    T::deserialize(json).map_err(|error| report.at(path, error.to_string(), None)).ok()
+    let known = report.total();
+    let read = T::deserialize(json);
+    // Where mistakes were found a needed key may be left out. Else the schema has found it sound, and should the
+    // types know better, their words are better than none.
+    read.map_err(|error| {
+        if known == 0 {
+            report.at(path, error.to_string(), None)
+        }
+    })
+    .ok()
 }
 
 /// The most frames a scene may have: at 60 a second nearly two days of film.
@@ -74,7 +93,8 @@ pub(super) fn resolve(
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<Scene> {
-    let body = parts.body.as_ref().and_then(|file| body::resolve(file, parts.runs.len(), limits, report));
+    let read_body = |file| body::resolve(file, parts.body_flawed, parts.runs.len(), limits, report);
+    let body = parts.body.as_ref().and_then(read_body);
     let dimension = match &body {
         Some(body) => Some(body.body.dimension),
         None => parts.body.as_ref().and_then(body::dimension),
@@ -160,8 +180,7 @@ fn vector(typed: &Coordinates, dimension: Dimension, path: &[Way<'_>], report: &
                 Dimension::Space => "3, because the body is in space",
                 Dimension::Plane => "2, because the body is in the plane",
             };
-            let message =
-                format!("`{}` has {} coordinates; expected {expected}", super::report::written(path), other.len());
+            let message = format!("`{}` has {} coordinates; expected {expected}", written(path), other.len());
             report.at(path, message, None);
             None
         }
@@ -176,6 +195,6 @@ fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option
     if largest > 0.0 && unit.is_finite() {
         return Some(unit);
     }
-    report.at(path, format!("`{}` is zero, so it has no direction", super::report::written(path)), None);
+    report.at(path, format!("`{}` is zero, so it has no direction", written(path)), None);
     None
 }

@@ -43,7 +43,7 @@ pub(super) fn resolve(
         let step = seconds(step, cycle);
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
-                format!("the time step comes out as {step:e} s with T = {cycle:e} s, which cannot be counted");
+                format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
             report.at(path, message, "make it larger".to_owned());
             return None;
         }
