@@ -1,4 +1,8 @@
 //! Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models.
 
+#[cfg(feature = "render")]
+pub mod gpu;
+#[cfg(feature = "render")]
+pub mod picture;
 pub mod scene;
 pub mod sim;
