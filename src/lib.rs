@@ -5,4 +5,5 @@ pub mod gpu;
 #[cfg(feature = "render")]
 pub mod picture;
 pub mod scene;
+pub mod sequence;
 pub mod sim;

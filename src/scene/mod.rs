@@ -1,8 +1,27 @@
 //! Scenes: what was typed becomes what it means. After that no field says "use the default", every number is in
 //! SI units and every index is in range.
 
-mod view;
+//!
+//! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
+//! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`.
 
+mod digest;
+mod error;
+mod file;
+mod limits;
+mod load;
+mod report;
+mod resolve;
+mod schema;
+mod source;
+mod step;
+mod structure;
+mod view;
+mod words;
+
+pub use error::{Mistake, Mistakes, SceneError};
+pub use limits::Limits;
+pub use schema::schema;
 pub use view::{Camera, Theme, View};
 
 use crate::sim::body::{Body, State};

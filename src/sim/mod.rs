@@ -2,8 +2,14 @@
 
 pub mod body;
 pub mod contact;
+pub mod diagnose;
 pub mod integrate;
 pub mod model;
 pub mod rotation;
 pub mod snapshot;
 pub mod topology;
+pub mod world;
+
+pub use body::{Body, State};
+pub use snapshot::{Frame, Snapshot};
+pub use world::World;

@@ -31,12 +31,26 @@ fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     }
 }
 
-/// The faces of one element as node indices, counter-clockwise seen from outside; a polygon is its own face.
-pub fn faces_of(kind: ElementKind, nodes: &[u32]) -> Vec<Vec<u32>> {
-    match kind {
-        ElementKind::Polygon => vec![nodes.to_vec()],
-        _ => face_table(kind).iter().map(|face| face.iter().map(|&at| nodes[at as usize]).collect()).collect(),
+/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; a polygon is its
+/// own face.
+pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
+    if kind == ElementKind::Polygon {
+        return visit(nodes);
     }
+    for face in face_table(kind) {
+        let mut own = [0; 4];
+        for (own, &at) in own.iter_mut().zip(*face) {
+            *own = nodes[at as usize];
+        }
+        visit(&own[..face.len()]);
+    }
+}
+
+/// The faces of one element as lists of nodes; see [`for_each_face`].
+pub fn faces_of(kind: ElementKind, nodes: &[u32]) -> Vec<Vec<u32>> {
+    let mut faces = Vec::new();
+    for_each_face(kind, nodes, |face| faces.push(face.to_vec()));
+    faces
 }
 
 /// A list of nodes that is the same for every starting corner and either direction.

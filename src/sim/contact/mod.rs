@@ -24,3 +24,28 @@ pub enum Shape {
         height: f64,
     },
 }
+
+impl Obstacle {
+    /// The rebound of one node: mirrored out with restitution, its slip braked by friction.
+    ///
+    /// A node found at depth `d` is put at height `e d`; only if it is approaching, its normal velocity `v_n` becomes
+    /// `−e v_n`. Friction comes from that change: it takes at most `μ |Δv_n|` from the velocity along the surface
+    /// and never reverses it.
+    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3) {
+        let Shape::Floor { normal, height } = self.shape;
+        let depth = height - normal.dot(*position);
+        if depth <= 0.0 {
+            return;
+        }
+        *position += normal * (depth * (1.0 + self.restitution));
+        let approach = -normal.dot(*velocity);
+        if approach <= 0.0 {
+            return;
+        }
+        let change = (1.0 + self.restitution) * approach;
+        let slip = *velocity + normal * approach;
+        let speed = slip.length();
+        let kept = if speed > 0.0 { (1.0 - self.friction * change / speed).max(0.0) } else { 0.0 };
+        *velocity = slip * kept + normal * (self.restitution * approach);
+    }
+}

@@ -3,10 +3,11 @@
 //! To add a model, write a file with a `Parameters` (what a scene types), a resolved description that implements
 //! [`ElasticModel`], and a worker that implements [`ForceModel`]; then add it to [`ModelParameters`].
 
+mod blocks;
 pub mod mass_spring;
 pub mod shape_based;
 
-use super::body::{Body, State};
+use super::body::{Body, ElementKind, State};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -65,11 +66,17 @@ pub trait ForceModel: Send {
     /// memory of the model.
     fn add_forces(&mut self, state: &State, forces: &mut [DVec3]);
 
-    /// Elastic energy (J) of which the elastic forces are the negative gradient; `None` for a model without one.
-    fn energy(&self, state: &State) -> Option<f64>;
+    /// Energy and errors at a state, without changing the memory.
+    fn measure(&self, state: &State) -> Measure;
+}
 
-    /// The largest α of Eq. (18) (rad/s²); `None` for a model without rotations.
-    fn residual(&self, state: &State) -> Option<f64>;
+/// What a model says about a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// Elastic energy (J), of which the elastic forces are the negative gradient; `None` for a model without one.
+    pub energy: Option<f64>,
+    /// The largest α of Eq. (18) over all elements (rad/s²); `None` for a model without rotations.
+    pub residual: Option<f64>,
 }
 
 /// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0.
@@ -86,4 +93,49 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
         }
         (None, None) => Ok(0.0),
     }
+}
+
+/// The second line of a picture: what the model is made of, its stiffness and, if it has any, its damping.
+fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
+    let mut words = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
+    if damping > 0.0 {
+        let mean_mass = body.mass.iter().sum::<f64>() / body.len() as f64;
+        let ratio = damping / (2.0 * (stiffness * mean_mass).sqrt());
+        words.push_str(&format!(", ζ = {}", short(ratio)));
+    }
+    words
+}
+
+/// The elements of a body in words: `27 cubes` is what a reader calls hexahedra in a lattice.
+fn elements_in_words(body: &Body) -> String {
+    let count = body.elements.len();
+    let kind = match body.kinds.as_slice() {
+        [first, rest @ ..] if rest.iter().all(|kind| kind == first) => Some(*first),
+        _ => None,
+    };
+    let triangles = body.elements.iter().all(|nodes| nodes.len() == 3);
+    let (one, many) = match kind {
+        Some(ElementKind::Segment) => ("segment", "segments"),
+        Some(ElementKind::Polygon) if triangles => ("triangle", "triangles"),
+        Some(ElementKind::Polygon) => ("polygon", "polygons"),
+        Some(ElementKind::Tetrahedron) => ("tetrahedron", "tetrahedra"),
+        Some(ElementKind::Pyramid) => ("pyramid", "pyramids"),
+        Some(ElementKind::Wedge) => ("wedge", "wedges"),
+        Some(ElementKind::Hexahedron) => ("cube", "cubes"),
+        Some(ElementKind::Other) | None => ("element", "elements"),
+    };
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A number of a unit with the prefix that leaves one to three digits before the point, such as `10 kN/m`.
+fn with_prefix(value: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
+    let (scale, prefix) = PREFIXES.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-3, "m"));
+    format!("{} {prefix}{unit}", short(value / scale))
+}
+
+/// A number with up to three significant digits and no trailing zeros.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded}")
 }

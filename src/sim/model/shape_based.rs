@@ -1,9 +1,21 @@
-//! The paper's model: every element keeps its own shape (section 3).
+//! The paper's model: every element keeps its own shape (section 3, Eq. (4)).
+//!
+//! Force on node `i`: `−Σ_e (k d_ie + D v_ie)`, with `d_ie = r_i − R_i` its distance from the equilibrium shape of
+//! element `e`, and `v_ie` its velocity relative to the mean velocity of the element's nodes.
+//!
+//! Energy: `E = k/2 Σ_e Σ_i |r_i − R_i|²`. With the exact rotation its negative gradient is the elastic force,
+//! because moving along the optimum changes `E` only in second order.
+//!
+//! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
+//! internal force.
 
-use super::Misfit;
-use crate::sim::body::Body;
+use super::{ElasticModel, ForceModel, Measure, Misfit, blocks};
+use crate::sim::body::{Body, Dimension, State};
+use crate::sim::rotation::{self, davenport1968, linearised, planar};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// What a scene types for this model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,14 +62,165 @@ impl Parameters {
     }
 }
 
-impl super::ElasticModel for ShapeBased {
+impl ElasticModel for ShapeBased {
     fn stiffness(&self) -> f64 {
         self.stiffness
     }
-    fn describe(&self, _body: &Body) -> String {
-        unimplemented!()
+
+    fn describe(&self, body: &Body) -> String {
+        super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body)
     }
-    fn prepare(&self, _body: &std::sync::Arc<Body>, _initial: &crate::sim::body::State) -> Box<dyn super::ForceModel> {
-        unimplemented!()
+
+    fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel> {
+        Box::new(Elements::new(self.clone(), body, initial))
     }
+}
+
+/// The rotations of all elements: the model's memory from one evaluation to the next.
+#[derive(Clone, Debug)]
+enum Rotations {
+    /// `(cos θ, sin θ)` of each element in the plane.
+    Plane(Vec<DVec2>),
+    /// The unit quaternion of each element in space.
+    Space(Vec<DQuat>),
+}
+
+/// A body's elements at work.
+struct Elements {
+    model: ShapeBased,
+    body: Arc<Body>,
+    /// `R0` of each corner (m), element after element.
+    rest: Vec<DVec3>,
+    /// `Σ m |R0|²` of each element (kg m²), Eq. (17).
+    inertia: Vec<f64>,
+    rotations: Rotations,
+    /// Force on each corner (N), element after element; a node sums its own in this order.
+    corner_forces: Vec<DVec3>,
+    gather: blocks::Gather,
+}
+
+impl Elements {
+    fn new(model: ShapeBased, body: &Arc<Body>, initial: &State) -> Self {
+        let elements = &body.elements;
+        let mut rest = Vec::with_capacity(elements.indices().len());
+        for nodes in elements.iter() {
+            let centre = mean(nodes, &body.rest);
+            rest.extend(nodes.iter().map(|&node| body.rest[node as usize] - centre));
+        }
+        let inertia = (0..elements.len())
+            .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
+            .collect();
+        // The start is the exact optimum of the initial positions, not the identity.
+        let at_rest = |element: usize| {
+            let nodes = &elements[element];
+            moment_at_rest(&rest[elements.range(element)], nodes, mean(nodes, &initial.position), &initial.position)
+        };
+        let all = 0..elements.len();
+        let rotations = match body.dimension {
+            Dimension::Plane => Rotations::Plane(all.map(|e| planar::solve(at_rest(e), DVec2::X)).collect()),
+            Dimension::Space => {
+                Rotations::Space(all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY)).collect())
+            }
+        };
+        let corner_forces = vec![DVec3::ZERO; rest.len()];
+        let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
+        Self { model, body: Arc::clone(body), rest, inertia, rotations, corner_forces, gather }
+    }
+
+    /// The rotation of one element at `state`, and what the next evaluation will start from.
+    fn rotation(&self, element: usize, at_rest: DMat3) -> DMat3 {
+        match &self.rotations {
+            Rotations::Plane(last) => planar::matrix(planar::solve(at_rest, last[element])),
+            Rotations::Space(last) => DMat3::from_quat(linearised::follow(at_rest, last[element], self.model.passes)),
+        }
+    }
+}
+
+impl ForceModel for Elements {
+    fn add_forces(&mut self, state: &State, forces: &mut [DVec3]) {
+        let Self { model, body, rest, rotations, corner_forces, gather, .. } = self;
+        let evaluate = Evaluate { model, body, rest, state };
+        match rotations {
+            Rotations::Plane(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
+                evaluate.element(element, out, |at_rest| {
+                    *last = planar::solve(at_rest, *last);
+                    planar::matrix(*last)
+                });
+            }),
+            Rotations::Space(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
+                evaluate.element(element, out, |at_rest| {
+                    *last = linearised::follow(at_rest, *last, model.passes);
+                    DMat3::from_quat(*last)
+                });
+            }),
+        }
+        gather.add(corner_forces, forces);
+    }
+
+    fn measure(&self, state: &State) -> Measure {
+        let (mut energy, mut residual) = (0.0, 0.0f64);
+        for (element, nodes) in self.body.elements.iter().enumerate() {
+            let rest = &self.rest[self.body.elements.range(element)];
+            let centre = mean(nodes, &state.position);
+            let at_rest = moment_at_rest(rest, nodes, centre, &state.position);
+            let turn = self.rotation(element, at_rest);
+            for (&node, &rest) in nodes.iter().zip(rest) {
+                energy += 0.5
+                    * self.model.stiffness
+                    * (state.position[node as usize] - centre - turn * rest).length_squared();
+            }
+            residual = residual.max(angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]));
+        }
+        Measure { energy: Some(energy), residual: Some(residual) }
+    }
+}
+
+/// What one evaluation of the forces reads.
+struct Evaluate<'a> {
+    model: &'a ShapeBased,
+    body: &'a Body,
+    rest: &'a [DVec3],
+    state: &'a State,
+}
+
+impl Evaluate<'_> {
+    /// Eq. (4) for one element: writes the force on each of its corners (N). `solve` turns `Σ R0 rᵀ` into the
+    /// rotation matrix.
+    #[doc(alias = "Eq. 4")]
+    fn element(&self, element: usize, forces: &mut [DVec3], solve: impl FnOnce(DMat3) -> DMat3) {
+        let Self { model: &ShapeBased { stiffness: k, damping: d, .. }, body, state, .. } = *self;
+        let nodes = &body.elements[element];
+        let rest = &self.rest[body.elements.range(element)];
+        let centre = mean(nodes, &state.position);
+        let drift = mean(nodes, &state.velocity);
+        let turn = solve(moment_at_rest(rest, nodes, centre, &state.position));
+        for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
+            let displacement = state.position[node as usize] - centre - turn * rest;
+            let relative_velocity = state.velocity[node as usize] - drift;
+            *force = -(displacement * k + relative_velocity * d);
+        }
+    }
+}
+
+/// `Σ R0 rᵀ` of an element (m²).
+fn moment_at_rest(rest: &[DVec3], nodes: &[u32], centre: DVec3, position: &[DVec3]) -> DMat3 {
+    rotation::moment(rest, nodes.iter().map(|&node| position[node as usize] - centre))
+}
+
+/// The unweighted mean of `values` over the nodes of an element.
+fn mean(nodes: &[u32], values: &[DVec3]) -> DVec3 {
+    let sum = nodes.iter().fold(DVec3::ZERO, |sum, &node| sum + values[node as usize]);
+    sum / nodes.len() as f64
+}
+
+/// Eq. (17): the rough moment of inertia `I = Σ m |R0|²` of an element (kg m²); it overstates a cube's by half.
+#[doc(alias = "Eq. 17")]
+fn inertia(nodes: &[u32], rest: &[DVec3], mass: &[f64]) -> f64 {
+    nodes.iter().zip(rest).map(|(&node, rest)| mass[node as usize] * rest.length_squared()).sum()
+}
+
+/// Eq. (18): `|α| = k |Σ r × R| / I` (rad/s²), what the error of an element's rotation amounts to. `a` is `Σ R rᵀ`.
+#[doc(alias = "Eq. 18")]
+fn angular_acceleration(a: DMat3, stiffness: f64, inertia: f64) -> f64 {
+    stiffness * rotation::torque(a).length() / inertia
 }

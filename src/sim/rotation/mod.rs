@@ -1,1 +1,38 @@
-//! Rotations of elements (Eqs. 6–16).
+//! The rotation of an element (paper, Eqs. 6–16): pure functions of one 3×3 matrix of moments.
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `R0` | corners at rest, relative to their mean (m) |
+//! | `r` | corners now, relative to their mean (m) |
+//! | `M` | the rotation sought; `R = M R0` is the equilibrium shape |
+//! | `A` | `Σ R rᵀ` (m²), the matrix of which Eq. (15) is made |
+//! | `w` | `θ u`, axis times angle (rad) |
+//!
+//! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are visited once however often
+//! Eq. (15) is solved. No function here uses a sine, a cosine or an arctangent: square roots and divisions alone are
+//! rounded alike on every machine.
+
+pub mod davenport1968;
+pub mod linearised;
+pub mod planar;
+
+use glam::{DMat3, DVec3};
+
+/// `A = Σ R rᵀ` of an element: `shape` its equilibrium (or rest) corners, `now` its present ones (m), both relative
+/// to their own mean.
+pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
+    let mut a = DMat3::ZERO;
+    for (shape, now) in shape.iter().zip(now) {
+        a.x_axis += *shape * now.x;
+        a.y_axis += *shape * now.y;
+        a.z_axis += *shape * now.z;
+    }
+    a
+}
+
+/// Eq. (5): `Σ r × R`, the torque of the elastic forces over `k` (m²). It is zero at an equilibrium shape.
+#[doc(alias = "Eq. 5")]
+pub fn torque(a: DMat3) -> DVec3 {
+    // A[i][j] = Σ R_i r_j; glam stores columns: a.y_axis.z is row z, column y.
+    DVec3::new(a.y_axis.z - a.z_axis.y, a.z_axis.x - a.x_axis.z, a.x_axis.y - a.y_axis.x)
+}

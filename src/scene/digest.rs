@@ -1,0 +1,69 @@
+//! The digest of a scene's meaning.
+
+use super::file::SceneFile;
+use super::schema::{SCHEMA, variants, without_nulls};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits.
+///
+/// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
+/// whose value is its default. So neither comments, layout and order count, nor whether a number was written as
+/// `1e4` or `10000.0`, nor a default that was typed; and a key added to the format later changes no digest.
+pub(super) fn digest(scene: &SceneFile) -> String {
+    // The types hold nothing that JSON cannot: finite numbers, text keys.
+    let mut value = serde_json::to_value(scene).unwrap_or_default();
+    without_nulls(&mut value);
+    without_defaults(&mut value, &SCHEMA);
+    let mut text = String::new();
+    canonical(&value, &mut text);
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Removes every entry whose value is the default that the schema names.
+fn without_defaults(value: &mut Value, schema: &Value) {
+    let schema = match variants(schema) {
+        Some((tag, kinds)) => match kinds.iter().find(|(name, _)| value[tag] == **name) {
+            Some((_, branch)) => branch,
+            None => return,
+        },
+        None => schema,
+    };
+    match value {
+        Value::Object(table) => {
+            table.retain(|key, value| schema["properties"][key].get("default") != Some(value));
+            for (key, value) in table.iter_mut() {
+                without_defaults(value, &schema["properties"][key]);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| without_defaults(item, &schema["items"])),
+        _ => {}
+    }
+}
+
+/// Writes JSON without spaces and with sorted keys.
+fn canonical(value: &Value, text: &mut String) {
+    match value {
+        Value::Object(table) => {
+            let mut entries: Vec<_> = table.iter().collect();
+            entries.sort_by_key(|(key, _)| *key);
+            text.push('{');
+            for (at, (key, value)) in entries.into_iter().enumerate() {
+                text.push_str(if at > 0 { "," } else { "" });
+                text.push_str(&Value::from(key.as_str()).to_string());
+                text.push(':');
+                canonical(value, text);
+            }
+            text.push('}');
+        }
+        Value::Array(items) => {
+            text.push('[');
+            for (at, item) in items.iter().enumerate() {
+                text.push_str(if at > 0 { "," } else { "" });
+                canonical(item, text);
+            }
+            text.push(']');
+        }
+        plain => text.push_str(&plain.to_string()),
+    }
+}

@@ -1,0 +1,149 @@
+//! From a file to a scene.
+
+use super::error::{Mistakes, SceneError};
+use super::limits::Limits;
+use super::report::{Report, mistake};
+use super::resolve::{self, Parts};
+use super::schema::SCHEMA;
+use super::source::Source;
+use super::words::nearest;
+use super::{Scene, digest, file::SceneFile, structure};
+use serde::Deserialize;
+use serde_json::Value;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use toml::de::DeTable;
+
+impl Scene {
+    /// Reads a scene from a file.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
+    pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
+        let bytes = read(path, limits)?;
+        let file = path.display().to_string();
+        let text = as_text(&bytes, &file)?;
+        Self::parse(text, &file, limits)
+    }
+
+    /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene.
+    ///
+    /// # Errors
+    /// A text that is empty, no TOML, or no scene, with all mistakes in it.
+    pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let file = || name.to_owned();
+        if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
+            return Err(SceneError::Empty { file: file() });
+        }
+        let source = Source::new(text);
+        let (root, errors) = DeTable::parse_recoverable(text);
+        if !errors.is_empty() {
+            return Err(SceneError::Syntax(syntax(&source, &errors, name)));
+        }
+        let mut report = Report::new(&source, root.get_ref());
+        let json = structure::check(&SCHEMA, root.get_ref(), &mut report);
+        let parts = Parts::new(&json, &mut report);
+        let digest = match report.total() {
+            0 => SceneFile::deserialize(Value::Object(json)).map(|scene| digest::digest(&scene)).unwrap_or_default(),
+            _ => String::new(),
+        };
+        let scene = resolve::resolve(&parts, &stem(name), &digest, limits, &mut report);
+        match (report.finish(name), scene) {
+            (None, Some(scene)) => Ok(scene),
+            (None, None) => Err(SceneError::Empty { file: file() }),
+            (Some(mistakes), _) => Err(SceneError::Mistakes(mistakes)),
+        }
+    }
+}
+
+/// The name of a scene from that of its file.
+fn stem(name: &str) -> String {
+    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "scene".into())
+}
+
+/// What the TOML reader said, the first of each line: the rest follows from it.
+fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistakes {
+    let mut found: Vec<_> = errors
+        .iter()
+        .map(|error| {
+            let span = error.span().unwrap_or(0..0);
+            let message = match (error.message(), source.text().get(span.clone())) {
+                ("duplicate key", Some(key)) => format!("`{key}` is given a second time"),
+                (message, _) => format!("this is not TOML: {message}"),
+            };
+            mistake(source, span, message, None)
+        })
+        .collect();
+    found.sort_by_key(|mistake| (mistake.line, mistake.column));
+    found.dedup_by_key(|mistake| mistake.line);
+    let total = found.len();
+    found.truncate(1000);
+    Mistakes { file: name.into(), found, total }
+}
+
+/// The bytes of a file.
+fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
+    if path.is_dir() {
+        return Err(SceneError::Folder { path: path.into(), scenes: scenes_in(path) });
+    }
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file that is too long from one that just fits, whatever its kind.
+    let outcome = File::open(path).and_then(|file| file.take(limits.file.saturating_add(1)).read_to_end(&mut bytes));
+    match outcome {
+        Ok(_) if bytes.len() as u64 > limits.file => Err(SceneError::TooLong { path: path.into(), limit: limits.file }),
+        Ok(_) => Ok(bytes),
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            Err(SceneError::Missing { path: path.into(), nearest: similar(path) })
+        }
+        Err(source) => Err(SceneError::Unreadable { path: path.into(), source }),
+    }
+}
+
+/// The bytes as text, or what they are instead.
+fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
+    let known = [
+        (&b"\x89PNG"[..], "this is a PNG picture"),
+        (b"PK\x03\x04", "this is a ZIP archive, as .npz files are"),
+        (b"\x93NUMPY", "this is a NumPy array"),
+        (b"\xff\xfe", "this text is in UTF-16"),
+        (b"\xfe\xff", "this text is in UTF-16"),
+    ];
+    let not_text = |offset, what: &str| Err(SceneError::NotText { file: file.into(), offset, what: what.into() });
+    if let Some((_, what)) = known.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return not_text(0, what);
+    }
+    match (std::str::from_utf8(bytes), bytes.iter().position(|&byte| byte == 0)) {
+        (Ok(_), Some(offset)) => not_text(offset, "this is not text: it holds a zero byte"),
+        (Ok(text), None) => Ok(text),
+        (Err(error), zero) => {
+            let offset = error.valid_up_to().min(zero.unwrap_or(usize::MAX));
+            let byte = bytes.get(offset).copied().unwrap_or_default();
+            not_text(offset, &format!("this is not text: the byte 0x{byte:02x} is not UTF-8 here"))
+        }
+    }
+}
+
+/// The scene files in a folder, in order.
+fn scenes_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    scenes.sort();
+    scenes
+}
+
+/// The file in the same folder whose name is most like that of a missing one.
+fn similar(path: &Path) -> Option<PathBuf> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?.flatten();
+    // Folders of results may hold very many files; a scene lies among few.
+    let mut names: Vec<String> =
+        entries.take(10_000).filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let near = nearest(wanted, &names).or_else(|| nearest(&format!("{wanted}.toml"), &names))?;
+    Some(folder.map_or_else(|| PathBuf::from(near), |folder| folder.join(near)))
+}

@@ -1,0 +1,120 @@
+//! Collects mistakes, each at its place in the file.
+
+use super::error::{Mistake, Mistakes};
+use super::source::Source;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// One step on the way from the top of a file to a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way<'a> {
+    /// Into a table.
+    Key(&'a str),
+    /// Into an array.
+    Index(usize),
+}
+
+/// The way to a value as a reader writes it: `run[1].model.stiffness`.
+pub(super) fn written(path: &[Way<'_>]) -> String {
+    let mut text = String::new();
+    for way in path {
+        match way {
+            Way::Key(key) if text.is_empty() => text.push_str(key),
+            Way::Key(key) => text.extend([".", key]),
+            Way::Index(index) => text.push_str(&format!("[{index}]")),
+        }
+    }
+    text
+}
+
+/// How many mistakes are kept with their text.
+const KEPT: usize = 1000;
+
+/// Mistakes as they are found.
+#[derive(Debug)]
+pub(super) struct Report<'t> {
+    source: &'t Source<'t>,
+    root: &'t DeTable<'t>,
+    found: Vec<Mistake>,
+    total: usize,
+}
+
+impl<'t> Report<'t> {
+    pub(super) fn new(source: &'t Source<'t>, root: &'t DeTable<'t>) -> Self {
+        Self { source, root, found: Vec::new(), total: 0 }
+    }
+
+    /// How many mistakes were found so far.
+    pub(super) fn total(&self) -> usize {
+        self.total
+    }
+
+    /// A mistake at a span of the text.
+    pub(super) fn at_span(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+        self.total += 1;
+        if self.found.len() < KEPT {
+            self.found.push(mistake(self.source, span, message.into(), help));
+        }
+    }
+
+    /// A mistake in the value at `path`, or in the nearest table or array that is there.
+    pub(super) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.at_span(span_of(self.root, path), message, help.into());
+    }
+
+    /// A mistake about the key at the end of `path`, or about where it is missing.
+    pub(super) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
+        let (table, key) = match path {
+            [before @ .., Way::Key(key)] => (table_at(self.root, before), *key),
+            _ => (None, ""),
+        };
+        let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
+        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), message, help.into());
+    }
+
+    /// All that was found in the order of the text; `None` if that is nothing.
+    pub(super) fn finish(mut self, file: &str) -> Option<Mistakes> {
+        self.found.sort_by_key(|mistake| (mistake.line, mistake.column));
+        (self.total > 0).then(|| Mistakes { file: file.into(), found: self.found, total: self.total })
+    }
+}
+
+/// A mistake at a span of a text.
+pub(super) fn mistake(source: &Source<'_>, span: Range<usize>, message: String, help: Option<String>) -> Mistake {
+    let (line, column) = source.position(span.start);
+    let (excerpt, marked) = source.excerpt(&span);
+    Mistake { line, column, message, help, excerpt, marked }
+}
+
+/// The span of the value at `path`, or of the last thing on the way to it that is there.
+fn span_of(root: &DeTable<'_>, path: &[Way<'_>]) -> Range<usize> {
+    let (first, rest) = match path {
+        [Way::Key(first), rest @ ..] => (*first, rest),
+        _ => return 0..0,
+    };
+    let Some(mut value) = root.get(first) else { return 0..0 };
+    for way in rest {
+        let next = match (way, value.get_ref()) {
+            (Way::Key(key), DeValue::Table(table)) => table.get(*key),
+            (Way::Index(index), DeValue::Array(items)) => items.get(*index),
+            _ => None,
+        };
+        match next {
+            Some(next) => value = next,
+            None => break,
+        }
+    }
+    value.span()
+}
+
+fn table_at<'a, 't>(root: &'a DeTable<'t>, path: &[Way<'_>]) -> Option<&'a DeTable<'t>> {
+    let Some((Way::Key(first), rest)) = path.split_first() else { return Some(root) };
+    let mut value = root.get(*first)?;
+    for way in rest {
+        value = match way {
+            Way::Key(key) => value.get_ref().get(*key)?,
+            Way::Index(index) => value.get_ref().get(*index)?,
+        };
+    }
+    value.get_ref().as_table()
+}

@@ -1,0 +1,169 @@
+//! The body and how it starts.
+
+use super::{direction, elements, lattice, vector};
+use crate::scene::file::{BodyFile, Coordinates, Positive, RotationFile};
+use crate::scene::limits::{Demand, Limits};
+use crate::scene::report::{Report, Way};
+use crate::sim::body::{Body, Dimension, IndexLists, State};
+use glam::DVec3;
+
+/// A body, how it starts, and what else was said of it.
+#[derive(Debug)]
+pub(super) struct ResolvedBody {
+    /// The body.
+    pub(super) body: Body,
+    /// Its start.
+    pub(super) initial: State,
+    /// Springs listed by hand.
+    pub(super) springs: Option<Vec<[u32; 2]>>,
+    /// Mean length of the elements' edges (m).
+    pub(super) side: f64,
+}
+
+/// Whether a body is meant to be in the plane or in space, from the first coordinates that say so.
+pub(super) fn dimension(file: &BodyFile) -> Option<Dimension> {
+    let count = match (&file.lattice, &file.nodes) {
+        (Some(lattice), _) => lattice.cells.len(),
+        (None, nodes) => nodes.as_ref()?.first()?.0.len(),
+    };
+    Some(if count == 2 { Dimension::Plane } else { Dimension::Space })
+}
+
+/// The body, or `None` after reporting every mistake in it.
+pub(super) fn resolve(file: &BodyFile, runs: usize, limits: &Limits, report: &mut Report<'_>) -> Option<ResolvedBody> {
+    let before = report.total();
+    let dimension = dimension(file)?;
+    let (rest, elements) = match &file.lattice {
+        Some(typed) => {
+            let demand = Demand::of_lattice(&typed.cells, runs);
+            if let Some((message, help)) = demand.beyond(limits) {
+                report.at(&[Way::Key("body"), Way::Key("lattice"), Way::Key("cells")], message, help);
+                check_start(file, dimension, report);
+                return None;
+            }
+            (lattice::nodes(&typed.cells, typed.side), lattice::elements(&typed.cells))
+        }
+        None => {
+            let nodes = points(file.nodes.as_deref()?, "nodes", dimension, report)?;
+            let lists = file.elements.as_deref()?;
+            elements::check(lists, file.springs.as_deref(), file.faces.as_deref(), &nodes, dimension, report);
+            (nodes, lists.iter().map(Vec::as_slice).collect())
+        }
+    };
+    let masses = masses(file, rest.len(), report);
+    let start = start(file, &rest, dimension, report);
+    if report.total() > before {
+        return None;
+    }
+    let faces: Option<IndexLists> = file.faces.as_ref().map(|faces| faces.iter().map(Vec::as_slice).collect());
+    let body = Body::new(dimension, rest, masses?, elements, faces.as_ref());
+    let side = file.lattice.as_ref().map_or_else(|| elements::mean_edge(&body), |lattice| lattice.side);
+    Some(ResolvedBody { body, initial: start?, springs: file.springs.clone(), side })
+}
+
+/// Listed points as vectors, `None` after reporting those with another number of coordinates.
+fn points(typed: &[Coordinates], key: &str, dimension: Dimension, report: &mut Report<'_>) -> Option<Vec<DVec3>> {
+    let mut points = Vec::with_capacity(typed.len());
+    for (at, coordinates) in typed.iter().enumerate() {
+        let path = [Way::Key("body"), Way::Key(key), Way::Index(at)];
+        points.extend(vector(coordinates, dimension, &path, report));
+    }
+    (points.len() == typed.len()).then_some(points)
+}
+
+/// Reports a list that has not one entry for each node, and a list that stands beside a value for all nodes.
+fn check_list(key: &str, length: usize, nodes: usize, for_all: Option<&str>, report: &mut Report<'_>) {
+    let path = [Way::Key("body"), Way::Key(key)];
+    if length != nodes {
+        let message =
+            format!("`body.{key}` has {length} entries, and the body has {nodes} nodes; expected one for each");
+        report.at_key(&path, message, None);
+    }
+    if let Some(other) = for_all {
+        let message = format!("`body` has both `{other}` for all nodes and `{key}` for each; keep one");
+        report.at_key(&path, message, None);
+    }
+}
+
+fn masses(file: &BodyFile, nodes: usize, report: &mut Report<'_>) -> Option<Vec<f64>> {
+    let Some(listed) = &file.masses else { return Some(vec![file.mass.unwrap_or(1.0); nodes]) };
+    check_list("masses", listed.len(), nodes, file.mass.map(|_| "mass"), report);
+    (listed.len() == nodes).then(|| listed.iter().map(|&Positive(mass)| mass).collect())
+}
+
+/// Where and how fast the body starts.
+fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Report<'_>) -> Option<State> {
+    let (turn, offset, velocity) = check_start(file, dimension, report);
+    let mut position = match &file.positions {
+        Some(listed) => {
+            check_list("positions", listed.len(), rest.len(), None, report);
+            points(listed, "positions", dimension, report)?
+        }
+        None => rest.to_vec(),
+    };
+    let velocity = match &file.velocities {
+        Some(listed) => {
+            check_list("velocities", listed.len(), rest.len(), file.velocity.as_ref().map(|_| "velocity"), report);
+            points(listed, "velocities", dimension, report)?
+        }
+        None => vec![velocity; position.len()],
+    };
+    if let Some((axis, angle)) = turn {
+        let centre = position.iter().sum::<DVec3>() / position.len() as f64;
+        position.iter_mut().for_each(|point| *point = centre + turned(*point - centre, axis, angle));
+    }
+    position.iter_mut().for_each(|point| *point += offset);
+    if let Some(height) = file.lowest {
+        let lowest = position.iter().fold(f64::INFINITY, |lowest, point| lowest.min(point.y));
+        // In this order the lowest node stands at the very height that was typed.
+        position.iter_mut().for_each(|point| point.y = height + (point.y - lowest));
+    }
+    Some(State { position, velocity })
+}
+
+/// A turn (unit axis, angle), a shift and a velocity, each with its mistakes reported and then left out.
+fn check_start(file: &BodyFile, dimension: Dimension, report: &mut Report<'_>) -> (Option<(DVec3, f64)>, DVec3, DVec3) {
+    let turn = file.rotation.as_ref().and_then(|typed| Some((axis(typed, dimension, report)?, typed.angle)));
+    let mut optional = |typed: &Option<Coordinates>, key| match typed {
+        Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
+        None => DVec3::ZERO,
+    };
+    (turn, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
+}
+
+fn axis(typed: &RotationFile, dimension: Dimension, report: &mut Report<'_>) -> Option<DVec3> {
+    let path = [Way::Key("body"), Way::Key("rotation"), Way::Key("axis")];
+    match (&typed.axis, dimension) {
+        (None, Dimension::Plane) => Some(DVec3::Z),
+        (Some(_), Dimension::Plane) => {
+            let message = "`body.rotation` has an `axis`, but the body is in the plane and turns within it";
+            report.at_key(&path, message, "take `axis` out; a positive angle turns counter-clockwise".to_owned());
+            None
+        }
+        (None, Dimension::Space) => {
+            let help = "such as axis = [0, 0, 1]".to_owned();
+            report.at(&path, "`body.rotation` has no `axis`, which a turn in space needs", help);
+            None
+        }
+        (Some(axis), Dimension::Space) => {
+            vector(axis, dimension, &path, report).and_then(|axis| direction(axis, &path, report))
+        }
+    }
+}
+
+/// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.
+fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
+    let (sine, cosine) = libm::sincos(angle);
+    v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_about_y_takes_z_to_x() {
+        let turned = turned(DVec3::new(0.0, 2.0, 1.0), DVec3::Y, std::f64::consts::FRAC_PI_2);
+        assert!(turned.distance(DVec3::new(1.0, 2.0, 0.0)) < 1e-15, "{turned}");
+    }
+}

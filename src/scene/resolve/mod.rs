@@ -1,0 +1,181 @@
+//! What a scene means: defaults filled in, lengths compared, indices checked. Every mistake is reported; nothing is
+//! built from a part that has one.
+
+mod body;
+mod elements;
+mod lattice;
+mod runs;
+mod view;
+
+use super::Scene;
+use super::file::{BodyFile, Coordinates, ObstacleFile, RunFile, TimeFile, ViewFile};
+use super::limits::Limits;
+use super::report::{Report, Way};
+use super::words::count;
+use crate::sim::body::Dimension;
+use crate::sim::contact::{Obstacle, Shape};
+use glam::DVec3;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value as Json};
+use std::sync::Arc;
+
+/// The parts of a scene file without those that have a mistake in their structure.
+#[derive(Debug)]
+pub(super) struct Parts {
+    title: Option<String>,
+    gravity: Option<Coordinates>,
+    time: Option<TimeFile>,
+    body: Option<BodyFile>,
+    runs: Vec<Option<RunFile>>,
+    obstacles: Vec<Option<ObstacleFile>>,
+    view: Option<ViewFile>,
+}
+
+impl Parts {
+    /// The sound parts of a checked file.
+    pub(super) fn new(file: &Map<String, Json>, report: &mut Report<'_>) -> Self {
+        Self {
+            title: part(file, "title", report),
+            gravity: part(file, "gravity", report),
+            time: part(file, "time", report),
+            body: part(file, "body", report),
+            runs: several(file, "run", report),
+            obstacles: several(file, "obstacle", report),
+            view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
+        }
+    }
+}
+
+fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Option<T> {
+    read(file.get(key)?, &[Way::Key(key)], report)
+}
+
+fn several<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Vec<Option<T>> {
+    let entries = file.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
+    entries.map(|(at, entry)| read(entry, &[Way::Key(key), Way::Index(at)], report)).collect()
+}
+
+fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<'_>) -> Option<T> {
+    if json.is_null() {
+        return None;
+    }
+    // The schema has found it sound; should the types know better, their words are better than none.
+    T::deserialize(json).map_err(|error| report.at(path, error.to_string(), None)).ok()
+}
+
+/// The most frames a scene may have: at 60 a second nearly two days of film.
+const MOST_FRAMES: f64 = 1e7;
+
+/// The scene, or `None` if there is any mistake.
+pub(super) fn resolve(
+    parts: &Parts,
+    name: &str,
+    digest: &str,
+    limits: &Limits,
+    report: &mut Report<'_>,
+) -> Option<Scene> {
+    let body = parts.body.as_ref().and_then(|file| body::resolve(file, parts.runs.len(), limits, report));
+    let dimension = match &body {
+        Some(body) => Some(body.body.dimension),
+        None => parts.body.as_ref().and_then(body::dimension),
+    };
+    let gravity = match (&parts.gravity, dimension) {
+        (Some(typed), Some(dimension)) => vector(typed, dimension, &[Way::Key("gravity")], report),
+        _ => Some(DVec3::ZERO),
+    };
+    let obstacles = obstacles(&parts.obstacles, dimension, report);
+    if let Some(time) = &parts.time {
+        check_frames(time, report);
+    }
+    let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);
+    let view = match (&parts.view, &body, &obstacles) {
+        (Some(view), Some(body), Some(obstacles)) => view::resolve(view, body, obstacles, parts.runs.len(), report),
+        _ => None,
+    };
+    if report.total() > 0 {
+        return None;
+    }
+    let (time, body) = (parts.time.as_ref()?, body?);
+    Some(Scene {
+        title: parts.title.clone().unwrap_or_else(|| name.into()),
+        name: name.into(),
+        digest: digest.into(),
+        gravity: gravity?,
+        duration: time.duration,
+        frames_per_second: time.frames_per_second,
+        body: Arc::new(body.body),
+        initial: body.initial,
+        runs: runs?,
+        obstacles: obstacles?,
+        view: view?,
+    })
+}
+
+fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
+    let frames = time.duration * time.frames_per_second;
+    if frames > MOST_FRAMES {
+        let message = format!(
+            "{} s at {} frames per second make {frames:.3e} frames; the most is {}",
+            time.duration,
+            time.frames_per_second,
+            count(MOST_FRAMES as u128)
+        );
+        let help = "make `duration` or `frames_per_second` smaller".to_owned();
+        report.at(&[Way::Key("time"), Way::Key("duration")], message, help);
+    }
+}
+
+fn obstacles(
+    typed: &[Option<ObstacleFile>],
+    dimension: Option<Dimension>,
+    report: &mut Report<'_>,
+) -> Option<Vec<Obstacle>> {
+    let mut obstacles = Vec::new();
+    for (at, obstacle) in typed.iter().enumerate() {
+        let Some(ObstacleFile::Floor(floor)) = obstacle else { continue };
+        let path = [Way::Key("obstacle"), Way::Index(at), Way::Key("normal")];
+        let normal = match (&floor.normal, dimension) {
+            (None, _) => Some(DVec3::Y),
+            (Some(typed), Some(dimension)) => {
+                vector(typed, dimension, &path, report).and_then(|vector| direction(vector, &path, report))
+            }
+            (Some(_), None) => None,
+        };
+        obstacles.extend(normal.map(|normal| Obstacle {
+            shape: Shape::Floor { normal, height: floor.height },
+            restitution: floor.restitution,
+            friction: floor.friction,
+        }));
+    }
+    (obstacles.len() == typed.len()).then_some(obstacles)
+}
+
+/// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.
+fn vector(typed: &Coordinates, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
+    match (typed.0.as_slice(), dimension) {
+        (&[x, y, z], Dimension::Space) => Some(DVec3::new(x, y, z)),
+        (&[x, y], Dimension::Plane) => Some(DVec3::new(x, y, 0.0)),
+        (other, dimension) => {
+            let expected = match dimension {
+                Dimension::Space => "3, because the body is in space",
+                Dimension::Plane => "2, because the body is in the plane",
+            };
+            let message =
+                format!("`{}` has {} coordinates; expected {expected}", super::report::written(path), other.len());
+            report.at(path, message, None);
+            None
+        }
+    }
+}
+
+/// A vector at unit length; a mistake if it has no direction.
+fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
+    // By its largest coordinate first: squares of very small or large numbers leave the range of double precision.
+    let largest = vector.abs().max_element();
+    let unit = (vector / largest).normalize();
+    if largest > 0.0 && unit.is_finite() {
+        return Some(unit);
+    }
+    report.at(path, format!("`{}` is zero, so it has no direction", super::report::written(path)), None);
+    None
+}

@@ -1,0 +1,85 @@
+//! The runs: models, steps and integrators.
+
+use super::body::ResolvedBody;
+use crate::scene::Run;
+use crate::scene::file::{RunFile, StepFile, TimeFile};
+use crate::scene::report::{Report, Way};
+use crate::scene::words;
+use crate::sim::model::ElasticModel;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+
+/// The runs, or `None` if a part they need has a mistake.
+pub(super) fn resolve(
+    typed: &[Option<RunFile>],
+    time: Option<&TimeFile>,
+    body: Option<&ResolvedBody>,
+    report: &mut Report<'_>,
+) -> Option<Vec<Run>> {
+    check_names(typed, report);
+    let body = body?;
+    let models: Vec<_> = (0..)
+        .zip(typed)
+        .map(|(at, run)| {
+            let model = run.as_ref()?.model.resolve(&body.body, body.springs.as_deref());
+            let path = |key| [Way::Key("run"), Way::Index(at), Way::Key("model"), Way::Key(key)];
+            model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
+        })
+        .collect();
+    // One missing model would make another T, and with it mistakes that are none.
+    let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
+    let cycle = cycle(&body.body.mass, models.iter().map(|model| model.stiffness()))?;
+    let mut runs = Vec::with_capacity(models.len());
+    for (at, (run, model)) in typed.iter().zip(models).enumerate() {
+        let (run, time) = (run.as_ref()?, time?);
+        let own = [Way::Key("run"), Way::Index(at), Way::Key("step")];
+        let (step, path) = match &run.step {
+            Some(step) => (step, &own[..]),
+            None => (&time.step, &[Way::Key("time"), Way::Key("step")][..]),
+        };
+        let step = seconds(step, cycle);
+        if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
+            let message =
+                format!("the time step comes out as {step:e} s with T = {cycle:e} s, which cannot be counted");
+            report.at(path, message, "make it larger".to_owned());
+            return None;
+        }
+        let integrator = run.integrator.unwrap_or(time.integrator);
+        runs.push(Run { name: run.name.clone(), model, integrator, step });
+    }
+    Some(runs)
+}
+
+/// The smallest cycle T = 2π√(m/k) of a node over all runs (s).
+pub(in crate::scene) fn cycle(masses: &[f64], stiffnesses: impl Iterator<Item = f64>) -> Option<f64> {
+    let lightest = masses.iter().copied().reduce(f64::min)?;
+    stiffnesses.map(|stiffness| TAU * (lightest / stiffness).sqrt()).reduce(f64::min)
+}
+
+fn seconds(step: &StepFile, cycle: f64) -> f64 {
+    match step {
+        StepFile::Seconds(seconds) => *seconds,
+        StepFile::Cycles(fraction) => fraction.of(cycle),
+    }
+}
+
+/// Reports names that stand twice, and names that cannot be used in files.
+fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
+    for (at, run) in typed.iter().enumerate() {
+        let Some(run) = run else { continue };
+        let path = [Way::Key("run"), Way::Index(at), Way::Key("name")];
+        let quoted = words::quoted(&run.name);
+        if run.name.trim() != run.name || run.name.contains(['/', '\\']) {
+            let message = format!("the name {quoted} cannot be used in files");
+            report.at(&path, message, "no slash, and no space at either end".to_owned());
+        }
+        let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
+        if let Some(first) = typed[..at].iter().position(same) {
+            let message = format!("two runs are called {quoted}: `run[{first}]` and `run[{at}]`");
+            report.at(&path, message, "give each run a name of its own".to_owned());
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! How the scene is looked at.
+
+use super::body::ResolvedBody;
+use super::vector;
+use crate::scene::file::ViewFile;
+use crate::scene::report::{Report, Way};
+use crate::scene::view::{Camera, View};
+use crate::sim::body::{Dimension, bounds};
+use crate::sim::contact::{Obstacle, Shape};
+use glam::DVec3;
+
+/// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
+const AZIMUTH: f64 = 31.0 / 180.0 * std::f64::consts::PI;
+const ELEVATION: f64 = 17.0 / 180.0 * std::f64::consts::PI;
+const FIELD_OF_VIEW: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+
+/// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
+const DISTANCE: f64 = 8.5;
+
+/// How many panels stand beside each other unless the scene says so.
+const COLUMNS: usize = 3;
+
+/// The view, or `None` if there is a mistake in it.
+pub(super) fn resolve(
+    typed: &ViewFile,
+    body: &ResolvedBody,
+    obstacles: &[Obstacle],
+    runs: usize,
+    report: &mut Report<'_>,
+) -> Option<View> {
+    let dimension = body.body.dimension;
+    let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
+    let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
+    for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
+        let message = format!("`view.camera.{key}` is given, but a body in the plane is looked at from the front");
+        report.at_key(&camera(key), message, format!("take `{key}` out"));
+    }
+    let target = match &typed.camera.target {
+        Some(target) => vector(target, dimension, &camera("target"), report)?,
+        None => standing(&body.initial.position, obstacles),
+    };
+    let (azimuth, elevation) = match dimension {
+        Dimension::Plane => (0.0, 0.0),
+        Dimension::Space => (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(ELEVATION)),
+    };
+    let camera = Camera {
+        azimuth,
+        elevation,
+        field_of_view: typed.camera.field_of_view.unwrap_or(FIELD_OF_VIEW),
+        target,
+        distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body)),
+        follow: typed.camera.follow,
+    };
+    let columns = typed.columns.map_or(COLUMNS, |columns| columns as usize).clamp(1, runs.max(1));
+    Some(View { size: typed.size, theme: typed.theme, camera, clock: typed.clock.clone(), columns, side: body.side })
+}
+
+/// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
+fn size(body: &ResolvedBody) -> f64 {
+    let (low, high) = bounds(&body.initial.position);
+    let start = (high - low).max_element();
+    if start > 0.0 { start } else { body.body.extent() }
+}
+
+/// The middle of the body moved down or up until it stands on the first floor that faces upwards.
+fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
+    let (low, high) = bounds(start);
+    let middle = (low + high) / 2.0;
+    for obstacle in obstacles {
+        let Shape::Floor { normal, height } = obstacle.shape;
+        // A wall is no place to stand on; a slope of some 60° still is.
+        if normal.y > 0.5 {
+            let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
+            return DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z);
+        }
+    }
+    middle
+}

@@ -1,0 +1,120 @@
+//! The JSON Schema of scene files, made from the types in [`super::file`].
+
+use super::file::SceneFile;
+use schemars::generate::SchemaSettings;
+use serde_json::{Map, Value};
+use std::sync::LazyLock;
+
+/// The JSON Schema (draft 2020-12) of scene files: every key with its meaning, unit, range and default.
+///
+/// It is one tree without references, so that it can be read from top to bottom. Scene files are checked against
+/// this same tree; see [`Scene::parse`](super::Scene::parse).
+///
+/// ```
+/// let schema = localshape::scene::schema();
+/// assert_eq!(schema["properties"]["time"]["properties"]["duration"]["type"], "number");
+/// ```
+pub fn schema() -> Value {
+    SCHEMA.clone()
+}
+
+/// The schema, made once.
+pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    let mut schema = settings.into_generator().into_root_schema_for::<SceneFile>().to_value();
+    tidy(&mut schema);
+    schema["title"] = "Scene file of localshape".into();
+    schema
+});
+
+/// Fits the generated schema to TOML: there is no null, a description is one line, an alternative of one is none,
+/// and every `kind` says what it is.
+fn tidy(schema: &mut Value) {
+    match schema {
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Object(table) => {
+            drop_null(table);
+            if let Some(Value::String(text)) = table.get_mut("description") {
+                *text = text.replace('\n', " ");
+            }
+            if table.get("format").and_then(Value::as_str) == Some("uint32") && !table.contains_key("maximum") {
+                table.insert("maximum".into(), u32::MAX.into());
+            }
+            if let Some(default) = table.get_mut("default") {
+                without_nulls(default);
+            }
+            describe_kind(table);
+            table.iter_mut().filter(|(key, _)| *key != "default").for_each(|(_, value)| tidy(value));
+        }
+        _ => {}
+    }
+}
+
+/// Removes the null that stands for an absent optional key, and flattens what that leaves as an alternative of one.
+fn drop_null(table: &mut Map<String, Value>) {
+    if let Some(Value::Array(types)) = table.get_mut("type") {
+        types.retain(|name| name != "null");
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            table.insert("type".into(), only);
+        }
+    }
+    if table.get("default") == Some(&Value::Null) {
+        table.shift_remove("default");
+    }
+    let Some(Value::Array(branches)) = table.get_mut("anyOf") else { return };
+    branches.retain(|branch| branch["type"] != "null");
+    if let [Value::Object(only)] = branches.as_slice() {
+        let only = only.clone();
+        table.shift_remove("anyOf");
+        for (key, value) in only {
+            table.entry(key).or_insert(value);
+        }
+        // The alternative may itself have been one with null.
+        drop_null(table);
+    }
+}
+
+/// Gives the key that names a variant the variant's own description.
+fn describe_kind(table: &mut Map<String, Value>) {
+    let Some(description) = table.get("description").cloned() else { return };
+    let Some(Value::Object(properties)) = table.get_mut("properties") else { return };
+    for property in properties.values_mut().filter_map(Value::as_object_mut) {
+        if property.contains_key("const") {
+            property.entry("description").or_insert_with(|| description.clone());
+        }
+    }
+}
+
+/// Removes all entries that are null, at any depth.
+pub(super) fn without_nulls(value: &mut Value) {
+    match value {
+        Value::Object(table) => {
+            table.retain(|_, value| !value.is_null());
+            table.values_mut().for_each(without_nulls);
+        }
+        Value::Array(items) => items.iter_mut().for_each(without_nulls),
+        _ => {}
+    }
+}
+
+/// The variants of a `oneOf` of tables by name, and the key that tells them apart; `None` for other schemas.
+pub(super) fn variants(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
+    let branches = schema.get("oneOf")?.as_array()?;
+    let properties = branches.first()?.get("properties")?.as_object()?;
+    let (tag, _) = properties.iter().find(|(_, property)| property.get("const").is_some())?;
+    let named = branches.iter().map(|branch| Some((branch["properties"][tag]["const"].as_str()?, branch)));
+    Some((tag, named.collect::<Option<_>>()?))
+}
+
+/// The strings that a schema allows, if it allows only certain ones.
+pub(super) fn choices(schema: &Value) -> Option<Vec<&str>> {
+    if let Some(only) = schema.get("const") {
+        return Some(vec![only.as_str()?]);
+    }
+    if let Some(several) = schema.get("enum") {
+        return several.as_array()?.iter().map(Value::as_str).collect();
+    }
+    let branches = schema.get("oneOf")?.as_array()?;
+    branches.iter().map(choices).collect::<Option<Vec<_>>>().map(|lists| lists.concat())
+}

@@ -1,0 +1,96 @@
+//! The text of a scene file, and where in it something stands.
+
+use std::ops::Range;
+
+/// A text with the means to turn byte offsets into lines and columns.
+#[derive(Debug)]
+pub(super) struct Source<'t> {
+    text: &'t str,
+    /// Where each line begins (bytes).
+    lines: Vec<usize>,
+}
+
+/// The widest piece of a line that is shown under a message (characters).
+const WIDEST_EXCERPT: usize = 110;
+
+impl<'t> Source<'t> {
+    pub(super) fn new(text: &'t str) -> Self {
+        let starts = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
+        Self { text, lines: std::iter::once(0).chain(starts).collect() }
+    }
+
+    pub(super) fn text(&self) -> &'t str {
+        self.text
+    }
+
+    /// The nearest character boundary at or before a byte offset.
+    fn boundary(&self, byte: usize) -> usize {
+        let byte = byte.min(self.text.len());
+        (0..=byte).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
+    }
+
+    /// Line and column of a byte offset, both counted from 1, the column in characters.
+    pub(super) fn position(&self, byte: usize) -> (usize, usize) {
+        let byte = self.boundary(byte);
+        let line = self.lines.partition_point(|&start| start <= byte).max(1);
+        (line, self.text[self.lines[line - 1]..byte].chars().count() + 1)
+    }
+
+    /// The line in which a span begins, cut to a readable width, and where in it the span's part of it stands
+    /// (characters). Tabs and other control characters become spaces, so that the mark stands right.
+    pub(super) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
+        let (line, column) = self.position(span.start);
+        let start = self.lines[line - 1];
+        let end = self.lines.get(line).map_or(self.text.len(), |next| next - 1);
+        let marked = self.text
+            [self.boundary(span.start)..self.boundary(span.end.clamp(span.start, end)).max(self.boundary(span.start))]
+            .chars()
+            .count()
+            .max(1);
+        let shown = self.text[start..end].trim_end();
+        // Long lines, as of listed nodes, are cut so that the place stands a little right of the left end.
+        let long = shown.chars().nth(WIDEST_EXCERPT).is_some();
+        let first = if long && column > WIDEST_EXCERPT / 2 { column - 1 - WIDEST_EXCERPT / 4 } else { 0 };
+        let clean = |c: char| if c.is_control() { ' ' } else { c };
+        let mut excerpt: String = shown.chars().skip(first).take(WIDEST_EXCERPT).map(clean).collect();
+        let mut from = column - 1 - first;
+        let to = (from + marked).min(WIDEST_EXCERPT).max(from + 1);
+        let mut to = to;
+        if first > 0 {
+            excerpt.insert_str(0, "… ");
+            from += 2;
+            to += 2;
+        }
+        if shown.chars().nth(first + WIDEST_EXCERPT).is_some() {
+            excerpt.push_str(" …");
+        }
+        (excerpt, from..to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_count_lines_and_characters_from_one() {
+        let source = Source::new("é = 1\n\nlast");
+        assert_eq!(source.position(0), (1, 1));
+        assert_eq!(source.position(1), (1, 1), "inside a character");
+        assert_eq!(source.position(2), (1, 2));
+        assert_eq!(source.position(7), (2, 1));
+        assert_eq!(source.position(8), (3, 1));
+        assert_eq!(source.position(12), (3, 5));
+        assert_eq!(source.position(999), (3, 5));
+        assert_eq!(Source::new("").position(0), (1, 1));
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let text = format!("nodes = [{}99, 1]", "1, ".repeat(400));
+        let at = text.find("99").unwrap();
+        let (excerpt, marked) = Source::new(&text).excerpt(&(at..at + 2));
+        assert!(excerpt.chars().count() <= WIDEST_EXCERPT + 4, "{excerpt}");
+        assert_eq!(excerpt.chars().skip(marked.start).take(marked.len()).collect::<String>(), "99");
+    }
+}

@@ -1,0 +1,104 @@
+//! Words for messages.
+
+use toml::de::{DeInteger, DeValue};
+
+/// A text in quotation marks, shortened.
+pub(super) fn quoted(text: &str) -> String {
+    format!("\"{}\"", shortened(text))
+}
+
+/// A text without control characters, and with its middle left out if it is long.
+pub(super) fn shortened(text: &str) -> String {
+    let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    let count = text.chars().count();
+    if count <= 40 {
+        return text.chars().map(clean).collect();
+    }
+    text.chars().take(24).map(clean).chain(" … ".chars()).chain(text.chars().skip(count - 12).map(clean)).collect()
+}
+
+/// `a, b or c`.
+pub(super) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str) -> String) -> String {
+    match names {
+        [] => String::new(),
+        [only] => write(only.as_ref()),
+        [first @ .., last] => {
+            let first: Vec<_> = first.iter().map(|name| write(name.as_ref())).collect();
+            format!("{} {joint} {}", first.join(", "), write(last.as_ref()))
+        }
+    }
+}
+
+/// The known name nearest to what was typed, if it is near enough to have been meant: one slip in three letters.
+pub(super) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
+    // A quadratic comparison, so nothing long is compared.
+    if typed.len() > 100 {
+        return None;
+    }
+    let plain = |text: &str| text.to_lowercase().replace(['_', ' '], "-");
+    let typed = plain(typed);
+    let distance = |name: &&str| strsim::osa_distance(&typed, &plain(name));
+    let near = |name: &&&str| {
+        let name: &str = name;
+        distance(&name) * 3 <= name.chars().count().max(typed.chars().count()).max(3)
+    };
+    let contained = |name: &&&str| typed.len() >= 4 && plain(name).contains(&typed);
+    known.iter().filter(near).min_by_key(|name| distance(name)).or_else(|| known.iter().find(contained)).copied()
+}
+
+/// What a value is: `the string "3"`, `an array of 2`.
+pub(super) fn found(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the string {}", quoted(text)),
+        DeValue::Integer(number) => format!("the whole number {}", shortened(&number.to_string())),
+        DeValue::Float(number) => format!("the number {}", shortened(number.as_str())),
+        DeValue::Boolean(truth) => truth.to_string(),
+        DeValue::Datetime(date) => format!("the date {date}"),
+        DeValue::Array(items) => format!("an array of {}", items.len()),
+        DeValue::Table(_) => "a table".into(),
+    }
+}
+
+/// A whole number as a number, of any size.
+pub(super) fn to_f64(integer: &DeInteger<'_>) -> f64 {
+    match i128::from_str_radix(integer.as_str(), integer.radix()) {
+        Ok(exact) => exact as f64,
+        Err(_) => integer.as_str().parse().unwrap_or(f64::INFINITY),
+    }
+}
+
+/// A count with its thousands set apart: `1 030 301`.
+pub(super) fn count(number: u128) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at) % 3 == 0 {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_one_that_may_have_been_meant() {
+        let known = ["stiffness", "damping", "damping_ratio", "springs"];
+        assert_eq!(nearest("stifness", &known), Some("stiffness"));
+        assert_eq!(nearest("Stiffness", &known), Some("stiffness"));
+        assert_eq!(nearest("damping-ratio", &known), Some("damping_ratio"));
+        assert_eq!(nearest("ratio", &known), Some("damping_ratio"));
+        assert_eq!(nearest("colour", &known), None);
+        assert_eq!(nearest("", &known), None);
+    }
+
+    #[test]
+    fn counts_have_their_thousands_apart() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_030_301), "1 030 301");
+    }
+}

@@ -1,0 +1,153 @@
+//! Diagnostics: energies, momenta, turned-over elements, volume and shape error.
+
+use super::body::{Body, Dimension, ElementKind, State};
+use super::model::Measure;
+use super::rotation::{davenport1968, moment, planar};
+use super::snapshot::Diagnostics;
+use super::topology;
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::sync::Arc;
+
+/// What is known of a body beforehand.
+pub struct Diagnose {
+    body: Arc<Body>,
+    sizes: Vec<ElementSize>,
+    /// Total volume at rest (m³, in the plane m²).
+    volume_at_rest: f64,
+    /// Rest positions relative to their mean (m).
+    centred: Vec<DVec3>,
+}
+
+/// How the signed volume of an element is measured.
+enum ElementSize {
+    /// By its faces; `at_rest` is its signed volume at rest (m³, in the plane m²).
+    Faces { at_rest: f64 },
+    /// By the affine map that fits it best: `det(Σ r R0ᵀ (Σ R0 R0ᵀ)⁻¹)` times the rest volume.
+    Affine { at_rest: f64, inverse: DMat3, rest: Vec<DVec3> },
+    /// A segment, or corners without extent, has none and never turns over.
+    None,
+}
+
+impl Diagnose {
+    /// Measures the body at rest.
+    pub fn new(body: &Arc<Body>) -> Self {
+        let sizes: Vec<_> = (0..body.elements.len()).map(|element| element_size(body, element)).collect();
+        let volume_at_rest = sizes
+            .iter()
+            .map(|size| match size {
+                ElementSize::Faces { at_rest } | ElementSize::Affine { at_rest, .. } => *at_rest,
+                ElementSize::None => 0.0,
+            })
+            .sum();
+        let centre = mean(&body.rest);
+        let centred = body.rest.iter().map(|&rest| rest - centre).collect();
+        Self { body: Arc::clone(body), sizes, volume_at_rest, centred }
+    }
+
+    /// The diagnostics of a state, and whether each element is turned over.
+    pub fn state(&self, state: &State, gravity: DVec3, measure: Measure) -> (Diagnostics, Vec<bool>) {
+        let mut diagnostics = Diagnostics {
+            elastic: measure.energy.unwrap_or(f64::NAN),
+            residual: measure.residual.unwrap_or(f64::NAN),
+            ..Diagnostics::default()
+        };
+        for ((&mass, &position), &velocity) in self.body.mass.iter().zip(&state.position).zip(&state.velocity) {
+            diagnostics.kinetic += 0.5 * mass * velocity.length_squared();
+            diagnostics.gravitational -= mass * gravity.dot(position);
+            diagnostics.momentum += velocity * mass;
+            diagnostics.angular_momentum += position.cross(velocity) * mass;
+        }
+        let mut volume = 0.0;
+        let turned_over: Vec<_> = (0..self.sizes.len())
+            .map(|element| {
+                let (now, at_rest) = self.volume(element, &state.position);
+                volume += now;
+                now * at_rest < 0.0
+            })
+            .collect();
+        diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
+        diagnostics.volume_ratio = volume / self.volume_at_rest;
+        diagnostics.shape_error = self.shape_error(&state.position);
+        (diagnostics, turned_over)
+    }
+
+    /// Signed volume of an element now and at rest (m³, in the plane m²).
+    fn volume(&self, element: usize, position: &[DVec3]) -> (f64, f64) {
+        let nodes = &self.body.elements[element];
+        match &self.sizes[element] {
+            ElementSize::Faces { at_rest } => (volume_by_faces(self.body.kinds[element], nodes, position), *at_rest),
+            ElementSize::Affine { at_rest, inverse, rest } => {
+                let corners: Vec<_> = nodes.iter().map(|&node| position[node as usize]).collect();
+                let centre = mean(&corners);
+                let moments =
+                    moment(&corners.iter().map(|&corner| corner - centre).collect::<Vec<_>>(), rest.iter().copied());
+                ((moments * *inverse).determinant() * at_rest, *at_rest)
+            }
+            ElementSize::None => (0.0, 0.0),
+        }
+    }
+
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    fn shape_error(&self, position: &[DVec3]) -> f64 {
+        let centre = mean(position);
+        let at_rest = moment(&self.centred, position.iter().map(|&position| position - centre));
+        let turn = match self.body.dimension {
+            Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
+            Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
+        };
+        let squared =
+            self.centred.iter().zip(position).map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
+        (squared.sum::<f64>() / position.len() as f64).sqrt()
+    }
+}
+
+fn element_size(body: &Body, element: usize) -> ElementSize {
+    let (nodes, kind) = (&body.elements[element], body.kinds[element]);
+    match kind {
+        ElementKind::Segment => ElementSize::None,
+        ElementKind::Other => {
+            let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
+            let centre = mean(&corners);
+            let rest: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
+            let moments = moment(&rest, rest.iter().copied());
+            // The box whose corners have the same second moments stands for the volume of a shape without faces.
+            let at_rest = (moments * (4.0 / rest.len() as f64)).determinant().max(0.0).sqrt();
+            if at_rest == 0.0 {
+                ElementSize::None
+            } else {
+                ElementSize::Affine { at_rest, inverse: moments.inverse(), rest }
+            }
+        }
+        _ => ElementSize::Faces { at_rest: volume_by_faces(kind, nodes, &body.rest) },
+    }
+}
+
+/// Signed volume (m³) inside the faces of an element, or signed area (m²) of a polygon.
+///
+/// A face with more than three corners is the mean of its fans of triangles from every corner. For a quadrilateral
+/// that is exactly the bilinear patch, so a hexahedron gets the volume of its trilinear map.
+fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> f64 {
+    // Relative to the first node, so that distance from the origin costs no digits.
+    let origin = position[nodes[0] as usize];
+    let at = |node: u32| position[node as usize] - origin;
+    if kind == ElementKind::Polygon {
+        return 0.5 * topology::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
+    }
+    let mut volume = 0.0;
+    topology::for_each_face(kind, nodes, |face| {
+        let corners = face.len();
+        let mut fans = 0.0;
+        for hub in 0..corners {
+            for step in 1..corners - 1 {
+                let [a, b, c] = [hub, hub + step, hub + step + 1].map(|corner| at(face[corner % corners]));
+                fans += a.dot(b.cross(c));
+            }
+        }
+        volume += fans / (6 * corners) as f64;
+    });
+    volume
+}
+
+fn mean(points: &[DVec3]) -> DVec3 {
+    points.iter().fold(DVec3::ZERO, |sum, &point| sum + point) / points.len() as f64
+}

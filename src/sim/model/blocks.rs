@@ -1,0 +1,121 @@
+//! Sharing the work of a model among threads so that the sums come out the same for any number of them.
+//!
+//! Forces are first written down one by one, each by one thread; then each node adds up its own in a fixed order.
+//! No sum depends on who computed what, so the result has the same bits for 1, 2 or 8 threads.
+
+use crate::sim::body::IndexLists;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Elements in one piece of work. Fewer and handing work over costs more than the work (an element takes some
+/// 150 ns, a hand-over some microseconds); more and small bodies find no second thread.
+const BLOCK: usize = 512;
+
+/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks.
+pub(super) fn for_each<M: Send>(
+    elements: &IndexLists,
+    memory: &mut [M],
+    corners: &mut [DVec3],
+    work: &(impl Fn(usize, &mut M, &mut [DVec3]) + Sync),
+) {
+    split(elements, 0..elements.len(), memory, corners, work);
+}
+
+fn split<M: Send>(
+    elements: &IndexLists,
+    range: Range<usize>,
+    memory: &mut [M],
+    corners: &mut [DVec3],
+    work: &(impl Fn(usize, &mut M, &mut [DVec3]) + Sync),
+) {
+    if range.len() > BLOCK {
+        let middle = range.start + range.len() / 2;
+        let first_corner = |element: usize| elements.range(element).start;
+        let (memory_low, memory_high) = memory.split_at_mut(middle - range.start);
+        let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
+        rayon::join(
+            || split(elements, range.start..middle, memory_low, corners_low, work),
+            || split(elements, middle..range.end, memory_high, corners_high, work),
+        );
+        return;
+    }
+    let mut rest = corners;
+    for (element, memory) in range.zip(memory) {
+        let (own, others) = rest.split_at_mut(elements.range(element).len());
+        work(element, memory, own);
+        rest = others;
+    }
+}
+
+/// Calls `work(index, value)` for every value, in blocks.
+pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mut T) + Sync)) {
+    let block = |start: usize, values: &mut [T]| {
+        values.iter_mut().enumerate().for_each(|(at, value)| work(start + at, value));
+    };
+    if values.len() <= BLOCK {
+        block(0, values);
+    } else {
+        values.par_chunks_mut(BLOCK).enumerate().for_each(|(at, values)| block(at * BLOCK, values));
+    }
+}
+
+/// For each node, which entries of a list of forces are its own.
+pub(super) struct Gather {
+    entries: IndexLists,
+}
+
+impl Gather {
+    /// `node_of_entry` names the node on which each entry acts.
+    pub(super) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
+        Self { entries: sorted_by_node(nodes, (0..).zip(node_of_entry)) }
+    }
+
+    /// Adds to each node its own entries, in rising order.
+    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(forces, &|node, force| {
+            for &entry in &self.entries[node] {
+                *force += entries[entry as usize];
+            }
+        });
+    }
+}
+
+/// For each node, which springs pull at it, and in which direction.
+pub(super) struct SignedGather {
+    /// Twice the index of the spring, plus one at its second node.
+    entries: IndexLists,
+}
+
+impl SignedGather {
+    pub(super) fn new(nodes: usize, springs: &[[u32; 2]]) -> Self {
+        let ends = (0u32..).zip(springs).flat_map(|(at, &[i, j])| [(2 * at, i), (2 * at + 1, j)]);
+        Self { entries: sorted_by_node(nodes, ends) }
+    }
+
+    /// Adds to each node the forces of its springs, in rising order, reversed at a spring's second node.
+    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(forces, &|node, force| {
+            for &entry in &self.entries[node] {
+                let spring = entries[(entry / 2) as usize];
+                *force += if entry % 2 == 0 { spring } else { -spring };
+            }
+        });
+    }
+}
+
+/// The entries of each node, each node's in the order given.
+fn sorted_by_node(nodes: usize, entries: impl Iterator<Item = (u32, u32)>) -> IndexLists {
+    let mut pairs: Vec<_> = entries.map(|(entry, node)| (node, entry)).collect();
+    pairs.sort_unstable();
+    let mut lists = IndexLists::default();
+    let (mut own, mut pairs) = (Vec::new(), pairs.into_iter().peekable());
+    for node in 0..nodes {
+        own.clear();
+        while let Some((_, entry)) = pairs.next_if(|pair| pair.0 as usize == node) {
+            own.push(entry);
+        }
+        lists.push(&own);
+    }
+    lists
+}

@@ -1,0 +1,174 @@
+//! The world of one run: [`World::step`] is section 2 of the paper.
+
+use super::body::{Body, State, bounds};
+use super::contact::Obstacle;
+use super::diagnose::Diagnose;
+use super::integrate::{Integrator, semi_implicit_euler};
+use super::model::{ElasticModel, ForceModel};
+use super::snapshot::{Divergence, Snapshot, Status};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// What acts on a body from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: DVec3,
+    /// Obstacles, in the order in which they act.
+    pub obstacles: Vec<Obstacle>,
+}
+
+/// How a run is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepping {
+    /// The way of stepping.
+    pub integrator: Integrator,
+    /// Time step ΔT (s).
+    pub step: f64,
+}
+
+/// One body with one elastic model, on its way through time. It cannot fail: when it blows up it stops at its last
+/// finite state and says so.
+pub struct World {
+    body: Arc<Body>,
+    surroundings: Surroundings,
+    stepping: Stepping,
+    forces_of: Box<dyn ForceModel>,
+    diagnose: Diagnose,
+    state: State,
+    /// Scratch: the force on each node (N).
+    forces: Vec<DVec3>,
+    /// Steps of the clock, which goes on after a divergence.
+    steps: u64,
+    bounds: SpeedBounds,
+    status: Status,
+}
+
+impl World {
+    /// A body at `initial`, about to be stepped.
+    ///
+    /// # Panics
+    /// If `initial` has not one position and one velocity per node.
+    pub fn new(
+        body: &Arc<Body>,
+        initial: State,
+        model: &dyn ElasticModel,
+        surroundings: Surroundings,
+        stepping: Stepping,
+    ) -> Self {
+        assert!(initial.position.len() == body.len() && initial.velocity.len() == body.len(), "one entry per node");
+        Self {
+            forces_of: model.prepare(body, &initial),
+            diagnose: Diagnose::new(body),
+            bounds: SpeedBounds::new(body, &initial, model.stiffness(), surroundings.gravity),
+            body: Arc::clone(body),
+            surroundings,
+            stepping,
+            forces: vec![DVec3::ZERO; initial.position.len()],
+            state: initial,
+            steps: 0,
+            status: Status::Ok,
+        }
+    }
+
+    /// Goes on by a number of steps. A diverged world only lets its clock go on.
+    pub fn advance(&mut self, steps: u64) {
+        for _ in 0..steps {
+            if self.status == Status::Ok {
+                self.step();
+            }
+            self.steps += 1;
+        }
+    }
+
+    /// One step: forces, Eqs. (2)–(3), collisions (paper, section 2).
+    fn step(&mut self) {
+        let Self { body, surroundings, stepping, state, forces, .. } = self;
+        // Forces: gravity, then the elastic model's Eq. (1) or Eq. (4).
+        for (force, &mass) in forces.iter_mut().zip(&body.mass) {
+            *force = surroundings.gravity * mass;
+        }
+        self.forces_of.add_forces(state, forces);
+        // Motion.
+        let time = (self.steps + 1) as f64 * stepping.step;
+        let moved = match stepping.integrator {
+            Integrator::SemiImplicitEuler => {
+                semi_implicit_euler(state, forces, &body.mass, stepping.step, self.bounds.at(time))
+            }
+        };
+        if let Err(runaway) = moved {
+            let element = body.elements.iter().position(|nodes| nodes.contains(&(runaway.node as u32)));
+            self.status = Status::Diverged(Divergence { time, step: self.steps + 1, element });
+            return;
+        }
+        // Collisions.
+        for obstacle in &surroundings.obstacles {
+            for (position, velocity) in state.position.iter_mut().zip(&mut state.velocity) {
+                obstacle.rebound(position, velocity);
+            }
+        }
+    }
+
+    /// Steps taken so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The present positions and velocities.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Whether it goes on.
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// The present moment with its diagnostics.
+    pub fn snapshot(&self) -> Snapshot {
+        let measure = self.forces_of.measure(&self.state);
+        let (diagnostics, turned_over) = self.diagnose.state(&self.state, self.surroundings.gravity, measure);
+        Snapshot {
+            step: self.steps,
+            time: self.steps as f64 * self.stepping.step,
+            position: self.state.position.clone(),
+            velocity: self.state.velocity.clone(),
+            turned_over,
+            diagnostics,
+            status: self.status,
+        }
+    }
+}
+
+/// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
+///
+/// A body's own speeds are at most a few extents per cycle. The factor leaves a wide margin above that, and keeps the
+/// last state within some tens of extents. What it already had at the start and what gravity adds comes on top.
+struct SpeedBounds {
+    own: f64,
+    gravity: f64,
+}
+
+impl SpeedBounds {
+    const EXTENTS_PER_CYCLE: f64 = 1e3;
+    const MARGIN: f64 = 10.0;
+
+    fn new(body: &Body, initial: &State, stiffness: f64, gravity: DVec3) -> Self {
+        let (low, high) = bounds(&initial.position);
+        let extent = body.extent().max((high - low).max_element());
+        let cycle = cycle(body, stiffness);
+        let start = initial.velocity.iter().fold(0.0, |fastest: f64, v| fastest.max(v.length()));
+        let own = Self::EXTENTS_PER_CYCLE * extent / cycle + Self::MARGIN * start;
+        Self { own, gravity: Self::MARGIN * gravity.length() }
+    }
+
+    fn at(&self, time: f64) -> f64 {
+        self.own + self.gravity * time
+    }
+}
+
+/// The cycle `T = 2π√(m/k)` (s) of a body's lightest node with stiffness `k` (N/m).
+pub fn cycle(body: &Body, stiffness: f64) -> f64 {
+    let lightest = body.mass.iter().fold(f64::INFINITY, |least, &mass| least.min(mass));
+    std::f64::consts::TAU * (lightest / stiffness).sqrt()
+}

@@ -1,0 +1,72 @@
+//! Invariants of `ARCHITECTURE.md` that the compiler does not guard, read off the source.
+
+use std::path::{Path, PathBuf};
+
+/// Every Rust file below a folder of `src`, with its text up to its tests.
+fn sources(room: &str) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(room)];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("the room exists") {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                let text = std::fs::read_to_string(&path).expect("a readable file");
+                found.push((path, text.split("#[cfg(test)]").next().unwrap_or_default().to_owned()));
+            }
+        }
+    }
+    assert!(!found.is_empty(), "src/{room} has no source");
+    found
+}
+
+/// Lines of code, without comments, that hold one of the words.
+fn offenders(room: &str, words: &[&str]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (path, text) in sources(room) {
+        for (number, line) in text.lines().enumerate() {
+            let code = line.split("//").next().unwrap_or_default();
+            if words.iter().any(|word| code.contains(word)) {
+                lines.push(format!("{}:{}: {}", path.display(), number + 1, line.trim()));
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
+    let words = ["std::fs", "std::io", "std::time", "std::env", "wgpu", "crate::scene", "crate::cli", "crate::output"];
+    assert_eq!(offenders("sim", &words), [""; 0]);
+    assert_eq!(offenders("sim", &["crate::picture", "crate::gpu", "crate::render", "println!"]), [""; 0]);
+}
+
+#[test]
+fn only_gpu_and_render_name_wgpu() {
+    for room in ["sim", "scene", "picture", "output", "cli"] {
+        assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
+    }
+}
+
+#[test]
+fn nothing_flows_back() {
+    assert_eq!(offenders("scene", &["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
+    assert_eq!(offenders("picture", &["crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
+    assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
+    assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
+    assert_eq!(offenders("output", &["crate::cli"]), [""; 0]);
+}
+
+/// Every numbered equation of the paper can be found by a text search (Eqs. 7 and 11–14 in the map of the paper).
+#[test]
+fn every_equation_can_be_found() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/paper.md")).expect("the map");
+    let code: String = sources("sim").into_iter().map(|(_, text)| text).collect();
+    for number in [1, 2, 3, 4, 5, 8, 9, 10, 15, 16, 17, 18] {
+        assert!(code.contains(&format!("doc(alias = \"Eq. {number}\")")), "Eq. {number} has no search alias");
+    }
+    for range in ["Eq. (6)", "Eqs. (7)–(9)", "Eqs. (11)–(14)"] {
+        assert!(page.contains(range), "{range} is missing in docs/paper.md");
+    }
+}

@@ -1,0 +1,57 @@
+//! Starts from which the shape model must come back and mass-spring need not (paper, section 3).
+
+use crate::support::{free, lattice, mass_spring, shape_based};
+use glam::DVec3;
+use localshape::sim::body::State;
+use localshape::sim::topology::Springs;
+use std::f64::consts::TAU;
+
+/// Corners of the unit cube moved as `map` says, with a slight disorder: perfect symmetry would sit on an unstable
+/// equilibrium.
+fn start(map: impl Fn(DVec3) -> DVec3, disorder: f64) -> State {
+    let body = lattice(1, 1.0);
+    let mut noise = crate::support::Noise(21);
+    State::at_rest(body.rest.iter().map(|&rest| map(rest - DVec3::splat(0.5)) + noise.vector() * disorder).collect())
+}
+
+fn after_long(model: &dyn localshape::sim::model::ElasticModel, start: State) -> localshape::sim::Snapshot {
+    let mut world = free(&lattice(1, 1.0), start, model, TAU / 100.0 / 50.0);
+    world.advance(5000);
+    world.snapshot()
+}
+
+#[test]
+fn the_shape_model_recovers_from_a_point_a_line_a_plane_and_mirror_images() {
+    let starts: [(&str, fn(DVec3) -> DVec3); 6] = [
+        ("a point", |_| DVec3::ZERO),
+        ("a line", |r| DVec3::X * r.x),
+        ("a plane", |r| r.with_z(0.0)),
+        ("a mirror image", |r| r * DVec3::new(1.0, 1.0, -1.0)),
+        ("an inversion", |r| -r),
+        ("half a turn", |r| r * DVec3::new(-1.0, -1.0, 1.0)),
+    ];
+    for (name, map) in starts {
+        for disorder in [0.0, 1e-3] {
+            let end = after_long(&shape_based(1e4, 40.0), start(map, disorder));
+            let d = end.diagnostics;
+            assert!(d.shape_error < 1e-9 && d.turned_over == 0, "{name} ({disorder}): {d:?}");
+            assert!(end.position.iter().all(|p| p.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn mass_spring_stays_inverted() {
+    let body = lattice(1, 1.0);
+    let springs = mass_spring(&body, 1e4, 40.0, Springs::All);
+    let end = after_long(&springs, start(|r| r * DVec3::new(1.0, 1.0, -1.0), 1e-3));
+    assert_eq!(end.diagnostics.turned_over, 1);
+    assert!((end.diagnostics.volume_ratio + 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_half_turn_at_the_start_has_no_force() {
+    let half_turn = start(|r| r * DVec3::new(-1.0, -1.0, 1.0), 0.0);
+    let force = crate::support::forces(&lattice(1, 1.0), &shape_based(1e4, 0.0), &half_turn);
+    assert!(force.iter().all(|f| f.length() < 1e-10));
+}

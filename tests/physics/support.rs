@@ -1,0 +1,90 @@
+//! Small bodies and worlds for the tests.
+
+use glam::{DQuat, DVec3};
+use localshape::sim::body::{Body, Dimension, IndexLists, State};
+use localshape::sim::contact::{Obstacle, Shape};
+use localshape::sim::integrate::Integrator;
+use localshape::sim::model::ElasticModel;
+use localshape::sim::model::mass_spring::MassSpring;
+use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::topology::{self, Springs};
+use localshape::sim::world::{Stepping, Surroundings, World};
+use std::sync::Arc;
+
+/// `cells`³ cubes of a side (m), 1 kg per node, nodes numbered x fastest.
+pub(crate) fn lattice(cells: u32, side: f64) -> Arc<Body> {
+    let n = cells + 1;
+    let at = |x, y, z| x + n * (y + n * z);
+    let grid = |n: u32| (0..n).flat_map(move |z| (0..n).flat_map(move |y| (0..n).map(move |x| (x, y, z))));
+    let rest: Vec<_> = grid(n).map(|(x, y, z)| DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * side).collect();
+    let mut elements = IndexLists::default();
+    for (x, y, z) in grid(cells) {
+        elements.push(&[0u32, 1, 2, 3, 4, 5, 6, 7].map(|bit| at(x + (bit & 1), y + (bit >> 1 & 1), z + (bit >> 2))));
+    }
+    let mass = vec![1.0; rest.len()];
+    Arc::new(Body::new(Dimension::Space, rest, mass, elements, None))
+}
+
+/// A body in the plane or in space from lists.
+pub(crate) fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Arc<Body> {
+    let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
+    let mass = vec![1.0; rest.len()];
+    Arc::new(Body::new(dimension, rest, mass, elements.iter().copied().collect(), None))
+}
+
+pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
+    ShapeBased { stiffness, damping, passes: 2 }
+}
+
+pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {
+    MassSpring { stiffness, damping, springs: topology::springs(named, &body.elements, &body.kinds) }
+}
+
+pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {
+    Obstacle { shape: Shape::Floor { normal: DVec3::Y, height: 0.0 }, restitution, friction }
+}
+
+/// A world without gravity and obstacles.
+pub(crate) fn free(body: &Arc<Body>, initial: State, model: &dyn ElasticModel, step: f64) -> World {
+    world(body, initial, model, step, Surroundings::default())
+}
+
+pub(crate) fn world(
+    body: &Arc<Body>,
+    initial: State,
+    model: &dyn ElasticModel,
+    step: f64,
+    around: Surroundings,
+) -> World {
+    World::new(body, initial, model, around, Stepping { integrator: Integrator::SemiImplicitEuler, step })
+}
+
+/// Internal forces (N) at a state.
+pub(crate) fn forces(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> Vec<DVec3> {
+    let mut forces = vec![DVec3::ZERO; body.len()];
+    model.prepare(body, state).add_forces(state, &mut forces);
+    forces
+}
+
+/// Numbers between −1 and 1 that look random and are the same everywhere.
+pub(crate) struct Noise(pub(crate) u64);
+
+impl Noise {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub(crate) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+
+    pub(crate) fn rotation(&mut self) -> DQuat {
+        loop {
+            let q = DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next());
+            if (0.1..1.0).contains(&q.length()) {
+                return q.normalize();
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What good scenes mean.
+
+use super::{WORLD, good, shipped};
+use glam::DVec3;
+use localshape::scene::{Limits, Scene, SceneError, Theme};
+use localshape::sim::body::{Dimension, ElementKind};
+use localshape::sim::contact::Shape;
+use std::path::Path;
+
+const TRIANGLE: &str = "\
+[body]
+nodes = [[0, 0], [1, 0], [0.5, 0.866]]
+elements = [[0, 1, 2]]
+springs = [[0, 1], [1, 2], [2, 0]]
+faces = [[0, 1, 2]]
+positions = [[0, 0], [1, 0], [0.1, 0.1]]
+velocities = [[0, 0], [0, 0], [0, 1]]
+masses = [1, 2, 3]
+";
+
+#[test]
+fn the_shipped_cubes_are_those_of_figure_4b() {
+    let scene = Scene::load(Path::new("scenes/fig4b.toml"), &Limits::default()).unwrap();
+    assert_eq!(scene.name, "fig4b");
+    assert_eq!(scene.body.len(), 64);
+    assert_eq!(scene.body.kinds, [ElementKind::Hexahedron; 27]);
+    assert_eq!(scene.body.mass, [1.0; 64]);
+    assert_eq!(scene.gravity, DVec3::new(0.0, -9.8, 0.0));
+    assert_eq!(scene.last_frame(), 180);
+    let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
+    assert_eq!(names, ["Local shape", "Mass-spring"]);
+    let cycle = std::f64::consts::TAU * (1.0_f64 / 1e4).sqrt();
+    assert_eq!(scene.runs[0].step, cycle / 50.0);
+    assert_eq!(scene.runs[1].step, cycle / 50.0);
+    assert_eq!(scene.obstacles.len(), 1);
+    assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
+    assert!(scene.view.camera.follow);
+    assert_eq!((scene.view.columns, scene.view.side, scene.view.theme), (2, 0.1, Theme::Light));
+}
+
+#[test]
+fn the_block_is_turned_about_its_middle_and_set_down_on_its_lowest_node() {
+    let scene = good(&shipped("fig4b.toml"));
+    let start = &scene.initial;
+    let lowest = start.position.iter().map(|point| point.y).fold(f64::INFINITY, f64::min);
+    assert_eq!(lowest, 0.0);
+    assert!(start.velocity.iter().all(|&velocity| velocity == DVec3::new(0.0, -9.899495, 0.0)));
+    let middle = start.position.iter().sum::<DVec3>() / 64.0;
+    assert!(middle.x.abs() < 1e-15 && middle.z.abs() < 1e-15, "{middle}");
+    // Tilted by .02 about both horizontal axes: the top of the block's axis leans that much each way.
+    let up = start.position[4 * 3] - start.position[0];
+    assert!((up.length() - 0.3).abs() < 1e-15);
+    assert!((up.x / 0.3 + 0.02).abs() < 1e-5 && (up.z / 0.3 - 0.02).abs() < 1e-5, "{up}");
+    // At rest nothing is turned.
+    assert_eq!(scene.body.rest[0], DVec3::new(-1.5 * 0.1, 0.0, -1.5 * 0.1));
+}
+
+#[test]
+fn an_explicit_body_in_the_plane_has_what_it_lists() {
+    let scene = good(&format!("gravity = [0, -9.8]\n{WORLD}{TRIANGLE}"));
+    assert_eq!(scene.body.dimension, Dimension::Plane);
+    assert_eq!(scene.body.kinds, [ElementKind::Polygon]);
+    assert_eq!(scene.body.mass, [1.0, 2.0, 3.0]);
+    assert_eq!(scene.body.rest[2], DVec3::new(0.5, 0.866, 0.0));
+    assert_eq!(scene.initial.position[2], DVec3::new(0.1, 0.1, 0.0));
+    assert_eq!(scene.initial.velocity[2], DVec3::new(0.0, 1.0, 0.0));
+    assert_eq!(scene.body.faces.inner, [Some(0)]);
+    assert_eq!((scene.view.camera.azimuth, scene.view.camera.elevation), (0.0, 0.0));
+}
+
+#[test]
+fn in_the_plane_a_turn_needs_no_axis() {
+    let text = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1], side = 2 }}\nrotation = {{ angle = 0.5 }}\n");
+    let scene = good(&text);
+    let edge = scene.initial.position[1] - scene.initial.position[0];
+    assert!(edge.distance(2.0 * DVec3::new(0.5_f64.cos(), 0.5_f64.sin(), 0.0)) < 1e-15, "{edge}");
+    assert!(scene.initial.position.iter().all(|point| point.z == 0.0));
+    assert_eq!(scene.body.kinds, [ElementKind::Polygon]);
+}
+
+#[test]
+fn what_is_not_said_has_its_documented_default() {
+    let scene =
+        good(&format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[[obstacle]]\nkind = 'floor'"));
+    assert_eq!((scene.title.as_str(), scene.name.as_str()), ("test", "test"));
+    assert_eq!((scene.gravity, scene.frames_per_second), (DVec3::ZERO, 60.0));
+    assert_eq!(scene.body.mass, [1.0; 8]);
+    assert!(scene.initial.velocity.iter().all(|&velocity| velocity == DVec3::ZERO));
+    let obstacle = &scene.obstacles[0];
+    assert_eq!((obstacle.restitution, obstacle.friction), (0.0, 0.0));
+    let camera = &scene.view.camera;
+    assert!((camera.azimuth.to_degrees() - 31.0).abs() < 1e-12);
+    assert!((camera.elevation.to_degrees() - 17.0).abs() < 1e-12);
+    assert!((camera.field_of_view.to_degrees() - 20.0).abs() < 1e-12);
+    assert_eq!((camera.distance, camera.target), (8.5, DVec3::new(0.0, 0.5, 0.0)));
+    assert_eq!((scene.view.size, scene.view.clock.as_str()), ([1280, 720], "after release"));
+}
+
+#[test]
+fn a_falling_body_is_looked_at_where_it_will_stand() {
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\nlowest = 10\noffset = [3, 0, 0]\n";
+    let scene = good(&format!("{WORLD}{body}[[obstacle]]\nkind = 'floor'\nheight = -2"));
+    assert_eq!(scene.view.camera.target, DVec3::new(3.0, -1.5, 0.0));
+    let scene = good(&format!("{WORLD}{body}"));
+    assert_eq!(scene.view.camera.target, DVec3::new(3.0, 10.5, 0.0));
+}
+
+#[test]
+fn one_cycle_serves_all_runs_and_a_run_may_have_its_own_step() {
+    let scene = good(
+        "[time]\nduration = 1\nstep = '0.02 T'\n\
+         [body]\nnodes = [[0, 0, 0], [1, 0, 0]]\nelements = [[0, 1]]\nmasses = [4, 1]\n\
+         [[run]]\nname = 'a'\nmodel = { kind = 'shape-based', stiffness = 100 }\n\
+         [[run]]\nname = 'b'\nmodel = { kind = 'mass-spring', stiffness = 10_000 }\nstep = 'T/10'\n\
+         [[run]]\nname = 'c'\nmodel = { kind = 'mass-spring', stiffness = 1 }\nstep = 1e-3\n",
+    );
+    let cycle = std::f64::consts::TAU / 100.0;
+    let steps: Vec<_> = scene.runs.iter().map(|run| run.step).collect();
+    assert_eq!(steps, [cycle * 0.02, cycle / 10.0, 1e-3]);
+}
+
+#[test]
+fn normals_get_unit_length_whatever_they_had() {
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\n";
+    for normal in ["[0, 3, 4]", "[0, 3e-200, 4e-200]", "[0, 3e29, 4e29]"] {
+        let scene = good(&format!("{WORLD}{body}[[obstacle]]\nkind = 'floor'\nnormal = {normal}"));
+        let Shape::Floor { normal, .. } = scene.obstacles[0].shape;
+        assert!(normal.distance(DVec3::new(0.0, 0.6, 0.8)) < 1e-15, "{normal}");
+    }
+}
+
+#[test]
+fn a_file_may_begin_with_a_byte_order_mark_and_end_its_lines_as_on_windows() {
+    let plain = shipped("fig4b.toml");
+    let other = good(&format!("\u{feff}{}", plain.replace('\n', "\r\n")));
+    assert_eq!(other.digest, good(&plain).digest);
+}
+
+#[test]
+fn files_that_are_no_scenes_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    put("cubes.toml", shipped("fig4b.toml").as_bytes());
+    let load = |path: &Path| Scene::load(path, &Limits::default()).unwrap_err();
+    let missing = load(&folder.path().join("cube.toml"));
+    assert!(matches!(&missing, SceneError::Missing { nearest: Some(near), .. } if near.ends_with("cubes.toml")));
+    assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
+    assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
+    assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
+    assert!(matches!(load(Path::new("no/such/folder/a.toml")), SceneError::Missing { nearest: None, .. }));
+    assert!(matches!(load(folder.path()), SceneError::Folder { scenes, .. } if scenes.len() == 1));
+    assert!(matches!(load(&put("empty.toml", b"")), SceneError::Empty { .. }));
+    assert!(matches!(load(&put("comment.toml", b"\n # nothing yet\n")), SceneError::Empty { .. }));
+    assert!(load(&put("frame.png", b"\x89PNG\r\n")).to_string().contains("PNG picture"));
+    assert!(matches!(load(&put("latin.toml", b"title = '\xfc'")), SceneError::NotText { offset: 9, .. }));
+    assert!(matches!(load(&put("zero.toml", b"a = 1\n\0")), SceneError::NotText { offset: 6, .. }));
+    assert!(matches!(load(&put("open.toml", b"title = 'x")), SceneError::Syntax(_)));
+    let limits = Limits { file: 10, ..Limits::default() };
+    let error = Scene::load(&folder.path().join("cubes.toml"), &limits).unwrap_err();
+    assert!(matches!(error, SceneError::TooLong { limit: 10, .. }));
+}

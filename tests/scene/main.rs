@@ -1,0 +1,30 @@
+//! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
+
+mod good;
+
+use localshape::scene::{Limits, Scene, SceneError};
+
+/// A scene of one run, to which a test adds what it is about.
+const WORLD: &str = "\
+[time]
+duration = 1
+
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', stiffness = 1e4 }
+";
+
+/// The scene of a text, which must be good.
+#[track_caller]
+fn good(text: &str) -> Scene {
+    match Scene::parse(text, "test.toml", &Limits::default()) {
+        Ok(scene) => scene,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A shipped scene.
+fn shipped(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
