@@ -4,6 +4,8 @@
 pub mod gpu;
 #[cfg(feature = "render")]
 pub mod picture;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod scene;
 pub mod sequence;
 pub mod sim;

@@ -15,10 +15,10 @@ pub struct GrowingBuffer<T> {
 }
 
 impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
-    /// An empty buffer for `usage`, with room for a few elements.
-    pub fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+    /// An empty buffer for `usage`, with room for some elements.
+    pub fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages, room: usize) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
-        let buffer = create(gpu, label, usage, bytes::<T>(16));
+        let buffer = create(gpu, label, usage, bytes::<T>(room.max(1)));
         Self { label, usage, buffer, length: 0, generation: 0, element: PhantomData }
     }
 

@@ -4,7 +4,7 @@ mod buffer;
 mod read_back;
 
 pub use buffer::GrowingBuffer;
-pub use read_back::{ReadBack, padded_row};
+pub use read_back::{Pending, ReadBack, padded_row};
 
 use std::fmt;
 use std::sync::{Arc, Mutex};

@@ -51,7 +51,10 @@ fn only_gpu_and_render_name_wgpu() {
 
 #[test]
 fn nothing_flows_back() {
-    assert_eq!(offenders("scene", &["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
+    assert_eq!(
+        offenders("scene", &["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"]),
+        [""; 0]
+    );
     assert_eq!(offenders("picture", &["crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
