@@ -7,6 +7,8 @@
 mod check;
 mod completions;
 mod console;
+#[cfg(feature = "render")]
+mod driver;
 mod failure;
 mod frames;
 mod info;

@@ -26,8 +26,11 @@ pub(super) trait Pictures {
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
 }
 
-/// Begins the pictures of a scene in a folder.
-pub(super) type BeginPictures<'a> = dyn for<'s> FnMut(&'s Scene, &Path) -> Result<Box<dyn Pictures + 's>, Failure> + 'a;
+/// What makes pictures of scenes.
+pub(super) trait Studio {
+    /// Begins the pictures of a scene in a folder.
+    fn begin<'s>(&self, scene: &'s Scene, folder: &Path) -> Result<Box<dyn Pictures + 's>, Failure>;
+}
 
 /// Runs all scenes, one after the other, and reports on each.
 pub(super) fn run_all(
@@ -35,7 +38,7 @@ pub(super) fn run_all(
     options: &RunOptions,
     words: &[OsString],
     timings: bool,
-    mut pictures: Option<&mut BeginPictures<'_>>,
+    studio: Option<&dyn Studio>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
     let pool = pool(options)?;
@@ -54,8 +57,8 @@ pub(super) fn run_all(
             last: None,
             times: Timings::default(),
         };
-        let begun = pictures.as_mut().map(|begin| begin(&scene, &recording.folder)).transpose()?;
-        recording.run(&pool, options, begun)?;
+        let pictures = studio.map(|studio| studio.begin(&scene, &recording.folder)).transpose()?;
+        recording.run(&pool, options, pictures)?;
         let (summary, folder) = (&recording.summary, &recording.folder);
         if options.json {
             let mut document = json!({ "folder": folder.to_string_lossy() });

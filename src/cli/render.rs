@@ -1,8 +1,9 @@
 //! `render`: frames, diagnostics and a summary.
 
+use super::driver;
 use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
-use super::record::{self, Pictures};
+use super::record::{self, Pictures, Studio};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Timings};
 use crate::picture::Composer;
@@ -63,7 +64,7 @@ impl Render {
         }
         let jobs = self.options.jobs(scenes)?;
         // Opened when all else is known to be right, and before the first folder is touched.
-        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
+        let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
         for job in &jobs {
             let [width, height] = job.scene.view.size;
             let longest = gpu.longest_side();
@@ -74,10 +75,30 @@ impl Render {
             }
         }
         let writers = self.options.threads().min(MOST_WRITERS);
-        let mut begin = |scene: &Scene, folder: &Path| -> Result<Box<dyn Pictures + '_>, Failure> {
-            Ok(Box::new(Drawing::begin(scene, folder, &gpu, self.samples, writers)?))
-        };
-        record::run_all(jobs, &self.options, words, self.timings, Some(&mut begin))
+        let device = Device { gpu, samples: self.samples, writers };
+        record::run_all(jobs, &self.options, words, self.timings, Some(&device))
+    }
+}
+
+/// What all scenes are drawn with.
+struct Device {
+    gpu: Gpu,
+    samples: u32,
+    writers: usize,
+}
+
+impl Studio for Device {
+    fn begin<'s>(&self, scene: &'s Scene, folder: &Path) -> Result<Box<dyn Pictures + 's>, Failure> {
+        Ok(Box::new(Drawing {
+            scene,
+            composer: Composer::new(scene),
+            renderer: Renderer::new(&self.gpu, scene.view.size, self.samples).map_err(failed)?,
+            writer: FrameWriter::start(folder, self.writers),
+            adapter: self.gpu.description().to_string(),
+            samples: self.samples,
+            compose: Spent::default(),
+            draw: Spent::default(),
+        }))
     }
 }
 
@@ -91,21 +112,6 @@ struct Drawing<'a> {
     samples: u32,
     compose: Spent,
     draw: Spent,
-}
-
-impl<'a> Drawing<'a> {
-    fn begin(scene: &'a Scene, folder: &Path, gpu: &Gpu, samples: u32, writers: usize) -> Result<Self, Failure> {
-        Ok(Self {
-            scene,
-            composer: Composer::new(scene),
-            renderer: Renderer::new(gpu, scene.view.size, samples).map_err(failed)?,
-            writer: FrameWriter::start(folder, writers),
-            adapter: gpu.description().to_string(),
-            samples,
-            compose: Spent::default(),
-            draw: Spent::default(),
-        })
-    }
 }
 
 impl Pictures for Drawing<'_> {

@@ -23,12 +23,10 @@ impl AtomicFile {
     /// If the folder cannot be written to.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let folder = folder_of(path);
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(PREFIX).suffix(SUFFIX);
-        // Temporary files are for their owner alone unless told otherwise; results are as open as any other file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let temporary = builder.tempfile_in(folder).map_err(OutputError::writing(path))?;
+        // Made by the standard library, results are as open to others as any file; tempfile's own are their owner's.
+        let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
+        let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
+        let temporary = made.map_err(OutputError::writing(path))?;
         Ok(Self { path: path.to_owned(), temporary })
     }
 
@@ -47,7 +45,7 @@ impl AtomicFile {
     /// # Errors
     /// If they cannot be written; some of them may have been.
     pub fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
-        self.temporary.write_all(bytes).map_err(OutputError::writing(&self.path))
+        self.temporary.as_file_mut().write_all(bytes).map_err(OutputError::writing(&self.path))
     }
 
     /// Gives the file its own name, in place of what had that name before.

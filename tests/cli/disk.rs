@@ -60,6 +60,7 @@ fn frames_on_a_full_disk() {
         return skip("no graphics adapter");
     }
     let ran = ran.bad(4, &["cannot write out/", "disk is full"]);
+    assert!(!ran.err.contains(".localshape-"), "no hidden names: {}", ran.err);
     assert!(ran.out.lines().all(|name| !name.starts_with('.')), "{ran:?}");
     assert!(ran.out.contains("frame_00000.png") && ran.out.contains("run.json"), "{ran:?}");
 }
