@@ -24,7 +24,7 @@ pub(super) struct SceneFile {
     /// The body, the same in all runs.
     pub(super) body: BodyFile,
     /// The runs, at least one: each is one panel of the picture.
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = 256))]
     pub(super) run: Vec<RunFile>,
     /// What the body bounces off, in the order in which they act. Default: nothing.
     #[serde(default)]

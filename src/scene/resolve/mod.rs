@@ -4,7 +4,7 @@
 mod body;
 mod elements;
 mod lattice;
-pub(super) mod runs;
+mod runs;
 mod view;
 
 use super::Scene;
