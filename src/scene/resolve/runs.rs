@@ -66,9 +66,10 @@ fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
         let Some(run) = run else { continue };
         let path = [Way::Key("run"), Way::Index(at), Way::Key("name")];
         let quoted = words::quoted(&run.name);
-        if run.name.trim() != run.name || run.name.contains(['/', '\\']) {
+        let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
+        if run.name.trim() != run.name || run.name.contains(unfit) {
             let message = format!("the name {quoted} cannot be used in files");
-            report.at(&path, message, "no slash, and no space at either end".to_owned());
+            report.at(&path, message, "no slash, no control character, and no space at either end".to_owned());
         }
         let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
         if let Some(first) = typed[..at].iter().position(same) {

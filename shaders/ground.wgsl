@@ -1,0 +1,73 @@
+// The floor: quiet, with a grid of one cell a side and the body's soft shadow, fading without a horizon.
+
+struct Ground {
+    // Unit vectors along the grid, and in w the coordinates of a crossing of its lines.
+    first: vec4<f32>,
+    second: vec4<f32>,
+    // Coordinates of the middle; from where to where it fades.
+    middle: vec2<f32>,
+    fade: vec2<f32>,
+    // For key light and sky: corner, inverse length and opacity of the shadow.
+    key: vec4<f32>,
+    sky: vec4<f32>,
+    // Linear colours; in w the layers of the two shadows.
+    background: vec4<f32>,
+    floor: vec4<f32>,
+    grid: vec4<f32>,
+    shadow: vec4<f32>,
+    // Left, top, width and height of the panel (px).
+    viewport: vec4<f32>,
+}
+
+@group(1) @binding(0) var<uniform> ground: Ground;
+@group(1) @binding(1) var shades: texture_2d_array<f32>;
+@group(1) @binding(2) var smooth_cells: sampler;
+
+struct Corner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) on_floor: vec2<f32>,
+}
+
+// Parts of the panel's width and height over which the floor fades.
+const SIDE_FADE = 0.16;
+const BOTTOM_FADE = 0.13;
+const GRID_ALPHA = 0.85;
+
+@vertex
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    let sign = vec2(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
+    let on_floor = ground.middle + sign * ground.fade.y;
+    let position = panel.up * panel.floor + ground.first.xyz * on_floor.x + ground.second.xyz * on_floor.y;
+    return Corner(panel.clip * vec4(position, 1.0), on_floor);
+}
+
+fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
+    let at = (on_floor - shade.xy) * shade.z;
+    let inside = all(at >= vec2(0.0)) && all(at <= vec2(1.0));
+    return select(0.0, shade.w * textureSampleLevel(shades, smooth_cells, at, i32(layer), 0.0).r, inside);
+}
+
+@fragment
+fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
+    let at = corner.on_floor;
+    let pixel = corner.place.xy - ground.viewport.xy;
+    let size = ground.viewport.zw;
+    let cells = at + vec2(ground.first.w, ground.second.w);
+    let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
+    let width = max(across, vec2(1e-6));
+    let radius = length(at - ground.middle);
+    let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
+    let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
+    let bottom = smoothstep(0.0, BOTTOM_FADE * size.y, size.y - pixel.y);
+    let fade = round * side * bottom;
+
+    var colour = ground.floor.rgb;
+    let thickness = max(panel.line_scale, 1.0);
+    let off = abs(fract(cells - 0.5) - 0.5) / width;
+    let line = clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
+        * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
+    colour = mix(colour, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
+    let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
+    colour = mix(ground.shadow.rgb, colour, left);
+    return vec4(mix(ground.background.rgb, colour, fade), 1.0);
+}

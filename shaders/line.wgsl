@@ -1,0 +1,125 @@
+// Edges, contours and outlines as smooth lines. Each pixel gets the opacity of four kinds of lines: edges of sound
+// elements, edges of turned-over ones, the outer outline, and steps of depth inside the body. The largest wins, so that
+// joints are as even as the rest.
+
+struct Segment {
+    @builtin(position) place: vec4<f32>,
+    @location(0) @interpolate(flat) ends: vec4<f32>,
+    @location(1) @interpolate(flat) depths: vec2<f32>,
+    @location(2) @interpolate(flat) kind: u32,
+}
+
+const EDGE = 0u;
+const ALARM_EDGE = 1u;
+const CONTOUR = 2u;
+const ALARM_CONTOUR = 3u;
+
+// Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
+const REACH = 1.1;
+// As for the surfaces of turned-over elements.
+const NEARER = 0.02;
+// A line lies this much before its surface, as a part of the distance.
+const OFFSET = 0.0016;
+// From this step of depth on, a contour inside the body is drawn (sides).
+const STEP = 0.22;
+// Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
+const SMALL_ELEMENT = 26.0;
+
+@vertex
+fn segment(
+    @builtin(vertex_index) corner: u32,
+    @location(0) start: vec3<f32>,
+    @location(1) end: vec3<f32>,
+    @location(2) kind: u32,
+) -> Segment {
+    var a = panel.clip * vec4(start, 1.0);
+    var b = panel.clip * vec4(end, 1.0);
+    // What lies behind the eye is cut off.
+    let near = panel.near;
+    if a.w < near && b.w < near {
+        return Segment(vec4(0.0, 0.0, -1.0, 1.0), vec4(0.0), vec2(0.0), kind);
+    }
+    if a.w < near {
+        a = mix(a, b, (near - a.w) / (b.w - a.w));
+    } else if b.w < near {
+        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    }
+    let size = panel.region.zw;
+    let flip = vec2(0.5, -0.5);
+    let from_pixel = (a.xy / a.w * flip + 0.5) * size;
+    let to_pixel = (b.xy / b.w * flip + 0.5) * size;
+    let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
+    let depths = vec2(a.z / max(a.w - nearer, near), b.z / max(b.w - nearer, near));
+    let difference = to_pixel - from_pixel;
+    let extent = length(difference);
+    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
+    let across = vec2(-along.y, along.x);
+    let reach = REACH * panel.line_scale + 1.0;
+    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
+        + across * select(-reach, reach, (corner & 1u) == 1u);
+    let place = vec4((pixel / size - 0.5) / flip, 0.5, 1.0);
+    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
+}
+
+fn depth_at(pixel: vec2<f32>) -> f32 {
+    let low = panel.region.xy;
+    let high = low + panel.region.zw - 1.0;
+    return load_depth(vec2<i32>(clamp(floor(pixel), low, high)));
+}
+
+fn distance_of(depth: f32) -> f32 {
+    return panel.near / max(depth, 1e-9);
+}
+
+// The opacity of a line of a width (px) at a distance from its middle.
+fn covered(distance: f32, width: f32) -> f32 {
+    // Lines thinner than a pixel are fainter instead.
+    let drawn = max(width, 1.0);
+    return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
+}
+
+@fragment
+fn opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let start = segment.ends.xy;
+    let difference = segment.ends.zw - start;
+    let pixel = segment.place.xy;
+    let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
+    let middle = start + share * difference;
+    let distance = length(pixel - middle);
+    let depth = mix(segment.depths.x, segment.depths.y, share);
+    let before = depth * (1.0 + OFFSET);
+    let here = depth_at(middle);
+    let visible = before >= here || panel.flatness > 0.5;
+    let scale = panel.line_scale;
+    let strength = min(1.0, panel.element / SMALL_ELEMENT);
+    if segment.kind == EDGE {
+        let seen = 0.80 * strength * covered(distance, 1.15 * scale);
+        let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
+        return vec4(select(hidden, seen, visible), 0.0, 0.0, 0.0);
+    }
+    if segment.kind == ALARM_EDGE {
+        let behind_alarm = textureLoad(alarm_depth, vec2<i32>(middle), 0) > before;
+        let hidden = select(0.62, 0.15, behind_alarm);
+        let alpha = select(hidden, 0.95, visible) * strength;
+        return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
+    }
+    // A contour: what lies on its two sides decides.
+    let along = difference / max(length(difference), 1e-6);
+    let across = vec2(-along.y, along.x) * (0.9 + 1.3 * scale);
+    let sides = vec2(depth_at(middle + across), depth_at(middle - across));
+    let nearer = max(sides.x, sides.y);
+    let farther = min(sides.x, sides.y);
+    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP;
+    if shown && farther <= 0.0 {
+        return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
+    }
+    if shown && distance_of(farther) - distance_of(nearer) > STEP {
+        let step = 0.85 * covered(distance, 1.5 * scale);
+        return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
+    }
+    if segment.kind == ALARM_CONTOUR {
+        return vec4(0.0, 0.80 * covered(distance, 1.7 * scale), 0.0, 0.0);
+    }
+    return vec4(0.0);
+}

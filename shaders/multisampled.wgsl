@@ -1,0 +1,18 @@
+// Reading what was drawn with four samples a pixel.
+
+@group(1) @binding(0) var body_colour: texture_multisampled_2d<f32>;
+@group(1) @binding(1) var body_depth: texture_depth_multisampled_2d;
+
+fn load_depth(at: vec2<i32>) -> f32 {
+    return textureLoad(body_depth, at, 0);
+}
+
+// Linear, multiplied with alpha: the mean of the samples.
+fn load_colour(at: vec2<i32>) -> vec4<f32> {
+    let a = textureLoad(body_colour, at, 0);
+    let b = textureLoad(body_colour, at, 1);
+    let c = textureLoad(body_colour, at, 2);
+    let d = textureLoad(body_colour, at, 3);
+    let colour = a.rgb * a.rgb + b.rgb * b.rgb + c.rgb * c.rgb + d.rgb * d.rgb;
+    return 0.25 * vec4(colour, a.a + b.a + c.a + d.a);
+}

@@ -1,0 +1,39 @@
+// What every pass knows of the panel it draws. Lengths are in sides from the panel's origin, colours are linear.
+
+struct Panel {
+    // From the panel's coordinates to clip space of what is drawn into; depth is near / distance.
+    clip: mat4x4<f32>,
+    // Where the eye is; distance of the nearest thing drawn.
+    eye: vec3<f32>,
+    near: f32,
+    // Towards the key light; 1 for flat colours without light.
+    key: vec3<f32>,
+    flatness: f32,
+    // Out of the floor; its height along that.
+    up: vec3<f32>,
+    floor: f32,
+    // Colour of sound elements; length of an element's edge (px).
+    sound: vec3<f32>,
+    element: f32,
+    // Colour of turned-over elements; thickness of lines in parts of the reference.
+    alarm: vec3<f32>,
+    line_scale: f32,
+    // Colour of their hatch and edges.
+    alarm_line: vec3<f32>,
+    outline_alpha: f32,
+    // Colour of the edges of sound elements; pixels for a slope of one.
+    edge: vec3<f32>,
+    focal: f32,
+    // Colour of the outline.
+    outline: vec3<f32>,
+    unused: f32,
+    // Left, top, width and height of the body's region in the textures that hold bodies (px).
+    region: vec4<f32>,
+    // Its left and top in the picture (px), less its left and top in those textures.
+    place: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> panel: Panel;
+
+// Powers of a colour's brightness that the eye weighs.
+const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);

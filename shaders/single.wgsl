@@ -1,0 +1,14 @@
+// Reading what was drawn with one sample a pixel.
+
+@group(1) @binding(0) var body_colour: texture_2d<f32>;
+@group(1) @binding(1) var body_depth: texture_depth_2d;
+
+fn load_depth(at: vec2<i32>) -> f32 {
+    return textureLoad(body_depth, at, 0);
+}
+
+// Linear, multiplied with alpha.
+fn load_colour(at: vec2<i32>) -> vec4<f32> {
+    let stored = textureLoad(body_colour, at, 0);
+    return vec4(stored.rgb * stored.rgb, stored.a);
+}

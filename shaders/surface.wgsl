@@ -1,0 +1,128 @@
+// Surfaces of bodies: lit, hatched where turned over, and with the turned-over elements showing through the sound ones.
+// Colours are stored as their square roots, which keeps eight bits fine in the dark and is quick to undo.
+
+// The turned-over set, drawn beforehand: lit colour, and brightness of the light in alpha.
+@group(1) @binding(0) var alarm_colour: texture_2d<f32>;
+@group(1) @binding(1) var alarm_depth: texture_depth_2d;
+
+struct Corner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hatch: f32,
+}
+
+const KEY = vec3<f32>(0.66, 0.635, 0.595);
+const SKY = vec3<f32>(0.60, 0.635, 0.68);
+const GROUND = vec3<f32>(0.27, 0.262, 0.25);
+// Light that bends around edges into the shade.
+const WRAP = 0.12;
+// Below this height above the floor (sides) side faces get less light, down to this part of it.
+const CONTACT_HEIGHT = 0.9;
+const CONTACT_LIGHT = 0.72;
+// The turned-over set is drawn this much nearer (sides), so that faces shared with the sound one are its own.
+const NEARER = 0.02;
+// The share of a stripe's period that is dark, and how dark it is.
+const STRIPE = 0.2;
+const STRIPE_ALPHA = 0.62;
+// A flat body's hatch has this period (px in the reference picture) and this share of it is dark.
+const FLAT_PERIOD = 9.0;
+const FLAT_STRIPE = 0.19;
+// The depth (sides) behind the visible surface from which on a turned-over element no longer gains from being near.
+const THROUGH_DEPTH = 0.6;
+// The brightness of a surface that is drawn without light.
+const UNLIT = 0.86;
+
+@vertex
+fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
+    return Corner(panel.clip * vec4(position, 1.0), position, normal, hatch);
+}
+
+@vertex
+fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
+    var place = panel.clip * vec4(position, 1.0);
+    place.z *= place.w / max(place.w - NEARER, panel.near);
+    place.z = min(place.z, place.w);
+    return Corner(place, position, normal, hatch);
+}
+
+struct Light {
+    diffuse: vec3<f32>,
+    gloss: f32,
+}
+
+fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
+    let view = normalize(panel.eye - position);
+    // A corner of a collapsed face has no normal; it shows the viewer what it can.
+    let size = length(normal);
+    var facing = select(view, normal / size, size > 1e-12);
+    facing = select(-facing, facing, dot(facing, view) >= 0.0);
+    let key = max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
+    let upward = dot(facing, panel.up);
+    let height = dot(position, panel.up) - panel.floor;
+    let contact = mix(CONTACT_LIGHT, 1.0, smoothstep(0.0, CONTACT_HEIGHT, height));
+    let around = mix(GROUND, SKY, 0.5 + 0.5 * upward) * mix(contact, 1.0, abs(upward));
+    let shine = max(0.0, dot(facing, normalize(view + panel.key)));
+    let shine4 = shine * shine * shine * shine;
+    let shine16 = shine4 * shine4 * shine4 * shine4;
+    let rim = 1.0 - max(0.0, dot(facing, view));
+    let gloss = 0.05 * shine16 * shine4 * shine4 * shine4 + 0.06 * rim * rim * rim * rim;
+    return Light(mix(KEY * key + around, vec3(1.0), panel.flatness), gloss * (1.0 - panel.flatness));
+}
+
+// How much of a pixel the stripes of the hatch cover.
+fn stripes(hatch: f32, place: vec2<f32>) -> f32 {
+    let flat_hatch = (place.x + place.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);
+    let at = select(hatch, flat_hatch, panel.flatness > 0.5);
+    let share = select(STRIPE, FLAT_STRIPE, panel.flatness > 0.5);
+    // Periods a pixel; the width of the filter.
+    let width = max(length(vec2(dpdx(at), dpdy(at))), 1e-5);
+    let off = abs(fract(at) - 0.5);
+    let covered = clamp((0.5 * share - off) / width + 0.5, 0.0, 1.0);
+    // Stripes finer than three pixels a period would only flicker.
+    return mix(covered, share, smoothstep(0.2, 0.45, width));
+}
+
+struct AlarmColour {
+    lit: vec3<f32>,
+    brightness: f32,
+}
+
+fn alarm(corner: Corner) -> AlarmColour {
+    let light = light(corner.position, corner.normal);
+    let dark = STRIPE_ALPHA * stripes(corner.hatch, corner.place.xy);
+    let colour = mix(panel.alarm, panel.alarm_line, dark);
+    return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
+}
+
+// The turned-over set by itself, for those who look through the body.
+@fragment
+fn alarm_behind(corner: Corner) -> @location(0) vec4<f32> {
+    let alarm = alarm(corner);
+    return vec4(sqrt(saturate(alarm.lit)), saturate(0.5 * alarm.brightness));
+}
+
+@fragment
+fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
+    return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
+}
+
+@fragment
+fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
+    let light = light(corner.position, corner.normal);
+    var colour = panel.sound * light.diffuse + light.gloss;
+    let at = vec2<i32>(corner.place.xy);
+    let behind = textureLoad(alarm_depth, at, 0);
+    if behind > 0.0 && panel.flatness < 0.5 {
+        let depth = panel.near / behind - 1.0 / corner.place.w;
+        let deep = smoothstep(0.0, THROUGH_DEPTH, depth);
+        let stored = textureLoad(alarm_colour, at, 0);
+        let lit = stored.rgb * stored.rgb;
+        let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
+        let alarm = mix(lit, unlit, 0.65 * deep);
+        // Blue-grey under vermilion would turn pink: most of its colour goes first.
+        let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
+        colour = mix(grey, alarm, 1.0 - 0.4 * deep);
+    }
+    return vec4(sqrt(saturate(colour)), 1.0);
+}

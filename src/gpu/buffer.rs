@@ -1,0 +1,74 @@
+//! A buffer that knows the type of its elements and grows.
+
+use super::Gpu;
+use std::marker::PhantomData;
+
+/// A device buffer of elements of one type, which is written anew for each frame and grows when it must.
+#[derive(Debug)]
+pub struct GrowingBuffer<T> {
+    label: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: wgpu::Buffer,
+    length: usize,
+    generation: u64,
+    element: PhantomData<T>,
+}
+
+impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
+    /// An empty buffer for `usage`, with room for some elements.
+    pub fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages, room: usize) -> Self {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let buffer = create(gpu, label, usage, bytes::<T>(room.max(1)));
+        Self { label, usage, buffer, length: 0, generation: 0, element: PhantomData }
+    }
+
+    /// Replaces the contents. The device buffer is made anew only when it is too small, then with room to spare.
+    pub fn write(&mut self, gpu: &Gpu, elements: &[T]) {
+        self.length = elements.len();
+        if self.buffer.size() < bytes::<T>(elements.len()) {
+            self.buffer = create(gpu, self.label, self.usage, bytes::<T>(elements.len().next_power_of_two()));
+            self.generation += 1;
+        }
+        if elements.is_empty() {
+            return;
+        }
+        let contents: &[u8] = bytemuck::cast_slice(elements);
+        let whole = contents.len() & !(wgpu::COPY_BUFFER_ALIGNMENT as usize - 1);
+        gpu.queue().write_buffer(&self.buffer, 0, &contents[..whole]);
+        if whole < contents.len() {
+            // The device copies multiples of four bytes only.
+            let mut rest = [0; wgpu::COPY_BUFFER_ALIGNMENT as usize];
+            rest[..contents.len() - whole].copy_from_slice(&contents[whole..]);
+            gpu.queue().write_buffer(&self.buffer, whole as u64, &rest);
+        }
+    }
+
+    /// The device buffer behind it.
+    pub fn buffer(&self) -> &wgpu::Buffer {
+        &self.buffer
+    }
+
+    /// How many elements were written last.
+    pub fn len(&self) -> usize {
+        self.length
+    }
+
+    /// Whether nothing was written last.
+    pub fn is_empty(&self) -> bool {
+        self.length == 0
+    }
+
+    /// A number that changes whenever the device buffer is another one and bindings to it must be made anew.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+}
+
+fn bytes<T>(length: usize) -> u64 {
+    ((length * size_of::<T>()) as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
+}
+
+fn create(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
+    let descriptor = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+    gpu.device().create_buffer(&descriptor)
+}

@@ -1,0 +1,235 @@
+//! From where a panel is seen: pure numbers, in double precision.
+
+use super::narrow::narrow;
+use crate::scene::{Camera, View};
+use crate::sim::body::Dimension;
+use glam::{DVec3, Mat4, Vec4};
+
+/// Where the point looked at stands in a panel, down from its top, in heights of the panel: below the middle, for the
+/// titles' sake.
+pub(super) const MIDDLE: f64 = 0.535;
+/// The narrowest panel that shows a body at full size, in heights; in narrower ones everything shrinks alike.
+const FULL_ASPECT: f64 = 640.0 / 720.0;
+/// Which part of a panel's height bodies may use between titles and captions.
+const USABLE_HEIGHT: f64 = 0.70;
+/// Below this rise, in distances of the camera, following hardly begins.
+const GENTLE_RISE: f64 = 0.045;
+/// The highest rise that is followed, in distances of the camera. What flies farther leaves the picture.
+const HIGHEST_RISE: f64 = 40.0;
+/// Distance of the nearest thing drawn, as a part of the camera's distance.
+const NEAR: f64 = 0.02;
+
+/// What a camera looks at in one frame, alike in all panels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framing {
+    /// The point looked at (m).
+    pub target: DVec3,
+    /// Distance from it (m).
+    pub distance: f64,
+    /// How far the camera has risen above where the scene puts it, twice (m): the height that the picture shows more.
+    pub rise: f64,
+}
+
+/// Where the camera looks when the highest of the shown bodies has its centre at `highest` (m).
+///
+/// With `follow`, the camera shows as much more height as that body has risen above the point looked at: half of it by
+/// looking higher and all of it by drawing back. Both begin gently, so that small bounces do not move the camera.
+pub fn framing(camera: &Camera, highest: f64) -> Framing {
+    let above = highest - camera.target.y;
+    if !camera.follow || above.is_nan() || above <= 0.0 {
+        return Framing { target: camera.target, distance: camera.distance, rise: 0.0 };
+    }
+    let above = above.min(HIGHEST_RISE * camera.distance);
+    let rise = above * above / (above + GENTLE_RISE * camera.distance);
+    let height_per_distance = 2.0 * (camera.field_of_view / 2.0).tan() * USABLE_HEIGHT;
+    Framing {
+        target: camera.target + 0.5 * rise * DVec3::Y,
+        distance: camera.distance + rise * camera.elevation.cos() / height_per_distance,
+        rise,
+    }
+}
+
+/// A camera at work on one panel: maps points of the world (m) to pixels of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Where it stands (m).
+    pub eye: DVec3,
+    /// Unit vector to the right of the panel.
+    pub right: DVec3,
+    /// Unit vector up along the panel.
+    pub up: DVec3,
+    /// Unit vector away from the viewer.
+    pub forward: DVec3,
+    /// Pixels for a slope of one; in the plane, for one metre.
+    pub focal: f64,
+    /// The pixel of the point looked at.
+    pub centre: [f64; 2],
+    /// Distance of the nearest thing drawn (m).
+    pub near: f64,
+    /// Whether things keep their size at any distance.
+    pub orthographic: bool,
+}
+
+impl Lens {
+    /// The camera of a view for one panel, whose left, top, width and height are given (px).
+    pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4]) -> Self {
+        let camera = &view.camera;
+        let height = panel[3].min(panel[2] / FULL_ASPECT);
+        let slope = height / 2.0 / (camera.field_of_view / 2.0).tan();
+        let centre = [panel[0] + panel[2] / 2.0, panel[1] + panel[3] * MIDDLE];
+        let (azimuth, elevation) = match dimension {
+            Dimension::Space => (camera.azimuth, camera.elevation),
+            Dimension::Plane => (0.0, 0.0),
+        };
+        let towards = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
+        let right = DVec3::new(azimuth.cos(), 0.0, -azimuth.sin());
+        let orthographic = dimension == Dimension::Plane;
+        Self {
+            eye: framing.target + framing.distance * towards,
+            right,
+            up: towards.cross(right),
+            forward: -towards,
+            focal: if orthographic { slope / framing.distance } else { slope },
+            centre,
+            near: NEAR * framing.distance,
+            orthographic,
+        }
+    }
+
+    /// The pixel of a point, and its distance along the view (m); `None` for points not in front of the camera.
+    pub fn project(&self, point: DVec3) -> Option<([f64; 2], f64)> {
+        let from_eye = point - self.eye;
+        let distance = from_eye.dot(self.forward);
+        let scale = if self.orthographic { self.focal } else { self.focal / distance };
+        let ahead = self.orthographic || distance >= self.near;
+        let pixel = [self.centre[0] + scale * from_eye.dot(self.right), self.centre[1] - scale * from_eye.dot(self.up)];
+        (ahead && pixel.iter().all(|at| at.is_finite())).then_some((pixel, distance))
+    }
+
+    /// Whether a plane through `point` with an outward `normal` shows its outside.
+    pub fn sees(&self, point: DVec3, normal: DVec3) -> bool {
+        let view = if self.orthographic { self.forward } else { point - self.eye };
+        normal.dot(view) < 0.0
+    }
+
+    /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Depth is 1 at
+    /// the near plane and 0 infinitely far; in the plane it is ½ throughout.
+    pub fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
+        let [left, top, width, height] = panel;
+        let shift = [2.0 * (self.centre[0] - left) / width - 1.0, 1.0 - 2.0 * (self.centre[1] - top) / height];
+        let row = |axis: DVec3, factor: f64| (axis * unit * factor).extend((origin - self.eye).dot(axis) * factor);
+        let away = row(self.forward, 1.0);
+        let x = row(self.right, 2.0 * self.focal / width);
+        let y = row(self.up, 2.0 * self.focal / height);
+        let rows = if self.orthographic {
+            let one = glam::DVec4::W;
+            [x + shift[0] * one, y + shift[1] * one, 0.5 * one, one]
+        } else {
+            [x + shift[0] * away, y + shift[1] * away, self.near * glam::DVec4::W, away]
+        };
+        let [x, y, z, w] = rows.map(|row| Vec4::new(narrow(row.x), narrow(row.y), narrow(row.z), narrow(row.w)));
+        Mat4::from_cols(x, y, z, w).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Theme;
+
+    const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
+
+    fn view() -> View {
+        View {
+            size: [1280, 720],
+            theme: Theme::Light,
+            camera: Camera {
+                azimuth: 31_f64.to_radians(),
+                elevation: 17_f64.to_radians(),
+                field_of_view: 20_f64.to_radians(),
+                target: DVec3::new(0.0, 0.15, 0.0),
+                distance: 2.55,
+                follow: true,
+            },
+            clock: String::new(),
+            columns: 2,
+            side: 0.1,
+        }
+    }
+
+    fn lens(highest: f64) -> Lens {
+        let view = view();
+        Lens::new(&view, &framing(&view.camera, highest), Dimension::Space, PANEL)
+    }
+
+    #[test]
+    fn the_target_stands_a_little_below_the_middle() {
+        let (pixel, distance) = lens(0.0).project(DVec3::new(0.0, 0.15, 0.0)).unwrap();
+        assert!((pixel[0] - 960.0).abs() < 1e-9 && (pixel[1] - 0.535 * 720.0).abs() < 1e-9, "{pixel:?}");
+        assert!((distance - 2.55).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_body_at_rest_fills_a_third_of_the_height() {
+        let lens = lens(0.15);
+        let [low, high] = [0.0, 0.3].map(|y| lens.project(DVec3::new(0.0, y, 0.0)).unwrap().0[1]);
+        assert!((225.0..245.0).contains(&(low - high)), "{}", low - high);
+    }
+
+    #[test]
+    fn matrix_and_projection_agree() {
+        let lens = lens(0.7);
+        let (origin, unit) = (DVec3::new(0.1, 0.2, 0.3), 0.1);
+        let clip = lens.clip(origin, unit, PANEL);
+        for point in [DVec3::ZERO, DVec3::new(0.2, 0.4, -0.1), DVec3::new(-0.3, 1.0, 0.4)] {
+            let at = clip * ((point - origin) / unit).as_vec3().extend(1.0);
+            let (pixel, distance) = lens.project(point).unwrap();
+            let x = PANEL[0] + PANEL[2] * f64::from(0.5 + 0.5 * at.x / at.w);
+            let y = PANEL[1] + PANEL[3] * f64::from(0.5 - 0.5 * at.y / at.w);
+            assert!((x - pixel[0]).abs() < 1e-3 && (y - pixel[1]).abs() < 1e-3, "{x} {y} {pixel:?}");
+            assert!((f64::from(at.z / at.w) - lens.near / distance).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn following_keeps_a_rising_body_and_the_floor_in_the_picture() {
+        for step in 0..=140 {
+            let height = 0.15 + f64::from(step) * 0.01;
+            let lens = lens(height);
+            for corner in 0..8 {
+                let sign = |bit: usize| if corner >> bit & 1 == 1 { 0.15 } else { -0.15 };
+                for centre in [0.15, height] {
+                    let point = DVec3::new(sign(0), centre + sign(1), sign(2));
+                    let (pixel, _) = lens.project(point).unwrap();
+                    assert!((640.0 + 60.0..1280.0 - 60.0).contains(&pixel[0]), "{height}: {pixel:?}");
+                    assert!((100.0..640.0).contains(&pixel[1]), "{height}: {pixel:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn following_is_smooth_and_rests_near_the_floor() {
+        let camera = view().camera;
+        assert_eq!(framing(&camera, 0.1).distance, camera.distance);
+        assert!(framing(&camera, 0.17).distance < 1.03 * camera.distance);
+        let distances: Vec<_> = (0..3000).map(|step| framing(&camera, f64::from(step) * 0.001).distance).collect();
+        for three in distances.windows(3) {
+            let (first, second) = (three[1] - three[0], three[2] - three[1]);
+            assert!(first >= 0.0 && (second - first).abs() < 1e-3 * camera.distance, "{three:?}");
+        }
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            let framing = framing(&camera, odd);
+            assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
+        }
+    }
+
+    #[test]
+    fn narrow_panels_show_the_body_smaller_not_cut() {
+        let view = view();
+        let framing = framing(&view.camera, 0.0);
+        let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0]);
+        let [left, right] = [-0.2, 0.2].map(|x| lens.project(DVec3::new(x, 0.15, 0.0)).unwrap().0[0]);
+        assert!(20.0 < left && right < 180.0, "{left} {right}");
+    }
+}

@@ -1,0 +1,249 @@
+//! Putting a picture together.
+
+use super::camera::{Lens, framing};
+use super::caption::{Writer, numbers};
+use super::layout::{self, Rectangle, Scale};
+use super::narrow::{narrow, narrow_point};
+use super::palette::Palette;
+use super::shadow::{self, Plane};
+use super::surface::{Lines, Surroundings, boundary};
+use super::tally::Tally;
+use super::{Floor, Framing, Line, LineKind, Mesh, Panel, Picture, Sight};
+use crate::scene::Scene;
+use crate::sim::body::{Dimension, ElementKind};
+use crate::sim::contact::Shape;
+use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
+use glam::{DVec2, DVec3};
+
+/// The key light comes from this far to the left of the viewer (rad).
+const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
+/// The slope at which it falls on a body near the floor: 50° up.
+const KEY_SLOPE: f64 = 1.191_753_592_594_21;
+/// How much steeper it falls for each distance of the camera that bodies have risen: the shadow stays in the panel.
+const KEY_STEEPENING: f64 = 8.0;
+/// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
+const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Room for thick lines around a body (px in the reference picture).
+const LINE_ROOM: f64 = 3.0;
+
+/// Composes frames of one scene.
+#[derive(Debug)]
+pub struct Composer<'a> {
+    scene: &'a Scene,
+    palette: Palette,
+    tally: Tally,
+    /// The second line of each run.
+    descriptions: Vec<String>,
+    /// The signed area of each polygon of a body in the plane.
+    rest_areas: Vec<f64>,
+    extent: f64,
+}
+
+/// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
+pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
+    Composer::new(scene).compose(frame)
+}
+
+impl<'a> Composer<'a> {
+    /// Prepares to compose frames of a scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        let body = &*scene.body;
+        let areas = match body.dimension {
+            Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
+            Dimension::Space => Vec::new(),
+        };
+        Self {
+            scene,
+            palette: Palette::of(scene.view.theme),
+            tally: Tally::new(body, scene.view.side),
+            descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
+            rest_areas: areas,
+            extent: body.extent().max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Composes one frame.
+    pub fn compose(&self, frame: &Frame) -> Picture {
+        let view = &self.scene.view;
+        let size = view.size.map(|length| length.max(1));
+        let panels = layout::panels(size, frame.runs.len(), view.columns);
+        let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
+        let framing = framing(&view.camera, centres.fold(f64::NEG_INFINITY, f64::max));
+        let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
+        let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
+        writer.hairlines(&panels);
+        // One clock, upper right.
+        let clock = view.columns.clamp(1, panels.len().max(1)) - 1;
+        for (at, (&viewport, run)) in panels.iter().zip(&frame.runs).enumerate() {
+            let taken = if at == clock { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
+            let name = self.scene.runs.get(run.run).map_or("", |run| &run.name);
+            let second = self.descriptions.get(run.run).map_or("", String::as_str);
+            writer.heading(viewport, name, second, taken);
+            if at == clock {
+                writer.clock(viewport, frame.time, &view.clock);
+            }
+            let numbers = numbers(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
+            writer.count(viewport, &self.tally, &run.snapshot, &numbers);
+        }
+        let Writer { marks, words, .. } = writer;
+        let panels =
+            panels.iter().zip(&frame.runs).map(|(&viewport, run)| self.panel(viewport, run, &framing, scale)).collect();
+        Picture { size, palette: self.palette, panels, marks, words }
+    }
+
+    fn panel(&self, viewport: Rectangle, run: &RunFrame, framing: &Framing, scale: Scale) -> Panel {
+        let view = &self.scene.view;
+        let body = &*self.scene.body;
+        let (origin, side) = (view.camera.target, view.side);
+        let edges = viewport.map(f64::from);
+        let lens = Lens::new(view, framing, body.dimension, edges);
+        let key = key_light(&lens, framing);
+        // A body of which no node is known is drawn as nothing.
+        let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
+        let position: Vec<_> = position.iter().map(|&at| finite(at)).collect();
+        let mut lines = Vec::new();
+        let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
+        if !position.is_empty() {
+            let surroundings = Surroundings { body, position: &position, lens: &lens, origin, side };
+            let over = &run.snapshot.turned_over;
+            let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
+            surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
+            let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
+            surroundings.add(&boundary(body, over, true), kinds, &mut turned_over, &mut lines);
+            self.add_segments(&position, origin, &mut lines);
+        }
+        let flat = body.dimension == Dimension::Plane;
+        Panel {
+            viewport,
+            region: region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0),
+            sight: Sight {
+                clip: lens.clip(origin, side, edges),
+                eye: narrow_point((lens.eye - origin) / side),
+                near: narrow(lens.near / side),
+                focal: narrow(if flat { lens.focal * side } else { lens.focal }),
+                key: narrow_point(key),
+                flat,
+                line_scale: narrow(scale.line()),
+                element: narrow(lens.focal * side / if flat { 1.0 } else { framing.distance }),
+            },
+            floor: if flat { None } else { self.floor(&position, framing, key) },
+            sound,
+            turned_over,
+            lines,
+        }
+    }
+
+    /// Elements that are mere segments have no faces, but can be seen.
+    fn add_segments(&self, position: &[DVec3], origin: DVec3, lines: &mut Vec<Line>) {
+        let body = &*self.scene.body;
+        let segments = body.elements.iter().zip(&body.kinds).filter(|(_, kind)| **kind == ElementKind::Segment);
+        lines.extend(segments.map(|(nodes, _)| {
+            let [from, to] = [nodes[0], nodes[1]]
+                .map(|node| narrow_point((position[node as usize] - origin) / self.scene.view.side).to_array());
+            Line { from, to, kind: LineKind::Edge }
+        }));
+    }
+
+    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3) -> Option<Floor> {
+        let view = &self.scene.view;
+        let (origin, side) = (view.camera.target, view.side);
+        let (normal, height) = self.scene.obstacles.iter().find_map(|obstacle| match obstacle.shape {
+            Shape::Floor { normal, height } => Some((normal, height)),
+        })?;
+        let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
+        // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
+        let widening = (framing.distance / view.camera.distance).sqrt();
+        let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * widening);
+        let points: Vec<_> = position.iter().map(|&at| (at - origin) / side).collect();
+        // Around the point looked at, which is the origin, projected onto the floor.
+        let middle = DVec2::ZERO;
+        let triangles = self.skin();
+        let shades = if key.dot(plane.normal) > 0.05 {
+            shadow::shades(&points, &triangles, &plane, key, middle, fade[1])
+        } else {
+            std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
+        };
+        // The grid's lines go through the origin of the world.
+        let grid = plane.axes.map(|axis| narrow((-origin / side).dot(axis).rem_euclid(1.0)));
+        Some(Floor {
+            normal: narrow_point(plane.normal),
+            axes: plane.axes.map(narrow_point),
+            height: narrow(plane.height),
+            middle: [narrow(middle.x), narrow(middle.y)],
+            grid,
+            fade: fade.map(narrow),
+            shades,
+        })
+    }
+
+    /// The surface of the whole body as triangles.
+    fn skin(&self) -> Vec<[u32; 3]> {
+        let faces = &self.scene.body.faces;
+        let outside = faces.nodes.iter().zip(&faces.outer).filter(|(_, outer)| outer.is_none());
+        outside.flat_map(|(nodes, _)| (2..nodes.len()).map(|at| [nodes[0], nodes[at - 1], nodes[at]])).collect()
+    }
+
+    /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
+    fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
+        let body = &*self.scene.body;
+        if self.rest_areas.is_empty() || snapshot.position.len() != body.len() {
+            return None;
+        }
+        let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
+        areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
+    }
+}
+
+/// The signed area of a polygon in the xy-plane (m²).
+fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
+    let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
+    nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
+}
+
+/// The height of a body's middle (m); `None` for a run that blew up, which no camera can follow.
+fn height_of_centre(snapshot: &Snapshot) -> Option<f64> {
+    let count = snapshot.position.len();
+    if count == 0 || matches!(snapshot.status, Status::Diverged(_)) {
+        return None;
+    }
+    Some(snapshot.position.iter().map(|at| at.y).sum::<f64>() / count as f64).filter(|height| height.is_finite())
+}
+
+/// Unit vector towards the key light.
+fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
+    let towards_viewer = lens.right.cross(DVec3::Y);
+    let level = KEY_AZIMUTH.cos() * towards_viewer - KEY_AZIMUTH.sin() * lens.right;
+    let slope = KEY_SLOPE + KEY_STEEPENING * framing.rise / framing.distance;
+    (level + slope * DVec3::Y).normalize()
+}
+
+/// Coordinates beyond all bounds are brought to where arithmetic still works.
+fn finite(point: DVec3) -> DVec3 {
+    const FARTHEST: f64 = 1e12;
+    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) };
+    DVec3::new(one(point.x), one(point.y), one(point.z))
+}
+
+/// The part of a panel that a body may touch, with `room` (px) around it.
+fn region(viewport: Rectangle, position: &[DVec3], lens: &Lens, room: f64) -> Rectangle {
+    let [left, top, width, height] = viewport;
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    for &point in position {
+        match lens.project(point) {
+            Some((pixel, _)) => {
+                low = low.min(DVec2::from(pixel));
+                high = high.max(DVec2::from(pixel));
+            }
+            // What reaches behind the viewer may appear anywhere.
+            None => return viewport,
+        }
+    }
+    let within = |at: f64, start: u32, length: u32| at.clamp(f64::from(start), f64::from(start + length)) as u32;
+    if low.x > high.x {
+        return [left, top, 0, 0];
+    }
+    let [x, y] = [within((low.x - room).floor(), left, width), within((low.y - room).floor(), top, height)];
+    let [x2, y2] = [within((high.x + room).ceil(), left, width), within((high.y + room).ceil(), top, height)];
+    [x, y, x2 - x, y2 - y]
+}

@@ -1,0 +1,172 @@
+//! From a frame of the simulation to a [`Picture`]: triangles, lines, marks and words as plain numbers. Nothing here
+//! knows a graphics device, so that everything can be tested by numbers.
+//!
+//! ```text
+//! Scene ─▶ Composer ─ compose(Frame) ─▶ Picture ─▶ render
+//! ```
+//!
+//! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
+//! out depends on the scene and that frame alone.
+
+mod camera;
+mod caption;
+mod compose;
+mod layout;
+mod narrow;
+mod number;
+mod palette;
+mod shadow;
+mod surface;
+mod tally;
+mod text;
+
+pub use camera::{Framing, Lens, framing};
+pub use compose::{Composer, compose};
+pub use layout::Rectangle;
+pub use palette::{Colour, Palette};
+pub use shadow::{CELLS, Shade};
+pub use text::{Glyph, TextRun, Weight, font, shortened, width};
+
+use glam::{Mat4, Vec3};
+
+/// Everything that a frame shows, ready to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height (px).
+    pub size: [u32; 2],
+    /// Its colours.
+    pub palette: Palette,
+    /// One for each run shown.
+    pub panels: Vec<Panel>,
+    /// Flat marks above the panels, in the order in which they are drawn.
+    pub marks: Vec<Mark>,
+    /// Words, above everything else.
+    pub words: Vec<TextRun>,
+}
+
+/// One run, seen by one camera. Lengths are in sides ([`crate::scene::View::side`]), measured from the panel's origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// The part of the picture that belongs to it.
+    pub viewport: Rectangle,
+    /// The part of the viewport that the body and its lines may touch. Its width or height is 0 if there is none.
+    pub region: Rectangle,
+    /// How it is seen.
+    pub sight: Sight,
+    /// What the body stands on, if it is drawn.
+    pub floor: Option<Floor>,
+    /// The boundary of the elements that have kept their sign.
+    pub sound: Mesh,
+    /// The boundary of the elements that have turned over.
+    pub turned_over: Mesh,
+    /// Edges and contours of both.
+    pub lines: Vec<Line>,
+}
+
+/// Camera and light of a panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// From the panel's coordinates to clip space of its viewport. Depth is `near` over the distance.
+    pub clip: Mat4,
+    /// Where the eye is.
+    pub eye: Vec3,
+    /// Distance of the nearest thing drawn.
+    pub near: f32,
+    /// Pixels of the picture for a slope of one; in the plane, for one side.
+    pub focal: f32,
+    /// Unit vector towards the key light.
+    pub key: Vec3,
+    /// Whether faces are flat colours without light, seen without perspective.
+    pub flat: bool,
+    /// Thickness of lines, in parts of that in the reference picture.
+    pub line_scale: f32,
+    /// Length of an element's edge at the body's distance (px).
+    pub element: f32,
+}
+
+/// The floor of a panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Floor {
+    /// Unit vector out of it.
+    pub normal: Vec3,
+    /// Unit vectors along its grid.
+    pub axes: [Vec3; 2],
+    /// Its place along the normal.
+    pub height: f32,
+    /// Coordinates along the axes of the point around which it is drawn.
+    pub middle: [f32; 2],
+    /// Coordinates along the axes of a line crossing of the grid, between 0 and 1.
+    pub grid: [f32; 2],
+    /// From where to where it fades out around the middle.
+    pub fade: [f32; 2],
+    /// The shadows of key light and sky on it.
+    pub shades: [Shade; 2],
+}
+
+/// A closed surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Its corners.
+    pub vertices: Vec<Vertex>,
+    /// Its triangles, counter-clockwise from outside the set that it bounds.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A corner of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Vertex {
+    /// Where it is.
+    pub position: [f32; 3],
+    /// Normal of the face, of any length.
+    pub normal: [f32; 3],
+    /// Where it lies in the hatch that is painted on the material, in periods.
+    pub hatch: f32,
+}
+
+/// A straight line in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// One end.
+    pub from: [f32; 3],
+    /// The other end.
+    pub to: [f32; 3],
+    /// What it is.
+    pub kind: LineKind,
+}
+
+/// What a line is, which decides how it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum LineKind {
+    /// An edge of a sound element.
+    Edge = 0,
+    /// An edge of a turned-over element.
+    AlarmEdge = 1,
+    /// A place where the surface of the sound set turns away from the viewer.
+    Contour = 2,
+    /// The same of the turned-over set.
+    AlarmContour = 3,
+}
+
+/// A flat mark on the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Left, top, width and height (px).
+    pub rectangle: [f32; 4],
+    /// Its colour.
+    pub colour: Colour,
+    /// The colour of what is drawn on it.
+    pub second: Colour,
+    /// What it looks like.
+    pub shape: MarkShape,
+}
+
+/// What a mark looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MarkShape {
+    /// A filled rectangle.
+    Filled,
+    /// A filled rectangle with a rising diagonal.
+    Struck,
+}

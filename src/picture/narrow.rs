@@ -1,0 +1,32 @@
+//! The one place where double precision ends.
+
+use glam::{DVec3, Vec3};
+
+/// The largest coordinate that a picture holds: far outside of any panel, and small enough that products of four
+/// coordinates are finite.
+const FARTHEST: f64 = 1e6;
+
+/// Rounds to single precision. What is no number becomes 0, and what is beyond all pictures comes to their rim, so
+/// that a run that blew up can be drawn like any other.
+#[expect(clippy::cast_possible_truncation, reason = "this is the function that is meant to do it")]
+pub(super) fn narrow(value: f64) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) as f32 }
+}
+
+/// A point or direction of three narrowed coordinates.
+pub(super) fn narrow_point(point: DVec3) -> Vec3 {
+    Vec3::new(narrow(point.x), narrow(point.y), narrow(point.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_comes_in_a_finite_number_comes_out() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324] {
+            assert!(narrow(value).is_finite(), "{value}");
+        }
+        assert_eq!(narrow(0.1), 0.1_f32);
+    }
+}

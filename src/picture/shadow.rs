@@ -1,0 +1,284 @@
+//! The soft shadow on the floor: how much of the key light and of the sky a body takes away, worked out without a
+//! device, so that it is the same on all of them.
+//!
+//! The body is projected along many directions onto a grid of cells. One direction fills one bit of each cell, a row of
+//! cells is one machine word, and so a projected triangle costs one operation for each row it touches.
+
+use super::narrow::narrow;
+use glam::{DVec2, DVec3};
+
+/// Cells of a shadow in each direction.
+pub const CELLS: usize = 128;
+/// Half the angle of the cone from which the key light comes (rad).
+const KEY_CONE: f64 = 0.12;
+/// How many directions stand for the key light and for the sky.
+const DIRECTIONS: [usize; 2] = [48, 96];
+/// Bodies of more triangles than this get fewer directions, or the shadow would take longer than everything else.
+const MANY_TRIANGLES: usize = 6000;
+/// How far the edges of both shadows are blurred (sides).
+const BLUR: [f64; 2] = [0.06, 0.14];
+/// The golden angle (rad): steps by it spread directions evenly.
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+
+/// A square of the floor with a value for each cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shade {
+    /// The corner of the first cell on the floor (sides from the panel's origin along the floor's two axes).
+    pub corner: [f32; 2],
+    /// Length of the whole square (sides).
+    pub length: f32,
+    /// What is taken away: 0 nothing, 255 all; row after row along the second axis. Empty for no shadow at all.
+    pub cells: Vec<u8>,
+}
+
+/// The floor's plane with axes in it; lengths in sides from the panel's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plane {
+    pub(super) normal: DVec3,
+    pub(super) axes: [DVec3; 2],
+    pub(super) height: f64,
+}
+
+impl Plane {
+    /// The plane with a normal through the points `normal · x = height`.
+    pub(super) fn new(normal: DVec3, height: f64) -> Self {
+        // For a level floor the axes are those of the world, and so is the grid.
+        let first = (DVec3::X - normal.x * normal).try_normalize().unwrap_or(DVec3::Z);
+        Self { normal, axes: [first, first.cross(normal)], height }
+    }
+
+    fn project(&self, point: DVec3, towards_light: DVec3) -> DVec2 {
+        let above = (self.normal.dot(point) - self.height).max(0.0);
+        let on_floor = point - towards_light * (above / self.normal.dot(towards_light));
+        DVec2::new(on_floor.dot(self.axes[0]), on_floor.dot(self.axes[1]))
+    }
+}
+
+/// The shadows of key light and sky that closed surfaces throw on a plane, within `reach` of `middle` on it.
+pub(super) fn shades(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    plane: &Plane,
+    key: DVec3,
+    middle: DVec2,
+    reach: f64,
+) -> [Shade; 2] {
+    let thinning = (triangles.len() / MANY_TRIANGLES + 1).min(6);
+    let [of_key, of_sky] = DIRECTIONS.map(|count| count / thinning);
+    let frame = Plane::new(key, 0.0);
+    let key_directions: Vec<_> = (0..of_key)
+        .map(|at| {
+            let radius = KEY_CONE * ((at as f64 + 0.5) / of_key as f64).sqrt();
+            let (sine, cosine) = (at as f64 * GOLDEN_ANGLE).sin_cos();
+            (key + radius * (cosine * frame.axes[0] + sine * frame.axes[1])).normalize()
+        })
+        .collect();
+    let sky_directions: Vec<_> = (0..of_sky)
+        .map(|at| {
+            let outward = ((at as f64 + 0.5) / of_sky as f64).sqrt();
+            let (sine, cosine) = (at as f64 * GOLDEN_ANGLE).sin_cos();
+            let [first, second] = plane.axes;
+            outward * (cosine * first + sine * second) + (1.0 - outward * outward).sqrt() * plane.normal
+        })
+        .collect();
+    let shade = |directions: &[DVec3], blur: f64, low: DVec2, length: f64| {
+        let mut counts = Counts::new();
+        let scale = CELLS as f64 / length;
+        for &direction in directions {
+            let projected: Vec<_> =
+                points.iter().map(|&point| (plane.project(point, direction) - low) * scale).collect();
+            let mut mask = Mask::new();
+            for triangle in triangles {
+                mask.fill(triangle.map(|at| projected[at as usize]));
+            }
+            counts.add(&mask);
+        }
+        let cells = counts.blurred(directions.len(), blur * scale);
+        Shade { corner: [narrow(low.x), narrow(low.y)], length: narrow(length), cells }
+    };
+    // The key light's shadow has sharp ends: its grid holds the shadow and no more.
+    let (low, high) = bounds(points, &key_directions, plane, middle, reach);
+    let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * BLUR[0]);
+    let (sky_low, sky_length) = (middle - reach, 2.0 * reach);
+    [
+        shade(&key_directions, BLUR[0], DVec2::new(key_low[0], key_low[1]), key_length[0]),
+        shade(&sky_directions, BLUR[1], sky_low, sky_length),
+    ]
+}
+
+/// The box around all projections, within reach.
+fn bounds(points: &[DVec3], directions: &[DVec3], plane: &Plane, middle: DVec2, reach: f64) -> (DVec2, DVec2) {
+    // The outermost directions come last.
+    let outer = directions.iter().rev().take(12);
+    let projected = outer.flat_map(|&direction| points.iter().map(move |&point| plane.project(point, direction)));
+    let (low, high) =
+        projected.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let within = |corner: DVec2| corner.clamp(middle - reach, middle + reach);
+    (within(low), within(high))
+}
+
+/// A square around a box, with one of few cell sizes and its corner on the cells' own lattice, so that the cells do not
+/// creep under a body that moves.
+fn snapped(low: DVec2, length: f64) -> [[f64; 2]; 2] {
+    let length = ((length.max(1.0) * CELLS as f64 / (CELLS - 8) as f64).log2() * 4.0).ceil() / 4.0;
+    let length = length.exp2();
+    let cell = length / CELLS as f64;
+    let corner = (low / cell).floor() * cell - 4.0 * cell;
+    [[corner.x, corner.y], [length, cell]]
+}
+
+/// Which cells one projection covers: a word for each row.
+struct Mask([u128; CELLS]);
+
+impl Mask {
+    fn new() -> Self {
+        Self([0; CELLS])
+    }
+
+    /// Covers the cells whose middles lie in a triangle that is turned counter-clockwise. The others bound the same
+    /// closed surface from behind and cover nothing more.
+    fn fill(&mut self, [a, b, c]: [DVec2; 3]) {
+        if (b - a).perp_dot(c - a) <= 0.0 {
+            return;
+        }
+        let lowest = a.y.min(b.y).min(c.y);
+        let highest = a.y.max(b.y).max(c.y);
+        let first = (lowest - 0.5).ceil().clamp(0.0, CELLS as f64) as usize;
+        let last = (highest + 0.5).floor().clamp(0.0, CELLS as f64) as usize;
+        for (row, word) in self.0.iter_mut().enumerate().take(last).skip(first) {
+            let y = row as f64 + 0.5;
+            let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                if (from.y <= y) != (to.y <= y) {
+                    let x = from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y);
+                    left = left.min(x);
+                    right = right.max(x);
+                }
+            }
+            *word |= below((right + 0.5).floor()) & !below((left - 0.5).ceil());
+        }
+    }
+}
+
+/// A word whose lowest `count` bits are set.
+fn below(count: f64) -> u128 {
+    let count = count.clamp(0.0, CELLS as f64) as u32;
+    u128::MAX.checked_shr(CELLS as u32 - count).unwrap_or(0)
+}
+
+/// How often each cell was covered.
+struct Counts(Vec<u8>);
+
+impl Counts {
+    fn new() -> Self {
+        Self(vec![0; CELLS * CELLS])
+    }
+
+    fn add(&mut self, mask: &Mask) {
+        for (counts, word) in self.0.chunks_exact_mut(CELLS).zip(mask.0) {
+            if word != 0 {
+                for (eight, byte) in counts.chunks_exact_mut(8).zip(word.to_le_bytes()) {
+                    for (bit, count) in eight.iter_mut().enumerate() {
+                        *count += byte >> bit & 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The share of directions that are covered, 255 for all, blurred by a standard deviation (cells).
+    fn blurred(&self, directions: usize, deviation: f64) -> Vec<u8> {
+        if self.0.iter().all(|&count| count == 0) {
+            return Vec::new();
+        }
+        let radius = ((2.5 * deviation).ceil() as usize).clamp(1, CELLS / 8);
+        let weight = |at: usize| (-0.5 * (at as f64 / deviation.max(0.3)).powi(2)).exp();
+        let total: f64 = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
+        let kernel: Vec<f32> = (0..=radius).map(|at| narrow(weight(at) / total)).collect();
+        let share: Vec<f32> = self.0.iter().map(|&count| f32::from(count) / directions as f32).collect();
+        let across = blur_rows(&share, &kernel);
+        let both = transposed(&blur_rows(&transposed(&across), &kernel));
+        both.iter().map(|&share| (share * 255.0 + 0.5) as u8).collect()
+    }
+}
+
+fn blur_rows(cells: &[f32], kernel: &[f32]) -> Vec<f32> {
+    let mut out = Vec::with_capacity(cells.len());
+    let radius = kernel.len() - 1;
+    let mut padded = vec![0.0; CELLS + 2 * radius];
+    for row in cells.chunks_exact(CELLS) {
+        padded[radius..radius + CELLS].copy_from_slice(row);
+        let start = out.len();
+        out.extend(row.iter().map(|cell| cell * kernel[0]));
+        for (at, weight) in kernel.iter().enumerate().skip(1) {
+            let (before, after) = (&padded[radius - at..], &padded[radius + at..]);
+            for (cell, (a, b)) in out[start..].iter_mut().zip(before.iter().zip(after)) {
+                *cell += weight * (a + b);
+            }
+        }
+    }
+    out
+}
+
+fn transposed(cells: &[f32]) -> Vec<f32> {
+    (0..CELLS * CELLS).map(|at| cells[at % CELLS * CELLS + at / CELLS]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box standing on the floor, its triangles counter-clockwise from outside.
+    fn block() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let points =
+            (0..8).map(|at: u32| DVec3::new(f64::from(at & 1) - 0.5, f64::from(at >> 1 & 1), f64::from(at >> 2) - 0.5));
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let triangles = faces.iter().flat_map(|&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]]).collect();
+        (points.collect(), triangles)
+    }
+
+    fn value(shade: &Shade, at: DVec2) -> u8 {
+        let corner = DVec2::new(f64::from(shade.corner[0]), f64::from(shade.corner[1]));
+        let cell = ((at - corner) * CELLS as f64 / f64::from(shade.length)).floor();
+        if cell.min_element() < 0.0 || cell.max_element() >= CELLS as f64 {
+            return 0;
+        }
+        shade.cells[cell.y as usize * CELLS + cell.x as usize]
+    }
+
+    #[test]
+    fn a_block_shades_what_lies_behind_it_and_nothing_before_it() {
+        let (points, triangles) = block();
+        let plane = Plane::new(DVec3::Y, 0.0);
+        let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
+        let [of_key, of_sky] = shades(&points, &triangles, &plane, key, DVec2::ZERO, 4.0);
+        let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
+        assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
+        assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
+        assert_eq!(value(&of_key, on_floor(-1.0, 0.0)), 0);
+        assert_eq!(value(&of_key, on_floor(2.5, 0.0)), 0);
+        let near = value(&of_sky, on_floor(0.7, 0.0));
+        let far = value(&of_sky, on_floor(2.0, 0.0));
+        assert!(near > 60 && far < near / 3, "{near} {far}");
+    }
+
+    #[test]
+    fn floors_at_any_slope_have_right_angled_axes() {
+        for normal in [DVec3::Y, DVec3::X, DVec3::new(1.0, 2.0, 3.0).normalize()] {
+            let plane = Plane::new(normal, 0.0);
+            let [a, b] = plane.axes;
+            assert!(a.dot(b).abs() + a.dot(normal).abs() + b.dot(normal).abs() < 1e-12);
+            assert!((a.length() - 1.0).abs() + (b.length() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn wild_coordinates_do_no_harm() {
+        let (mut points, triangles) = block();
+        points[3] = DVec3::new(1e300, -1e300, 1e6);
+        points[5] = DVec3::splat(f64::MAX);
+        let plane = Plane::new(DVec3::Y, 0.0);
+        let [a, b] = shades(&points, &triangles, &plane, DVec3::new(-0.3, 0.9, 0.1).normalize(), DVec2::ZERO, 4.0);
+        assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
+    }
+}

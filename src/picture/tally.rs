@@ -1,0 +1,141 @@
+//! One square for each element, a row for each layer, so that one sees which elements have turned over.
+
+use super::layout::Scale;
+use super::narrow::narrow;
+use super::palette::Palette;
+use super::{Mark, MarkShape};
+use crate::sim::body::Body;
+use glam::DVec3;
+
+/// Bodies of more elements get a bar instead of squares.
+const MOST_SQUARES: usize = 200;
+/// The height of all rows together (px in the reference picture).
+const HEIGHT: f64 = 36.0;
+/// The widest tally (px in the reference picture).
+const WIDTH: f64 = 230.0;
+/// A bar's width and height (px in the reference picture).
+const BAR: [f64; 2] = [140.0, 14.0];
+
+/// The elements in rows, highest layer first; each row in the order of the elements.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tally {
+    rows: Vec<Vec<usize>>,
+    count: usize,
+}
+
+impl Tally {
+    /// Groups elements into layers where those of one layer stand equally high at rest. Bodies without such layers get
+    /// rows of equal length.
+    pub(super) fn new(body: &Body, side: f64) -> Self {
+        let count = body.elements.len();
+        if count == 0 || count > MOST_SQUARES {
+            return Self { rows: Vec::new(), count };
+        }
+        let height = |element: usize| {
+            let nodes = &body.elements[element];
+            nodes.iter().map(|&node| body.rest[node as usize]).sum::<DVec3>().y / nodes.len() as f64
+        };
+        let mut elements: Vec<usize> = (0..count).collect();
+        elements.sort_by(|&a, &b| height(b).total_cmp(&height(a)).then(a.cmp(&b)));
+        let mut rows: Vec<Vec<usize>> = Vec::new();
+        for &element in &elements {
+            match rows.last_mut() {
+                Some(row) if height(row[0]) - height(element) < 0.25 * side => row.push(element),
+                _ => rows.push(vec![element]),
+            }
+        }
+        rows.iter_mut().for_each(|row| row.sort_unstable());
+        let even = rows.iter().all(|row| row.len() == rows[0].len());
+        if !even || rows.len() > 12 {
+            let columns = if count <= 9 { count } else { count.div_ceil((count as f64 / 3.0).sqrt().ceil() as usize) };
+            elements.sort_unstable();
+            rows = elements.chunks(columns).map(<[usize]>::to_vec).collect();
+        }
+        Self { rows, count }
+    }
+
+    /// The marks of the tally with its lower left corner at a place (px), and its width (px).
+    pub(super) fn draw(
+        &self,
+        turned_over: &[bool],
+        palette: &Palette,
+        scale: Scale,
+        room: f64,
+        corner: [f64; 2],
+        marks: &mut Vec<Mark>,
+    ) -> f64 {
+        match self.squares(scale, room) {
+            Some(lengths) => self.draw_squares(turned_over, palette, lengths, corner, marks),
+            None => self.draw_bar(turned_over, palette, scale, room, corner, marks),
+        }
+    }
+
+    /// Side of the squares and the gap between them (px), if squares fit.
+    fn squares(&self, scale: Scale, room: f64) -> Option<[f64; 2]> {
+        let columns = self.rows.iter().map(Vec::len).max()? as f64;
+        let rows = self.rows.len() as f64;
+        let gap: f64 = if rows > 3.0 || columns > 14.0 { 2.0 } else { 3.0 };
+        let room = (room / scale.unit).min(WIDTH);
+        let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(17.0);
+        let pixels = side * scale.unit;
+        // Whole pixels keep all squares alike.
+        (pixels >= 2.0).then(|| [pixels.round(), (gap * scale.unit).round().max(1.0)])
+    }
+
+    fn draw_squares(
+        &self,
+        turned_over: &[bool],
+        palette: &Palette,
+        [side, gap]: [f64; 2],
+        [left, bottom]: [f64; 2],
+        marks: &mut Vec<Mark>,
+    ) -> f64 {
+        let (left, bottom) = (left.round(), bottom.round());
+        let mut width: f64 = 0.0;
+        for (up, row) in self.rows.iter().rev().enumerate() {
+            for (along, &element) in row.iter().enumerate() {
+                let over = turned_over.get(element).copied().unwrap_or(false);
+                let x = left + along as f64 * (side + gap);
+                let y = bottom - side - up as f64 * (side + gap);
+                marks.push(Mark {
+                    rectangle: [x, y, side, side].map(narrow),
+                    colour: if over { palette.alarm } else { palette.tally },
+                    second: palette.alarm_line,
+                    shape: if over { MarkShape::Struck } else { MarkShape::Filled },
+                });
+                width = width.max(x + side - left);
+            }
+        }
+        width
+    }
+
+    fn draw_bar(
+        &self,
+        turned_over: &[bool],
+        palette: &Palette,
+        scale: Scale,
+        room: f64,
+        [left, bottom]: [f64; 2],
+        marks: &mut Vec<Mark>,
+    ) -> f64 {
+        if self.count == 0 {
+            return 0.0;
+        }
+        let [width, height] = [(BAR[0] * scale.unit).min(room).round(), (BAR[1] * scale.unit).round().max(1.0)];
+        let over = turned_over.iter().filter(|&&over| over).count();
+        // A single element among thousands still shows.
+        let filled = if over == 0 { 0.0 } else { (width * over as f64 / self.count as f64).max(2.0).min(width) };
+        let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.unit - height).round());
+        let bar = |from: f64, length: f64, colour| Mark {
+            rectangle: [left + from, top, length, height].map(narrow),
+            colour,
+            second: palette.alarm_line,
+            shape: MarkShape::Filled,
+        };
+        marks.push(bar(0.0, width, palette.tally));
+        if over > 0 {
+            marks.push(bar(0.0, filled, palette.alarm));
+        }
+        width
+    }
+}

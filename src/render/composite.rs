@@ -1,0 +1,56 @@
+//! Laying bodies and their lines over the ground.
+
+use super::panel::{Panels, is_visible, limit};
+use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::target::Bodies;
+use crate::gpu::Gpu;
+use crate::picture::Picture;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
+
+/// The pipeline that lays one over the other.
+#[derive(Debug)]
+pub(super) struct Composite {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    textures: Option<wgpu::BindGroup>,
+}
+
+impl Composite {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+        let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::reading_shader(samples), SHADER]);
+        let layout = group_layout(gpu, "bodies", &[texture_entry(0, false, samples), texture_entry(2, false, 1)]);
+        let recipe = Recipe {
+            label: "composite",
+            shader: &module,
+            entries: ["corner", "layered"],
+            groups: &[&panels.layout, &layout],
+            vertices: &[],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: PICTURE_FORMAT,
+            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            depth: false,
+            samples: 1,
+        };
+        Self { pipeline: recipe.build(gpu), layout, textures: None }
+    }
+
+    /// Takes note of new textures.
+    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
+        let views = [(0, &bodies.colour), (2, &bodies.lines)];
+        self.textures = Some(bind_textures(gpu, "bodies", &self.layout, &views));
+    }
+
+    /// Draws the bodies of all panels into the picture.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, self.textures.as_ref(), &[]);
+        for (at, panel) in picture.panels.iter().enumerate() {
+            if is_visible(panel.region) {
+                limit(pass, panel.region);
+                panels.bind_region(pass, at);
+                pass.draw(0..4, 0..1);
+            }
+        }
+    }
+}

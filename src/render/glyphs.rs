@@ -1,0 +1,142 @@
+//! The glyphs in use, rasterised once each and kept in one texture.
+
+use crate::gpu::Gpu;
+use crate::picture::{Glyph, TextRun, Weight, font};
+use ab_glyph::{Font, GlyphId, PxScale, point};
+use std::collections::HashMap;
+
+/// Width of the texture (px).
+const WIDTH: u32 = 2048;
+/// Glyphs are rasterised at this many places between two pixels.
+const PLACES: f32 = 4.0;
+
+/// What makes one raster different from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Key {
+    weight: Weight,
+    id: u16,
+    /// Size of the type in bits: any size is as good as any other.
+    size: u32,
+    place: u8,
+}
+
+/// A glyph in the texture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raster {
+    /// Left and top in the texture.
+    pub(super) at: [u32; 2],
+    /// Width and height (px).
+    pub(super) size: [u32; 2],
+    /// Where it begins, from the whole pixel of its origin on the baseline (px).
+    pub(super) offset: [f32; 2],
+}
+
+/// All glyphs in use.
+#[derive(Debug)]
+pub(super) struct Glyphs {
+    rasters: HashMap<Key, Option<Raster>>,
+    coverage: Vec<u8>,
+    height: u32,
+    /// Left end and top of the row that is being filled, and its height.
+    pen: [u32; 3],
+    texture: wgpu::Texture,
+    changed: bool,
+}
+
+impl Glyphs {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        Self {
+            rasters: HashMap::new(),
+            coverage: Vec::new(),
+            height: 0,
+            pen: [0; 3],
+            texture: create(gpu, 1),
+            changed: false,
+        }
+    }
+
+    /// The raster of a glyph of a text, and the whole pixel it belongs to; `None` for blanks.
+    pub(super) fn raster(&mut self, run: &TextRun, glyph: &Glyph) -> Option<(Raster, [f32; 2])> {
+        let quarter = (glyph.x * PLACES).round();
+        let pixel = (quarter / PLACES).floor();
+        let place = quarter - pixel * PLACES;
+        let key = Key { weight: run.weight, id: glyph.id, size: run.size.to_bits(), place: place as u8 };
+        let raster = match self.rasters.get(&key) {
+            Some(known) => *known,
+            None => {
+                let new = self.rasterise(run, glyph.id, place / PLACES);
+                self.rasters.insert(key, new);
+                new
+            }
+        };
+        // Baselines on whole pixels keep all lines equally sharp.
+        raster.map(|raster| (raster, [pixel, run.baseline.round()]))
+    }
+
+    fn rasterise(&mut self, run: &TextRun, id: u16, place: f32) -> Option<Raster> {
+        let font = font(run.weight);
+        // The scale of a font is its height, sizes of type are lengths of the em.
+        let scale = PxScale::from(run.size * font.height_unscaled() / font.units_per_em().unwrap_or(1000.0));
+        let outlined = font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))?;
+        let bounds = outlined.px_bounds();
+        let [width, height] = [bounds.width(), bounds.height()].map(|length| length as u32);
+        if width == 0 || height == 0 || width > WIDTH {
+            return None;
+        }
+        let at = self.reserve(width, height);
+        outlined.draw(|x, y, covered| {
+            let index = (at[1] + y) as usize * WIDTH as usize + (at[0] + x) as usize;
+            self.coverage[index] = (covered.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        });
+        self.changed = true;
+        Some(Raster { at, size: [width, height], offset: [bounds.min.x, bounds.min.y] })
+    }
+
+    fn reserve(&mut self, width: u32, height: u32) -> [u32; 2] {
+        let [mut left, mut top, mut row] = self.pen;
+        if left + width > WIDTH {
+            (left, top, row) = (0, top + row, 0);
+        }
+        self.pen = [left + width, top, row.max(height)];
+        self.height = self.height.max(top + self.pen[2]);
+        self.coverage.resize(WIDTH as usize * self.height as usize, 0);
+        [left, top]
+    }
+
+    /// Brings new glyphs to the device. Returns whether the texture is another one now.
+    pub(super) fn upload(&mut self, gpu: &Gpu) -> bool {
+        if !self.changed {
+            return false;
+        }
+        self.changed = false;
+        let replaced = self.texture.height() < self.height;
+        if replaced {
+            self.texture = create(gpu, self.height.next_power_of_two().min(gpu.longest_side()));
+        }
+        let height = self.height.min(self.texture.height());
+        gpu.queue().write_texture(
+            self.texture.as_image_copy(),
+            &self.coverage[..(WIDTH * height) as usize],
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH), rows_per_image: None },
+            wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 },
+        );
+        replaced
+    }
+
+    pub(super) fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+}
+
+fn create(gpu: &Gpu, height: u32) -> wgpu::Texture {
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("glyphs"),
+        size: wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}

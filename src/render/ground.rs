@@ -1,0 +1,201 @@
+//! The floor with its grid and the soft shadows on it.
+
+use super::panel::{Panels, limit, linear};
+use super::pipeline::{PICTURE_FORMAT, Recipe, group_layout, shader, uniform_entry};
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{CELLS, Floor, Panel, Picture, Shade};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec4;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/ground.wgsl");
+
+/// The struct `Ground` of the shader, field by field.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct GroundUniform {
+    pub(super) first: Vec4,
+    pub(super) second: Vec4,
+    pub(super) middle: [f32; 2],
+    pub(super) fade: [f32; 2],
+    pub(super) key: Vec4,
+    pub(super) sky: Vec4,
+    pub(super) background: Vec4,
+    pub(super) floor: Vec4,
+    pub(super) grid: Vec4,
+    pub(super) shadow: Vec4,
+    pub(super) viewport: Vec4,
+}
+
+/// The distance between two panels' data in the buffer (bytes).
+const STRIDE: usize = 256;
+/// Shadows of more panels than this are left out: a device need not have more layers in a texture.
+const MOST_PANELS: usize = 128;
+
+/// The pipeline of the floor, and the floors of one picture.
+#[derive(Debug)]
+pub(super) struct Grounds {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    uniforms: GrowingBuffer<u8>,
+    shades: wgpu::Texture,
+    bind_group: Option<wgpu::BindGroup>,
+    generation: u64,
+}
+
+impl Grounds {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
+        let module = shader(gpu, "ground", &[super::PANEL_SHADER, SHADER]);
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let shades = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades), entry(2, sampler)];
+        let layout = group_layout(gpu, "ground", &entries);
+        let recipe = Recipe {
+            label: "ground",
+            shader: &module,
+            entries: ["corner", "floor_colour"],
+            groups: &[&panels.layout, &layout],
+            vertices: &[],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: PICTURE_FORMAT,
+            blend: None,
+            depth: false,
+            samples: 1,
+        };
+        let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shades"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self {
+            pipeline: recipe.build(gpu),
+            layout,
+            sampler,
+            uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
+            shades: create_shades(gpu, 2),
+            bind_group: None,
+            generation: 0,
+        }
+    }
+
+    /// Uploads the floors of a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let mut bytes = vec![0; STRIDE * picture.panels.len()];
+        let layers = (2 * picture.panels.len().clamp(1, MOST_PANELS)) as u32;
+        if self.shades.depth_or_array_layers() < layers {
+            self.shades = create_shades(gpu, layers);
+            self.bind_group = None;
+        }
+        for (at, panel) in picture.panels.iter().enumerate() {
+            let Some(floor) = &panel.floor else { continue };
+            for (half, shade) in floor.shades.iter().enumerate() {
+                if has_layer(at) && !shade.cells.is_empty() {
+                    self.write_shade(gpu, (2 * at + half) as u32, shade);
+                }
+            }
+            let uniform = uniform(picture, panel, floor, at);
+            bytes[at * STRIDE..at * STRIDE + size_of::<GroundUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        self.uniforms.write(gpu, &bytes);
+        if self.bind_group.is_none() || self.generation != self.uniforms.generation() {
+            self.generation = self.uniforms.generation();
+            self.bind_group = Some(self.bind(gpu));
+        }
+    }
+
+    fn write_shade(&self, gpu: &Gpu, layer: u32, shade: &Shade) {
+        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
+        gpu.queue().write_texture(
+            wgpu::TexelCopyTextureInfo { origin, ..self.shades.as_image_copy() },
+            &shade.cells,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(CELLS as u32), rows_per_image: None },
+            wgpu::Extent3d { width: CELLS as u32, height: CELLS as u32, depth_or_array_layers: 1 },
+        );
+    }
+
+    fn bind(&self, gpu: &Gpu) -> wgpu::BindGroup {
+        let view = self.shades.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("ground"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: self.uniforms.buffer(),
+                        offset: 0,
+                        size: wgpu::BufferSize::new(size_of::<GroundUniform>() as u64),
+                    }),
+                },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        })
+    }
+
+    /// Draws the floors of all panels that have one.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
+        pass.set_pipeline(&self.pipeline);
+        for (at, panel) in picture.panels.iter().enumerate() {
+            if panel.floor.is_some() {
+                limit(pass, panel.viewport);
+                panels.bind_whole(pass, at);
+                pass.set_bind_group(1, self.bind_group.as_ref(), &[(at * STRIDE) as u32]);
+                pass.draw(0..4, 0..1);
+            }
+        }
+    }
+}
+
+fn has_layer(panel: usize) -> bool {
+    panel < MOST_PANELS
+}
+
+fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> GroundUniform {
+    let palette = &picture.palette;
+    let shade = |half: usize| {
+        let shade = &floor.shades[half];
+        let strength = if shade.cells.is_empty() || !has_layer(at) { 0.0 } else { palette.shadow_strength[half] };
+        Vec4::new(shade.corner[0], shade.corner[1], 1.0 / shade.length, strength)
+    };
+    GroundUniform {
+        first: floor.axes[0].extend(floor.grid[0]),
+        second: floor.axes[1].extend(floor.grid[1]),
+        middle: floor.middle,
+        fade: floor.fade,
+        key: shade(0),
+        sky: shade(1),
+        background: linear(palette.background).extend((2 * at) as f32),
+        floor: linear(palette.floor).extend((2 * at + 1) as f32),
+        grid: linear(palette.grid).extend(0.0),
+        shadow: linear(palette.shadow).extend(0.0),
+        viewport: Vec4::from_array(panel.viewport.map(|length| length as f32)),
+    }
+}
+
+fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("shades"),
+        size: wgpu::Extent3d { width: CELLS as u32, height: CELLS as u32, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}

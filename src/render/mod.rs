@@ -1,0 +1,220 @@
+//! From a [`Picture`] to an image: the passes, in order.
+//!
+//! 1. [`surface`]: turned-over elements by themselves, so that they can be seen through the body.
+//! 2. [`surface`]: all surfaces, with several samples a pixel, in textures no larger than the bodies.
+//! 3. [`line`]: edges and contours as opacities, one sample a pixel with smooth borders of their own.
+//! 4. [`ground`]: the floor, its grid and its shadows, into the picture.
+//! 5. [`composite`]: bodies and lines over the ground.
+//! 6. [`overlay`]: marks and words.
+//!
+//! Each has one file here and one of the same name in `shaders/`.
+
+mod composite;
+mod glyphs;
+mod ground;
+mod line;
+mod overlay;
+mod panel;
+mod pipeline;
+mod surface;
+mod target;
+
+use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
+use crate::picture::Picture;
+use image::RgbImage;
+use panel::Panels;
+use target::{Bodies, Canvas};
+
+const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
+const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");
+const MULTISAMPLED_SHADER: &str = include_str!("../../shaders/multisampled.wgsl");
+
+/// The part of shaders that reads what was drawn with a number of samples.
+fn reading_shader(samples: u32) -> &'static str {
+    if samples > 1 { MULTISAMPLED_SHADER } else { SINGLE_SHADER }
+}
+
+/// Why a picture cannot be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RenderError {
+    /// The picture is larger than the device can draw, or empty.
+    #[error("pictures of {width}×{height} pixels cannot be drawn: each side may have 1 to {longest} pixels here")]
+    Size {
+        /// Width asked for (px).
+        width: u32,
+        /// Height asked for (px).
+        height: u32,
+        /// The longest side that the device can draw (px).
+        longest: u32,
+    },
+    /// A picture has another size than the renderer was made for.
+    #[error("a picture of {} × {} pixels was given to a renderer for {} × {}", found[0], found[1], expected[0], expected[1])]
+    OtherSize {
+        /// Size of the picture (px).
+        found: [u32; 2],
+        /// Size that the renderer was made for (px).
+        expected: [u32; 2],
+    },
+    /// Only 1 and 4 samples a pixel can be had everywhere.
+    #[error("{0} samples a pixel cannot be had; choose 1 or 4")]
+    Samples(u32),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// A picture that the device is drawing; [`Renderer::collect`] waits for it.
+#[derive(Debug)]
+pub struct Drawing(Pending);
+
+/// Draws pictures of one size. The same picture gives the same bytes, whatever was drawn before.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    size: [u32; 2],
+    samples: u32,
+    panels: Panels,
+    surfaces: surface::Surfaces,
+    lines: line::Lines,
+    grounds: ground::Grounds,
+    composite: composite::Composite,
+    overlay: overlay::Overlay,
+    canvas: Canvas,
+    bodies: Option<Bodies>,
+    read_back: ReadBack,
+}
+
+impl Renderer {
+    /// Prepares to draw pictures of a width and height (px) with 1 or 4 samples a pixel.
+    ///
+    /// # Errors
+    /// A size or number of samples that cannot be had, or a device that fails.
+    pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
+        let [width, height] = size;
+        let longest = gpu.longest_side();
+        if size.contains(&0) || width.max(height) > longest {
+            return Err(RenderError::Size { width, height, longest });
+        }
+        if samples != 1 && samples != 4 {
+            return Err(RenderError::Samples(samples));
+        }
+        let panels = Panels::new(gpu);
+        let renderer = Self {
+            size,
+            samples,
+            surfaces: surface::Surfaces::new(gpu, &panels, samples),
+            lines: line::Lines::new(gpu, &panels, samples),
+            grounds: ground::Grounds::new(gpu, &panels),
+            composite: composite::Composite::new(gpu, &panels, samples),
+            overlay: overlay::Overlay::new(gpu),
+            canvas: Canvas::new(gpu, size),
+            bodies: None,
+            read_back: ReadBack::new(gpu, width, height),
+            panels,
+            gpu: gpu.clone(),
+        };
+        gpu.check()?;
+        Ok(renderer)
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Errors
+    /// A picture of another size, or a device that fails.
+    pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
+        let drawing = self.submit(picture)?;
+        self.collect(drawing)
+    }
+
+    /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted.
+    ///
+    /// # Errors
+    /// A picture of another size, or a device that fails.
+    pub fn submit(&mut self, picture: &Picture) -> Result<Drawing, RenderError> {
+        if picture.size != self.size {
+            return Err(RenderError::OtherSize { found: picture.size, expected: self.size });
+        }
+        let gpu = self.gpu.clone();
+        let (places, needed) = panel::place(picture);
+        let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed)) {
+            Some(bodies) => bodies,
+            None => {
+                let bodies = Bodies::new(&gpu, target::rounded(needed), self.samples);
+                self.surfaces.retarget(&gpu, &bodies);
+                self.lines.retarget(&gpu, &bodies);
+                self.composite.retarget(&gpu, &bodies);
+                bodies
+            }
+        };
+        self.panels.write(&gpu, picture, &places);
+        self.surfaces.write(&gpu, picture);
+        self.lines.write(&gpu, picture);
+        self.grounds.write(&gpu, picture);
+        self.overlay.write(&gpu, picture);
+
+        let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
+            self.surfaces.draw_behind(&mut pass, &self.panels, &places);
+        }
+        {
+            let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
+            self.surfaces.draw_all(&mut pass, &self.panels, &places);
+        }
+        {
+            let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
+            self.lines.draw(&mut pass, &self.panels, &places);
+        }
+        {
+            let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
+            let background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
+            let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
+            self.grounds.draw(&mut pass, &self.panels, picture);
+            self.composite.draw(&mut pass, &self.panels, picture);
+        }
+        {
+            let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
+            self.overlay.draw(&mut pass);
+        }
+        self.bodies = Some(bodies);
+        Ok(Drawing(self.read_back.submit(&gpu, commands, &self.canvas.texture)))
+    }
+
+    /// Waits for a picture and returns it as sRGB bytes.
+    ///
+    /// # Errors
+    /// A device that failed since the picture was submitted.
+    pub fn collect(&mut self, drawing: Drawing) -> Result<RgbImage, RenderError> {
+        let [width, height] = self.size;
+        let pixels = self.read_back.collect(&self.gpu, drawing.0)?;
+        // The read-back gives exactly three bytes for each pixel.
+        Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
+    }
+}
+
+/// Nothing there: transparent, and infinitely far away.
+const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+
+fn begin<'a>(
+    commands: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+    depth: Option<&wgpu::TextureView>,
+) -> wgpu::RenderPass<'a> {
+    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}

@@ -1,0 +1,134 @@
+//! Marks and words on top of everything.
+
+use super::glyphs::Glyphs;
+use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{Colour, MarkShape, Picture};
+use bytemuck::{Pod, Zeroable};
+
+pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
+
+/// One mark or glyph as the shader reads it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Mark {
+    rectangle: [f32; 4],
+    colour: [u8; 4],
+    second: [u8; 4],
+    glyph: [u32; 2],
+    shape: u32,
+}
+
+const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
+    wgpu::vertex_attr_array![0 => Float32x4, 1 => Unorm8x4, 2 => Unorm8x4, 3 => Uint32x2, 4 => Uint32];
+
+/// The struct `Canvas` of the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CanvasUniform {
+    pub(super) size: [f32; 2],
+    pub(super) unused: [f32; 2],
+}
+
+/// The pipeline of the overlay, and what lies over one picture.
+#[derive(Debug)]
+pub(super) struct Overlay {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    canvas: GrowingBuffer<CanvasUniform>,
+    glyphs: Glyphs,
+    marks: GrowingBuffer<Mark>,
+    bind_group: Option<wgpu::BindGroup>,
+}
+
+impl Overlay {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let module = shader(gpu, "overlay", &[SHADER]);
+        let entries = [uniform_entry(0, size_of::<CanvasUniform>(), false), texture_entry(1, false, 1)];
+        let layout = group_layout(gpu, "overlay", &entries);
+        let recipe = Recipe {
+            label: "overlay",
+            shader: &module,
+            entries: ["corner", "mark_colour"],
+            groups: &[&layout],
+            vertices: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<Mark>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &ATTRIBUTES,
+            })],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: ENCODED_FORMAT,
+            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+            depth: false,
+            samples: 1,
+        };
+        Self {
+            pipeline: recipe.build(gpu),
+            layout,
+            canvas: GrowingBuffer::new(gpu, "canvas", wgpu::BufferUsages::UNIFORM, 1),
+            glyphs: Glyphs::new(gpu),
+            marks: GrowingBuffer::new(gpu, "marks", wgpu::BufferUsages::VERTEX, 256),
+            bind_group: None,
+        }
+    }
+
+    /// Uploads what lies over a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let opaque = |[red, green, blue]: Colour| [red, green, blue, 255];
+        let mut marks: Vec<_> = picture
+            .marks
+            .iter()
+            .map(|mark| Mark {
+                rectangle: mark.rectangle,
+                colour: opaque(mark.colour),
+                second: opaque(mark.second),
+                glyph: [0; 2],
+                shape: match mark.shape {
+                    MarkShape::Filled => 0,
+                    MarkShape::Struck => 1,
+                },
+            })
+            .collect();
+        for run in &picture.words {
+            for glyph in &run.glyphs {
+                if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
+                    let [width, height] = raster.size.map(|length| length as f32);
+                    marks.push(Mark {
+                        rectangle: [x + raster.offset[0], y + raster.offset[1], width, height],
+                        colour: opaque(run.colour),
+                        second: opaque(run.colour),
+                        glyph: raster.at,
+                        shape: 2,
+                    });
+                }
+            }
+        }
+        self.marks.write(gpu, &marks);
+        if self.glyphs.upload(gpu) || self.bind_group.is_none() {
+            let size = picture.size.map(|length| length as f32);
+            self.canvas.write(gpu, &[CanvasUniform { size, unused: [0.0; 2] }]);
+            self.bind_group = Some(self.bind(gpu));
+        }
+    }
+
+    fn bind(&self, gpu: &Gpu) -> wgpu::BindGroup {
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("overlay"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.canvas.buffer().as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&self.glyphs.view()) },
+            ],
+        })
+    }
+
+    /// Draws it.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if !self.marks.is_empty() {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
+            pass.set_vertex_buffer(0, self.marks.buffer().slice(..));
+            pass.draw(0..4, 0..self.marks.len() as u32);
+        }
+    }
+}

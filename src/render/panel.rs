@@ -1,0 +1,205 @@
+//! What every pass knows of a panel, as the shaders read it, and where bodies stand in the textures that hold them.
+
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{Colour, Panel, Picture, Rectangle};
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3, Vec4};
+
+/// The struct `Panel` of `shaders/panel.wgsl`, field by field.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct PanelUniform {
+    pub(super) clip: Mat4,
+    pub(super) eye: Vec3,
+    pub(super) near: f32,
+    pub(super) key: Vec3,
+    pub(super) flatness: f32,
+    pub(super) up: Vec3,
+    pub(super) floor: f32,
+    pub(super) sound: Vec3,
+    pub(super) element: f32,
+    pub(super) alarm: Vec3,
+    pub(super) line_scale: f32,
+    pub(super) alarm_line: Vec3,
+    pub(super) outline_alpha: f32,
+    pub(super) edge: Vec3,
+    pub(super) focal: f32,
+    pub(super) outline: Vec3,
+    pub(super) unused: f32,
+    pub(super) region: Vec4,
+    pub(super) place: Vec4,
+}
+
+/// An sRGB colour as linear light.
+pub(super) fn linear(colour: Colour) -> Vec3 {
+    let one = |byte: u8| {
+        let encoded = f32::from(byte) / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    };
+    Vec3::new(one(colour[0]), one(colour[1]), one(colour[2]))
+}
+
+/// Where each panel's region stands in the textures that hold bodies, and the size that these need (px).
+///
+/// Regions stand beside each other as long as there is room, then begin a new row, so that the textures hold hardly
+/// more than bodies: every pixel of them costs time.
+pub(super) fn place(picture: &Picture) -> (Vec<Rectangle>, [u32; 2]) {
+    let widest = picture.panels.iter().map(|panel| panel.region[2]).max().unwrap_or(0).max(picture.size[0]);
+    let (mut left, mut top, mut row) = (0, 0, 0);
+    let mut size = [0, 0];
+    let places = picture.panels.iter().map(|panel| {
+        let [_, _, width, height] = panel.region;
+        if left + width > widest {
+            (left, top, row) = (0, top + row, 0);
+        }
+        let place = [left, top, width, height];
+        left += width;
+        row = row.max(height);
+        size = [size[0].max(left), size[1].max(top + row)];
+        place
+    });
+    (places.collect(), size)
+}
+
+/// The matrix that leads from clip space of a viewport to that of a region in it.
+fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
+    let [vx, vy, vw, vh] = viewport.map(|length| length as f32);
+    let [rx, ry, rw, rh] = region.map(|length| (length as f32).max(1.0));
+    let [rx, ry] = if region[2] == 0 { [vx, vy] } else { [rx.min(region[0] as f32), ry.min(region[1] as f32)] };
+    let scale = [vw / rw, vh / rh];
+    let shift = [(2.0 * (vx - rx) + vw) / rw - 1.0, 1.0 - (2.0 * (vy - ry) + vh) / rh];
+    Mat4::from_cols(
+        Vec4::new(scale[0], 0.0, 0.0, 0.0),
+        Vec4::new(0.0, scale[1], 0.0, 0.0),
+        Vec4::Z,
+        Vec4::new(shift[0], shift[1], 0.0, 1.0),
+    )
+}
+
+fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
+    let (palette, sight) = (&picture.palette, &panel.sight);
+    let [left, top] = [0, 1].map(|axis| panel.region[axis] as f32 - region[axis] as f32);
+    PanelUniform {
+        clip,
+        eye: sight.eye,
+        near: sight.near,
+        key: sight.key,
+        flatness: if sight.flat { 1.0 } else { 0.0 },
+        up: panel.floor.as_ref().map_or(Vec3::Y, |floor| floor.normal),
+        // Without a floor, everything is far above it.
+        floor: panel.floor.as_ref().map_or(-1e6, |floor| floor.height),
+        sound: linear(if sight.flat { palette.sound_flat } else { palette.sound }),
+        element: sight.element,
+        alarm: linear(palette.alarm),
+        line_scale: sight.line_scale,
+        alarm_line: linear(palette.alarm_line),
+        outline_alpha: palette.outline_alpha,
+        edge: linear(palette.edge),
+        focal: sight.focal,
+        outline: linear(palette.outline),
+        unused: 0.0,
+        region: Vec4::from_array(region.map(|length| length as f32)),
+        place: Vec4::new(left, top, 0.0, 0.0),
+    }
+}
+
+/// The distance between two panels' data in the buffer (bytes).
+const STRIDE: usize = 512;
+
+/// The data of all panels, twice: as seen in the bodies' regions, and in the whole panels.
+#[derive(Debug)]
+pub(super) struct Panels {
+    buffer: GrowingBuffer<u8>,
+    bind_group: wgpu::BindGroup,
+    generation: u64,
+    pub(super) layout: wgpu::BindGroupLayout,
+}
+
+impl Panels {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("panel"),
+            entries: &[super::pipeline::uniform_entry(0, size_of::<PanelUniform>(), true)],
+        });
+        let buffer = GrowingBuffer::new(gpu, "panels", wgpu::BufferUsages::UNIFORM, 4 * STRIDE);
+        let bind_group = bind(gpu, &layout, &buffer);
+        Self { generation: buffer.generation(), buffer, bind_group, layout }
+    }
+
+    /// Uploads what the passes of one picture need.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, places: &[Rectangle]) {
+        let mut bytes = vec![0; 2 * STRIDE * picture.panels.len()];
+        for (at, (panel, &place)) in picture.panels.iter().zip(places).enumerate() {
+            let cropped = crop(panel.viewport, panel.region) * panel.sight.clip;
+            for (half, clip) in [cropped, panel.sight.clip].into_iter().enumerate() {
+                let uniform = uniform(picture, panel, clip, place);
+                let start = (2 * at + half) * STRIDE;
+                bytes[start..start + size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+            }
+        }
+        self.buffer.write(gpu, &bytes);
+        if self.buffer.generation() != self.generation {
+            self.bind_group = bind(gpu, &self.layout, &self.buffer);
+            self.generation = self.buffer.generation();
+        }
+    }
+
+    /// Binds a panel for drawing into its body's region.
+    pub(super) fn bind_region(&self, pass: &mut wgpu::RenderPass<'_>, panel: usize) {
+        pass.set_bind_group(0, &self.bind_group, &[(2 * panel * STRIDE) as u32]);
+    }
+
+    /// Binds a panel for drawing into the whole of it.
+    pub(super) fn bind_whole(&self, pass: &mut wgpu::RenderPass<'_>, panel: usize) {
+        pass.set_bind_group(0, &self.bind_group, &[((2 * panel + 1) * STRIDE) as u32]);
+    }
+}
+
+fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, buffer: &GrowingBuffer<u8>) -> wgpu::BindGroup {
+    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("panel"),
+        layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: buffer.buffer(),
+                offset: 0,
+                size: wgpu::BufferSize::new(size_of::<PanelUniform>() as u64),
+            }),
+        }],
+    })
+}
+
+/// Limits drawing to a rectangle of the target.
+pub(super) fn limit(pass: &mut wgpu::RenderPass<'_>, [left, top, width, height]: Rectangle) {
+    pass.set_viewport(left as f32, top as f32, width as f32, height as f32, 0.0, 1.0);
+    pass.set_scissor_rect(left, top, width, height);
+}
+
+/// Whether there is anything in a rectangle.
+pub(super) fn is_visible([_, _, width, height]: Rectangle) -> bool {
+    width > 0 && height > 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_region_is_cut_out_of_its_viewport() {
+        let crop = crop([640, 0, 640, 720], [700, 200, 320, 360]);
+        // The corners of the region, in clip space of the viewport, become those of clip space.
+        for (pixel, corner) in [([700.0, 200.0], [-1.0, 1.0]), ([1020.0, 560.0], [1.0, -1.0])] {
+            let at = Vec4::new((pixel[0] - 640.0) / 320.0 - 1.0, 1.0 - pixel[1] / 360.0, 0.0, 1.0);
+            let there = crop * at;
+            assert!((there.x - corner[0]).abs() < 1e-5 && (there.y - corner[1]).abs() < 1e-5, "{there}");
+        }
+    }
+
+    #[test]
+    fn colours_become_linear() {
+        assert_eq!(linear([0, 0, 0]), Vec3::ZERO);
+        assert_eq!(linear([255, 255, 255]), Vec3::ONE);
+        assert!((linear([188, 188, 188]).x - 0.5).abs() < 0.005);
+    }
+}

@@ -1,0 +1,129 @@
+//! Building pipelines and bindings with few words.
+
+use crate::gpu::Gpu;
+
+/// How bodies are stored while they are drawn: square roots of linear colours, multiplied with alpha.
+pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Depth is the near distance over the distance: 1 nearest, 0 infinitely far.
+pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Opacities of four kinds of lines.
+pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The finished picture, written as linear light.
+pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The finished picture, written as sRGB values.
+pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// What makes one pipeline different from another.
+pub(super) struct Recipe<'a> {
+    pub(super) label: &'static str,
+    pub(super) shader: &'a wgpu::ShaderModule,
+    pub(super) entries: [&'static str; 2],
+    pub(super) groups: &'a [&'a wgpu::BindGroupLayout],
+    pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(super) topology: wgpu::PrimitiveTopology,
+    pub(super) target: wgpu::TextureFormat,
+    pub(super) blend: Option<wgpu::BlendState>,
+    pub(super) depth: bool,
+    pub(super) samples: u32,
+}
+
+impl Recipe<'_> {
+    pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
+        let layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.shader,
+                entry_point: Some(self.entries[0]),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: self.vertices,
+            },
+            primitive: wgpu::PrimitiveState { topology: self.topology, ..Default::default() },
+            depth_stencil: self.depth.then(|| wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: self.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: self.shader,
+                entry_point: Some(self.entries[1]),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: self.target,
+                    blend: self.blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// A shader from its parts, one behind the other.
+pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+    gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+    })
+}
+
+/// A uniform struct of a size (bytes).
+pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    }
+}
+
+/// A texture that is read pixel by pixel.
+pub(super) fn texture_entry(binding: u32, depth: bool, samples: u32) -> wgpu::BindGroupLayoutEntry {
+    let sample_type = match depth {
+        true => wgpu::TextureSampleType::Depth,
+        false => wgpu::TextureSampleType::Float { filterable: false },
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: samples > 1,
+        },
+        count: None,
+    }
+}
+
+/// A binding layout.
+pub(super) fn group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+/// Textures bound in order, from binding `first`.
+pub(super) fn bind_textures(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    views: &[(u32, &wgpu::TextureView)],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = views
+        .iter()
+        .map(|&(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) })
+        .collect();
+    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}

@@ -1,0 +1,115 @@
+//! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
+
+use super::panel::{Panels, is_visible, limit};
+use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::target::Bodies;
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{Mesh, Picture, Rectangle, Vertex};
+use std::ops::Range;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
+
+const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
+
+/// The pipelines of the surfaces, and the meshes of one picture.
+#[derive(Debug)]
+pub(super) struct Surfaces {
+    alarm_behind: wgpu::RenderPipeline,
+    alarm: wgpu::RenderPipeline,
+    sound: wgpu::RenderPipeline,
+    behind_layout: wgpu::BindGroupLayout,
+    behind: Option<wgpu::BindGroup>,
+    vertices: GrowingBuffer<Vertex>,
+    indices: GrowingBuffer<u32>,
+    /// The indices of each panel's two sets: sound, turned over.
+    ranges: Vec<[Range<u32>; 2]>,
+}
+
+impl Surfaces {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+        let module = shader(gpu, "surface", &[super::PANEL_SHADER, SHADER]);
+        let behind_layout = group_layout(gpu, "turned over", &[texture_entry(0, false, 1), texture_entry(1, true, 1)]);
+        let layout = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &ATTRIBUTES,
+        };
+        let build = |label, entries, groups: &[&wgpu::BindGroupLayout], samples| {
+            let recipe = Recipe {
+                label,
+                shader: &module,
+                entries,
+                groups,
+                vertices: &[Some(layout.clone())],
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                target: BODY_FORMAT,
+                blend: None,
+                depth: true,
+                samples,
+            };
+            recipe.build(gpu)
+        };
+        Self {
+            alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout], 1),
+            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout], samples),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, &behind_layout], samples),
+            behind_layout,
+            behind: None,
+            vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
+            indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
+            ranges: Vec::new(),
+        }
+    }
+
+    /// Uploads the meshes of a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+        let mut add = |mesh: &Mesh| {
+            let (base, start) = (vertices.len() as u32, indices.len() as u32);
+            vertices.extend_from_slice(&mesh.vertices);
+            indices.extend(mesh.triangles.iter().flatten().map(|at| base + at));
+            start..indices.len() as u32
+        };
+        self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
+        self.vertices.write(gpu, &vertices);
+        self.indices.write(gpu, &indices);
+    }
+
+    /// Takes note of new textures.
+    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
+        let views = [(0, &bodies.alarm_colour), (1, &bodies.alarm_depth)];
+        self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
+    }
+
+    /// Draws the turned-over sets by themselves.
+    pub(super) fn draw_behind(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+        self.draw(pass, &self.alarm_behind, panels, places, 1);
+    }
+
+    /// Draws everything.
+    pub(super) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+        self.draw(pass, &self.alarm, panels, places, 1);
+        pass.set_bind_group(1, self.behind.as_ref(), &[]);
+        self.draw(pass, &self.sound, panels, places, 0);
+    }
+
+    fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        panels: &Panels,
+        places: &[Rectangle],
+        set: usize,
+    ) {
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
+        pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
+        for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {
+            if is_visible(place) && !ranges[set].is_empty() {
+                limit(pass, place);
+                panels.bind_region(pass, panel);
+                pass.draw_indexed(ranges[set].clone(), 0, 0..1);
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The textures that pictures are drawn into.
+
+use super::pipeline::{BODY_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
+use crate::gpu::Gpu;
+
+/// Textures that hold bodies grow in steps of this length (px), so that a body in motion seldom needs new ones.
+const STEP: u32 = 64;
+
+/// The finished picture.
+#[derive(Debug)]
+pub(super) struct Canvas {
+    pub(super) texture: wgpu::Texture,
+    /// For passes that work with linear light.
+    pub(super) linear: wgpu::TextureView,
+    /// For passes that work with sRGB values.
+    pub(super) encoded: wgpu::TextureView,
+}
+
+impl Canvas {
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: extent(size),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: PICTURE_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[ENCODED_FORMAT],
+        });
+        let encoded =
+            texture.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() });
+        Self { linear: texture.create_view(&wgpu::TextureViewDescriptor::default()), encoded, texture }
+    }
+}
+
+/// The textures that hold the bodies' regions side by side.
+#[derive(Debug)]
+pub(super) struct Bodies {
+    pub(super) size: [u32; 2],
+    /// Everything of the bodies, with all samples.
+    pub(super) colour: wgpu::TextureView,
+    pub(super) depth: wgpu::TextureView,
+    /// The turned-over elements by themselves, one sample a pixel.
+    pub(super) alarm_colour: wgpu::TextureView,
+    pub(super) alarm_depth: wgpu::TextureView,
+    /// Opacities of lines.
+    pub(super) lines: wgpu::TextureView,
+}
+
+impl Bodies {
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
+        let texture = |label, format, sample_count| {
+            let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: extent(size),
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        Self {
+            size,
+            colour: texture("bodies", BODY_FORMAT, samples),
+            depth: texture("depth of bodies", DEPTH_FORMAT, samples),
+            alarm_colour: texture("turned over", BODY_FORMAT, 1),
+            alarm_depth: texture("depth of turned over", DEPTH_FORMAT, 1),
+            lines: texture("lines", LINE_FORMAT, 1),
+        }
+    }
+
+    /// Whether regions of a size fit, and fill enough of the textures that smaller ones would hardly be quicker.
+    pub(super) fn suit(&self, needed: [u32; 2]) -> bool {
+        let area = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let fits = needed[0] <= self.size[0] && needed[1] <= self.size[1];
+        fits && 2 * area(rounded(needed)) >= area(self.size)
+    }
+}
+
+/// The size of textures for regions of a size (px).
+pub(super) fn rounded(needed: [u32; 2]) -> [u32; 2] {
+    needed.map(|length| length.max(1).next_multiple_of(STEP))
+}
+
+fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
+    wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
+}
