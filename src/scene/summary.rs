@@ -176,7 +176,8 @@ impl fmt::Display for Summary {
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
-        line("time", &format!("{duration} s, {} frames at {rate} per second", count(self.frames.into())))?;
+        let plural = if self.frames == 1 { "" } else { "s" };
+        line("time", &format!("{duration} s, {} frame{plural} at {rate} per second", count(self.frames.into())))?;
         line("cycle", &format!("T = {} s", short(self.cycle)))?;
         for run in &self.runs {
             line("run", &format!("{}: {}", run.name, run.model))?;
