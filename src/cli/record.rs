@@ -166,7 +166,8 @@ impl Recording<'_> {
         pool: &ThreadPool,
         mut take: impl FnMut(&Frame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let mut sequence = Sequence::new(self.scene, &self.runs);
+        // In the pool from the beginning, so that no other threads are ever started.
+        let mut sequence = pool.install(|| Sequence::new(self.scene, &self.runs));
         for &index in &self.frames {
             if interrupt::requested() {
                 break;
