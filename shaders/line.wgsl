@@ -67,6 +67,10 @@ fn depth_at(pixel: vec2<f32>) -> f32 {
     return load_depth(vec2<i32>(clamp(floor(pixel), low, high)));
 }
 
+fn distance_of(depth: f32) -> f32 {
+    return panel.near / max(depth, 1e-9);
+}
+
 // The opacity of a line of a width (px) at a distance from its middle.
 fn covered(distance: f32, width: f32) -> f32 {
     // Lines thinner than a pixel are fainter instead.
@@ -101,15 +105,18 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     }
     // A contour: what lies on its two sides decides.
     let along = difference / max(length(difference), 1e-6);
-    let across = vec2(-along.y, along.x) * (0.8 + 0.8 * scale);
+    let across = vec2(-along.y, along.x) * (0.9 + 1.3 * scale);
     let sides = vec2(depth_at(middle + across), depth_at(middle - across));
+    let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
-    let shown = depth * (1.0 + 2.0 * OFFSET) >= min(here, max(sides.x, sides.y));
+    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP;
     if shown && farther <= 0.0 {
         return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
     }
-    if shown && panel.near / max(farther, 1e-9) - panel.near / max(sides.x, sides.y) > STEP {
-        return vec4(0.0, 0.0, 0.0, 0.85 * covered(distance, 1.5 * scale));
+    if shown && distance_of(farther) - distance_of(nearer) > STEP {
+        let step = 0.85 * covered(distance, 1.5 * scale);
+        return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
     }
     if segment.kind == ALARM_CONTOUR {
         return vec4(0.0, 0.80 * covered(distance, 1.7 * scale), 0.0, 0.0);

@@ -122,15 +122,17 @@ impl Writer<'_> {
     /// Hairlines between panels that stand beside or above each other.
     pub(super) fn hairlines(&mut self, panels: &[Rectangle]) {
         let inset = self.scale.margin();
-        // Two pixels at the reference size; never less than one.
+        // A hairline of one pixel that lies between two pixels fills half of both.
         let thickness = (2.0 * self.scale.unit).round().max(1.0);
+        let (line, ground) = (self.palette.hairline, self.palette.background);
+        let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
         for &[left, top, width, height] in panels {
             let [left, top, width, height] = [left, top, width, height].map(f64::from);
             let mut line = |rectangle: [f64; 4]| {
                 self.marks.push(Mark {
                     rectangle: rectangle.map(narrow),
-                    colour: self.palette.hairline,
-                    second: self.palette.hairline,
+                    colour: halved,
+                    second: halved,
                     shape: MarkShape::Filled,
                 });
             };

@@ -20,7 +20,7 @@ const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
 /// The slope at which it falls on a body near the floor: 50° up.
 const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 /// How much steeper it falls for each distance of the camera that bodies have risen: the shadow stays in the panel.
-const KEY_STEEPENING: f64 = 2.8;
+const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
 /// Room for thick lines around a body (px in the reference picture).

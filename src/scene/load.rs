@@ -31,6 +31,24 @@ impl Scene {
     ///
     /// # Errors
     /// A text that is empty, no TOML, or no scene, with all mistakes in it.
+    ///
+    /// ```
+    /// use localshape::scene::{Limits, Scene};
+    /// let text = "
+    ///     time.duration = 3
+    ///     body.lattice = { cells = [3, 3, 3], side = 0.1 }
+    ///     [[run]]
+    ///     name = 'Local shape'
+    ///     model = { kind = 'shape-based', stiffness = 1e4 }
+    /// ";
+    /// let scene = Scene::parse(text, "cubes.toml", &Limits::default())?;
+    /// assert_eq!((scene.name.as_str(), scene.body.len()), ("cubes", 64));
+    ///
+    /// let wrong = text.replace("side", "size");
+    /// let error = Scene::parse(&wrong, "cubes.toml", &Limits::default()).unwrap_err();
+    /// assert!(error.to_string().starts_with("cubes.toml:3:41: unknown key `size` in `body.lattice`"));
+    /// # Ok::<(), localshape::scene::SceneError>(())
+    /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = || name.to_owned();
@@ -52,10 +70,9 @@ impl Scene {
             _ => String::new(),
         };
         let scene = resolve::resolve(&parts, &stem(name), &digest, limits, &mut report);
-        match (report.finish(name), scene) {
-            (None, Some(scene)) => Ok(scene),
-            (None, None) => Err(SceneError::Empty { file: file() }),
-            (Some(mistakes), _) => Err(SceneError::Mistakes(mistakes)),
+        match (scene, report) {
+            (Some(scene), report) if report.total() == 0 => Ok(scene),
+            (_, report) => Err(SceneError::Mistakes(report.finish(name))),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! What a scene holds, in words and numbers, for whoever checks it.
 
 use super::Scene;
-use super::resolve::runs::cycle;
 use super::words::{count, list};
 use crate::sim::body::{Dimension, ElementKind, bounds};
 use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::world::cycle;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -88,11 +88,16 @@ impl Scene {
             duration: self.duration,
             frames: last.saturating_add(1),
             frames_per_second: self.frames_per_second,
-            cycle: cycle(&body.mass, self.runs.iter().map(|run| run.model.stiffness())).unwrap_or(f64::NAN),
+            cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
             obstacles: self.obstacles.iter().map(|obstacle| describe(obstacle, &coordinates)).collect(),
             picture: self.picture(),
         }
+    }
+
+    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), of which a scene's steps are fractions.
+    pub fn cycle(&self) -> f64 {
+        self.runs.iter().map(|run| cycle(&self.body, run.model.stiffness())).fold(f64::INFINITY, f64::min)
     }
 
     fn picture(&self) -> String {

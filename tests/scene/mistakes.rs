@@ -240,7 +240,7 @@ fn wrong_lengths_and_texts() {
         "run = []\n[time]\nduration = 1\n[body]\nlattice = { cells = [1, 1], side = 1 }",
         "run",
         "run",
-        &[(1, 7, "`run` is empty; expected at least 1")],
+        &[(1, 7, "`run` is empty; expected 1 to 256")],
     );
 }
 

@@ -4,7 +4,7 @@
 mod body;
 mod elements;
 mod lattice;
-pub(super) mod runs;
+mod runs;
 mod view;
 
 use super::Scene;
@@ -18,6 +18,7 @@ use crate::sim::contact::{Obstacle, Shape};
 use glam::DVec3;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The parts of a scene file without those that have a mistake in their structure.
@@ -27,8 +28,8 @@ pub(super) struct Parts {
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
-    /// Whether keys of the body are left out because of mistakes.
-    body_flawed: bool,
+    /// Keys of the top level below which something is left out because of mistakes.
+    flawed: BTreeSet<String>,
     runs: Vec<Option<RunFile>>,
     obstacles: Vec<Option<ObstacleFile>>,
     view: Option<ViewFile>,
@@ -49,7 +50,7 @@ impl Parts {
             gravity: part(file, "gravity", report),
             time: part(file, "time", report),
             body,
-            body_flawed: checked.flawed.contains("body"),
+            flawed: checked.flawed.clone(),
             runs: several(file, "run", report),
             obstacles: several(file, "obstacle", report),
             view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
@@ -93,7 +94,7 @@ pub(super) fn resolve(
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<Scene> {
-    let read_body = |file| body::resolve(file, parts.body_flawed, parts.runs.len(), limits, report);
+    let read_body = |file| body::resolve(file, parts.flawed.contains("body"), parts.runs.len(), limits, report);
     let body = parts.body.as_ref().and_then(read_body);
     let dimension = match &body {
         Some(body) => Some(body.body.dimension),
@@ -104,7 +105,7 @@ pub(super) fn resolve(
         _ => Some(DVec3::ZERO),
     };
     let obstacles = obstacles(&parts.obstacles, dimension, report);
-    if let Some(time) = &parts.time {
+    if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);

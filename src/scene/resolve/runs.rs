@@ -6,7 +6,7 @@ use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::report::{Report, Way};
 use crate::scene::words;
 use crate::sim::model::ElasticModel;
-use std::f64::consts::TAU;
+use crate::sim::world::cycle;
 use std::sync::Arc;
 
 /// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
@@ -31,7 +31,7 @@ pub(super) fn resolve(
         .collect();
     // One missing model would make another T, and with it mistakes that are none.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
-    let cycle = cycle(&body.body.mass, models.iter().map(|model| model.stiffness()))?;
+    let cycle = models.iter().map(|model| cycle(&body.body, model.stiffness())).reduce(f64::min)?;
     let mut runs = Vec::with_capacity(models.len());
     for (at, (run, model)) in typed.iter().zip(models).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
@@ -51,12 +51,6 @@ pub(super) fn resolve(
         runs.push(Run { name: run.name.clone(), model, integrator, step });
     }
     Some(runs)
-}
-
-/// The smallest cycle T = 2π√(m/k) of a node over all runs (s).
-pub(in crate::scene) fn cycle(masses: &[f64], stiffnesses: impl Iterator<Item = f64>) -> Option<f64> {
-    let lightest = masses.iter().copied().reduce(f64::min)?;
-    stiffnesses.map(|stiffness| TAU * (lightest / stiffness).sqrt()).reduce(f64::min)
 }
 
 fn seconds(step: &StepFile, cycle: f64) -> f64 {
