@@ -34,14 +34,6 @@ pub fn exact(number: f64) -> String {
     if number.is_nan() { "nan".to_owned() } else { format!("{number:.16e}") }
 }
 
-/// The moment that a frame shows (s): the time of the step of its first run.
-///
-/// Runs whose steps differ reach a frame at times that differ by less than a step; each run's own time is in the
-/// diagnostics.
-pub fn moment(frame: &crate::sim::snapshot::Frame) -> f64 {
-    frame.runs.first().map_or(frame.time, |run| run.snapshot.time)
-}
-
 #[cfg(test)]
 mod tests {
     use super::exact;

@@ -1,6 +1,6 @@
 //! Frames as PNG, with what they show written into them.
 
-use super::{OutputError, exact, moment, state_digest};
+use super::{OutputError, exact, state_digest};
 use crate::scene::Scene;
 use crate::sim::snapshot::Frame;
 use std::fs::File;
@@ -33,7 +33,7 @@ impl Tags {
             scene: scene.digest.clone(),
             states: frame.runs.iter().map(state).collect(),
             frame: frame.index,
-            time: moment(frame),
+            time: frame.time,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             adapter: adapter.to_owned(),
         }

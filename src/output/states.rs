@@ -1,7 +1,7 @@
 //! `states.npz`: positions and velocities of every frame, for numerical work elsewhere.
 
 use super::atomic::folder_of;
-use super::{AtomicFile, OutputError, moment};
+use super::{AtomicFile, OutputError};
 use crate::scene::Scene;
 use crate::sim::snapshot::Frame;
 use glam::DVec3;
@@ -73,7 +73,7 @@ impl StatesWriter {
     /// If it cannot be written; frames written before stay.
     pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
-        record.extend(moment(frame).to_le_bytes());
+        record.extend(frame.time.to_le_bytes());
         for run in &frame.runs {
             for vector in run.snapshot.position.iter().chain(&run.snapshot.velocity) {
                 record.extend(vector_bytes(vector));

@@ -1,5 +1,6 @@
 //! Words for messages.
 
+use serde_json::Value as Json;
 use toml::de::{DeInteger, DeValue};
 
 /// A text in quotation marks, shortened.
@@ -65,6 +66,12 @@ pub(super) fn to_f64(integer: &DeInteger<'_>) -> f64 {
         Ok(exact) => exact as f64,
         Err(_) => integer.as_str().parse().unwrap_or(f64::INFINITY),
     }
+}
+
+/// A whole number as JSON, if 64 bits hold it.
+pub(super) fn to_json(integer: &DeInteger<'_>) -> Option<Json> {
+    let exact = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
+    u64::try_from(exact).map(Json::from).or_else(|_| i64::try_from(exact).map(Json::from)).ok()
 }
 
 /// A count with its thousands set apart: `1 030 301`.

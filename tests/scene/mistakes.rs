@@ -428,6 +428,17 @@ fn all_mistakes_are_found_in_one_pass() {
 }
 
 #[test]
+fn a_mistake_in_one_key_of_the_body_does_not_hide_those_in_the_others() {
+    let text = PLANE
+        .replace("[0, 2, 3]", "[0, 2, 9]")
+        .replace("mass = 1", "mass = -1\nrotation = { axis = [0, 1], angle = nan }\nvelocity = [0, 0, 0]")
+        .replace("0.5\n", "0.5\nnormal = [0, 0]\n");
+    let error = bad(&text);
+    let lines: Vec<_> = error.mistakes().iter().map(|mistake| mistake.line).collect();
+    assert_eq!(lines, [7, 9, 10, 11, 21], "{error}");
+}
+
+#[test]
 fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
     case(
         SPACE,

@@ -187,10 +187,15 @@ impl<'p> Walk<'_, '_, 'p> {
             && above.is_none_or(|above| number > above)
             && below.is_none_or(|below| number < below);
         if number.is_finite() && inside && number.abs() <= LARGEST {
-            // Whole numbers are within the 32 bits of their range here.
-            return if whole { Json::from(number as i64) } else { Json::from(number) };
+            match value.get_ref().as_integer().filter(|_| whole).map(words::to_json) {
+                None => return Json::from(number),
+                Some(Some(exact)) => return exact,
+                Some(None) => {}
+            }
         }
-        let expected = if !number.is_finite() && !text.starts_with(|c: char| c.is_ascii_digit()) {
+        let expected = if whole && inside {
+            "a whole number of 64 bits".into()
+        } else if !number.is_finite() && !text.starts_with(|c: char| c.is_ascii_digit()) {
             "a finite number".into()
         } else if inside {
             format!("a magnitude up to {LARGEST:e}")
@@ -198,6 +203,7 @@ impl<'p> Walk<'_, '_, 'p> {
             range(if whole { "a whole number" } else { "a number" }, least, most, above, below)
         };
         let help = self.meaning(schema);
+        let text = words::shortened(&text);
         self.mistake(value.span(), format!("`{}` is {text}; expected {expected}", self.here()), help);
         Json::Null
     }
