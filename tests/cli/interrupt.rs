@@ -25,7 +25,9 @@ pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Child {
 }
 
 pub(crate) fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().expect("kill");
+    // The shell's own, which is everywhere.
+    let line = format!("kill -{name} {}", child.id());
+    let sent = Command::new("sh").args(["-c", &line]).status().expect("a shell");
     assert!(sent.success());
 }
 
