@@ -1,16 +1,16 @@
 //! Results on standard output, progress on standard error.
 
-use super::failure::{Failure, Status};
+use super::failure::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// Prints results. A reader that has seen enough and closed its end is no failure: the program ends well.
+/// Prints results. A reader that has seen enough and closed its end is no failure: the work goes on without it.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::silent(Status::Done)),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Failure::files(format!("cannot write to standard output: {error}"))),
     }
 }

@@ -44,8 +44,12 @@ pub(super) fn run_all(
     let pool = pool(options)?;
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut documents: Vec<Value> = Vec::new();
-    let several = jobs.len() > 1;
-    for job in jobs {
+    let mut interrupted = false;
+    for (number, job) in jobs.into_iter().enumerate() {
+        if interrupt::requested() {
+            interrupted = true;
+            break;
+        }
         let Job { scene, runs, frames, folder } = job;
         let folder = folder.prepare()?;
         let mut recording = Recording {
@@ -65,17 +69,15 @@ pub(super) fn run_all(
             merge(&mut document, serde_json::to_value(summary).expect("plain data"));
             documents.push(document);
         } else if !options.quiet {
-            let blank = if several && !interrupt::requested() { "\n" } else { "" };
-            console::print(&format!("{}{blank}", report::report(summary, folder, timings)))?;
+            let blank = if number > 0 { "\n" } else { "" };
+            console::print(&format!("{blank}{}", report::report(summary, folder, timings)))?;
         }
-        if summary.outcome == Outcome::Interrupted {
-            break;
-        }
+        interrupted = summary.outcome == Outcome::Interrupted;
     }
     if options.json {
         console::print_json(&json!({ "scenes": documents }))?;
     }
-    Ok(if interrupt::requested() { Status::Interrupted } else { Status::Done })
+    Ok(if interrupted { Status::Interrupted } else { Status::Done })
 }
 
 fn merge(document: &mut Value, more: Value) {
@@ -164,7 +166,8 @@ impl Recording<'_> {
         pool: &ThreadPool,
         mut take: impl FnMut(&Frame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let mut sequence = Sequence::new(self.scene, &self.runs);
+        // In the pool from the beginning, so that no other threads are ever started.
+        let mut sequence = pool.install(|| Sequence::new(self.scene, &self.runs));
         for &index in &self.frames {
             if interrupt::requested() {
                 break;

@@ -105,7 +105,7 @@ fn unknown_run(scene: &Scene, unknown: &str, names: &[&str]) -> String {
     let nearest = names.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let hint = match nearest.filter(|name| likeness(name) >= SIMILAR) {
         Some(name) => format!("; did you mean “{name}”?"),
-        None => String::from(";"),
+        None => ".".to_owned(),
     };
     let all: Vec<_> = names.iter().map(|name| format!("“{name}”")).collect();
     format!("--only: “{}” has no run “{unknown}”{hint} Its runs are {}", scene.title, all.join(", "))

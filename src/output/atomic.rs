@@ -27,6 +27,7 @@ impl AtomicFile {
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
         let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
         let temporary = made.map_err(OutputError::writing(path))?;
+        claim(temporary.as_file());
         Ok(Self { path: path.to_owned(), temporary })
     }
 
@@ -69,14 +70,31 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     file.commit()
 }
 
-/// Removes what a killed program has left unfinished in a folder; nothing else.
+/// Locks a file until it is closed, also by a crash: so that others see that somebody is at work on it. `false` if
+/// somebody else is. Where files cannot be locked, nobody ever is.
+fn claim(file: &File) -> bool {
+    #[cfg(unix)]
+    {
+        use rustix::fs::{FlockOperation, flock};
+        flock(file, FlockOperation::NonBlockingLockExclusive) != Err(rustix::io::Errno::WOULDBLOCK)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        true
+    }
+}
+
+/// Removes what killed programs have left unfinished in a folder; nothing else, and nothing that a program still
+/// works on.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
 pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
-        if entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX)) {
+        let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if entry.file_name().to_str().is_some_and(hidden) && File::open(entry.path()).is_ok_and(|file| claim(&file)) {
             remove(&entry.path())?;
         }
     }
@@ -127,6 +145,15 @@ mod tests {
         fs::write(&other, "").unwrap();
         remove_leftovers(folder.path()).unwrap();
         assert!(!leftover.exists() && other.exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn work_of_others_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let at_work = AtomicFile::create(&folder.path().join("whole.txt")).unwrap();
+        remove_leftovers(folder.path()).unwrap();
+        at_work.commit().expect("nobody has removed it");
     }
 
     #[cfg(unix)]

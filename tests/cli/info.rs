@@ -43,7 +43,10 @@ fn completions_for_each_shell() {
 #[test]
 fn a_closed_pipe_is_no_failure() {
     let place = Place::with_small();
-    for arguments in ["schema", "completions bash", "info", "check small.toml", "simulate small.toml", "--help"] {
+    place.write("other.toml", crate::support::SMALL);
+    for arguments in
+        ["schema", "completions bash", "info", "check small.toml", "simulate small.toml other.toml", "--help"]
+    {
         let mut command = place.command(arguments.split(' '));
         // The end for reading is gone before the program writes a word.
         let (reader, writer) = std::io::pipe().unwrap();
@@ -51,6 +54,8 @@ fn a_closed_pipe_is_no_failure() {
         let ran = Ran::from(command.stdout(writer).stderr(Stdio::piped()).output().unwrap());
         assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{arguments}");
     }
+    // The work is done all the same.
+    assert_eq!(place.names("output/other"), ["diagnostics.csv", "run.json"]);
 }
 
 #[cfg(target_os = "linux")]

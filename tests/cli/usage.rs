@@ -43,7 +43,9 @@ fn frame_ranges() {
 fn unknown_run() {
     let place = Place::with_small();
     place.run("simulate small.toml --only Mass-sprin").bad(2, &["did you mean “Mass-spring”?", "“Local shape”"]);
-    let ran = place.run("simulate small.toml --only xyz").bad(2, &["no run “xyz”", "“Local shape”, “Mass-spring”"]);
+    let ran = place
+        .run("simulate small.toml --only xyz")
+        .bad(2, &["no run “xyz”. Its runs are “Local shape”, “Mass-spring”"]);
     assert!(!ran.err.contains("did you mean"), "{}", ran.err);
     assert_eq!(place.names("."), ["small.toml"]);
 }
