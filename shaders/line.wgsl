@@ -105,13 +105,17 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     }
     // A contour: what lies on its two sides decides.
     let along = difference / max(length(difference), 1e-6);
-    let across = vec2(-along.y, along.x) * (0.9 + 1.3 * scale);
+    let normal = vec2(-along.y, along.x);
+    let across = normal * (0.9 + 1.3 * scale);
     let sides = vec2(depth_at(middle + across), depth_at(middle - across));
     let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
     // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
     let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP;
-    if shown && farther <= 0.0 {
+    // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
+    let close = normal * 0.9;
+    let open = min(depth_at(middle + close), depth_at(middle - close)) <= 0.0;
+    if farther <= 0.0 && (shown || open) {
         return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
     }
     if shown && distance_of(farther) - distance_of(nearer) > STEP {
