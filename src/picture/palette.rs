@@ -54,6 +54,17 @@ impl Palette {
             Theme::Dark => DARK,
         }
     }
+
+    /// The second text's colour, moved towards the ground it stands on so that it stays in the background.
+    pub(super) fn second_text_on(&self, ground: Colour) -> Colour {
+        let text = self.edge;
+        std::array::from_fn(|at| ((2 * u16::from(text[at]) + u16::from(ground[at])) / 3) as u8)
+    }
+
+    /// A colour of alarm for signs on white, whatever the theme.
+    pub(super) fn alarm_line_on_white(&self) -> Colour {
+        LIGHT.alarm_text
+    }
 }
 
 const LIGHT: Palette = Palette {
