@@ -16,6 +16,8 @@ mod line;
 mod overlay;
 mod panel;
 mod pipeline;
+#[cfg(test)]
+mod shader_tests;
 mod surface;
 mod target;
 
