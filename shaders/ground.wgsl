@@ -10,7 +10,8 @@ struct Ground {
     // For key light and sky: corner, inverse length and opacity of the shadow.
     key: vec4<f32>,
     sky: vec4<f32>,
-    // Linear colours; in w the layers of the two shadows, and the distance of the grid's lines.
+    // Linear colours; in w the layers of the two shadows, the distance of the grid's lines, and over which height the
+    // floor fades above the lower side of the panel (px).
     background: vec4<f32>,
     floor: vec4<f32>,
     grid: vec4<f32>,
@@ -28,9 +29,8 @@ struct Corner {
     @location(0) on_floor: vec2<f32>,
 }
 
-// Parts of the panel's width and height over which the floor fades.
+// The part of the panel's width over which the floor fades on each side.
 const SIDE_FADE = 0.16;
-const BOTTOM_FADE = 0.13;
 const GRID_ALPHA = 0.85;
 
 @vertex
@@ -58,7 +58,7 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let radius = length(at - ground.middle);
     let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
-    let bottom = smoothstep(0.0, BOTTOM_FADE * size.y, size.y - pixel.y);
+    let bottom = smoothstep(0.0, ground.shadow.w, size.y - pixel.y);
     let fade = round * side * bottom;
 
     var colour = ground.floor.rgb;

@@ -16,7 +16,7 @@ const ALARM_CONTOUR = 3u;
 
 // Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
 const REACH = 1.25;
-// As for the surfaces of turned-over elements.
+// As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
 const OFFSET = 0.0016;
@@ -108,7 +108,7 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     }
     if panel.flatness > 0.5 {
         let outline = covered(distance, 2.5 * scale);
-        return select(vec4(outline, 0.0, 0.0, 0.0), vec4(0.0, outline, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
+        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
     }
     // A contour: what lies on its two sides decides.
     let along = difference / max(length(difference), 1e-6);

@@ -79,7 +79,7 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
     if corner.shape == STRUCK {
         let size = corner.rectangle.zw;
         let off = abs(at.x / size.x + at.y / size.y - 1.0) / length(1.0 / size);
-        let line = clamp(0.07 * (size.x + size.y) + 0.5 - off, 0.0, 1.0);
+        let line = clamp(0.045 * (size.x + size.y) + 0.5 - off, 0.0, 1.0);
         return vec4(mix(corner.colour.rgb, corner.second.rgb, line), 1.0);
     }
     let middle = vec2(2.0, -2.0) * at / corner.rectangle.zw + vec2(-1.0, 1.0);
@@ -103,7 +103,7 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case SHADOW: {
             let down = at.y / corner.rectangle.w;
             let across = smoothstep(1.0, 0.55, abs(middle.x));
-            return vec4(corner.colour.rgb, 0.62 * across * (1.0 - down) * (1.0 - down));
+            return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
         }
         default: {
             return vec4(corner.colour.rgb, 1.0);

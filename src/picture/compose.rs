@@ -24,6 +24,9 @@ const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
+/// on clean ground.
+const FADE_ABOVE: f64 = 94.0;
 /// Bodies of more elements than this along a side have softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
@@ -116,7 +119,7 @@ impl<'a> Composer<'a> {
         let body = &*self.scene.body;
         let (origin, side) = (view.camera.target, view.side);
         let edges = viewport.map(f64::from);
-        let lens = Lens::new(view, framing, body.dimension, edges);
+        let lens = Lens::new(view, framing, body.dimension, edges, scale.unit);
         let key = key_light(&lens, framing);
         // A body of which no node is known is drawn as nothing.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
@@ -161,7 +164,7 @@ impl<'a> Composer<'a> {
                 soft: narrow(self.soft),
                 element: narrow(lens.focal * side / if flat { 1.0 } else { framing.distance }),
             },
-            floor: if flat { None } else { self.floor(&position, framing, key) },
+            floor: if flat { None } else { self.floor(&position, framing, key, scale) },
             sound,
             turned_over,
             lines,
@@ -179,7 +182,7 @@ impl<'a> Composer<'a> {
         }));
     }
 
-    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3) -> Option<Floor> {
+    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (view.camera.target, view.side);
         let (normal, height) = self.scene.obstacles.iter().find_map(|obstacle| match obstacle.shape {
@@ -209,6 +212,7 @@ impl<'a> Composer<'a> {
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
+            fade_above: narrow(FADE_ABOVE * scale.unit),
             shades,
         })
     }

@@ -106,6 +106,8 @@ pub struct Floor {
     pub grid: [f32; 2],
     /// From where to where it fades out around the middle.
     pub fade: [f32; 2],
+    /// Over which height above the lower side of the viewport it fades out (px).
+    pub fade_above: f32,
     /// The shadows of key light and sky on it.
     pub shades: [Shade; 2],
 }

@@ -69,7 +69,7 @@ impl Flat<'_> {
             let high = (high + room).min(left + width - margin);
             if high > low {
                 let depth = (SHADOW_DEPTH * unit).min(depth);
-                marks.push(mark([low, y, high - low, depth], self.palette.axis, MarkShape::Shadow));
+                marks.push(mark([low, y, high - low, depth], self.palette.shadow, MarkShape::Shadow));
             }
         }
         let thickness = (1.6 * unit).round().max(1.0);
@@ -81,33 +81,46 @@ impl Flat<'_> {
         if self.body.len() > MANY_NODES || self.position.is_empty() {
             return;
         }
+        let mut sound = Vec::new();
+        let mut turned_over = Vec::new();
         for (element, nodes) in self.body.elements.iter().enumerate() {
             let corners: Vec<_> = nodes.iter().filter_map(|&node| self.pixel(self.position[node as usize])).collect();
             if corners.len() == nodes.len() && nodes.len() > 2 {
                 let over = self.turned_over.get(element).copied().unwrap_or(false);
-                self.arrow(&corners, over, marks);
+                if over { turned_over.push(corners) } else { sound.push(corners) }
             }
+        }
+        for corners in &sound {
+            self.sound_arrow(corners, &turned_over, marks);
+        }
+        for corners in &turned_over {
+            self.alarm_arrow(corners, marks);
         }
         let unit = self.scale.line();
         for pixel in self.position.iter().filter_map(|&point| self.pixel(point)) {
-            self.round(pixel, NODE * unit, self.palette.background, self.palette.edge, MarkShape::Node, marks);
+            self.round(pixel, NODE * unit, self.palette.node, self.palette.edge, MarkShape::Node, marks);
         }
     }
 
-    fn arrow(&self, corners: &[DVec2], over: bool, marks: &mut Vec<Mark>) {
+    /// The arrow of a sound element, unless a turned-over one lies over it.
+    fn sound_arrow(&self, corners: &[DVec2], turned_over: &[Vec<DVec2>], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
         let (middle, room) = roomiest(corners);
-        if over {
-            let [ring, disc] = RING.map(|radius| radius * unit);
-            if room > 0.55 * disc {
-                let white = [255; 3];
-                self.round(middle, disc, white, white, MarkShape::Node, marks);
-                let colour = self.palette.alarm_line_on_white();
-                self.round(middle, ring, colour, colour, MarkShape::Clockwise, marks);
-            }
-        } else if room > LEAST_ROOM * unit {
-            let colour = self.palette.second_text_on(self.palette.sound_flat);
+        if room > LEAST_ROOM * unit && !turned_over.iter().any(|polygon| is_inside(polygon, middle)) {
+            let colour = self.palette.sign();
             self.round(middle, RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
+        }
+    }
+
+    /// The arrow of a turned-over element, on a disc of its own.
+    fn alarm_arrow(&self, corners: &[DVec2], marks: &mut Vec<Mark>) {
+        let [ring, disc] = RING.map(|radius| radius * self.scale.line());
+        let (middle, room) = roomiest(corners);
+        if room > 0.55 * disc {
+            let white = [255; 3];
+            self.round(middle, disc, white, white, MarkShape::Node, marks);
+            let colour = Palette::alarm_on_white();
+            self.round(middle, ring, colour, colour, MarkShape::Clockwise, marks);
         }
     }
 
@@ -136,6 +149,15 @@ impl Flat<'_> {
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.lens.project(point).map(|(pixel, _)| DVec2::from(pixel))
     }
+}
+
+/// Whether a polygon winds around a point.
+fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
+    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let crossed = sides.filter(|(a, b)| {
+        (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
+    });
+    crossed.count() % 2 == 1
 }
 
 /// The point among a few inside a polygon that is farthest from all its sides, and how far it is.
@@ -173,6 +195,13 @@ mod tests {
         let corners = [DVec2::new(0.0, 0.0), DVec2::new(4.0, 0.0), DVec2::new(0.0, 3.0)];
         let (middle, room) = roomiest(&corners);
         assert!((middle - DVec2::ONE).length() < 1e-12 && (room - 1.0).abs() < 1e-12, "{middle} {room}");
+    }
+
+    #[test]
+    fn points_are_told_inside_from_outside() {
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        assert!(is_inside(&square, DVec2::splat(0.5)));
+        assert!(!is_inside(&square, DVec2::new(1.5, 0.5)) && !is_inside(&square, DVec2::new(-0.5, 0.5)));
     }
 
     #[test]
