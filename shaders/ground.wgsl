@@ -1,7 +1,7 @@
 // The floor: quiet, with a grid of one cell a side and the body's soft shadow, fading without a horizon.
 
 struct Ground {
-    // Unit vectors along the grid, and in w the coordinates of a crossing of its lines.
+    // Unit vectors along the grid, and in w what to add to coordinates so that its lines are at whole cells.
     first: vec4<f32>,
     second: vec4<f32>,
     // Coordinates of the middle; from where to where it fades.
@@ -10,7 +10,8 @@ struct Ground {
     // For key light and sky: corner, inverse length and opacity of the shadow.
     key: vec4<f32>,
     sky: vec4<f32>,
-    // Linear colours; in w the layers of the two shadows.
+    // Linear colours; in w the layers of the two shadows, the distance of the grid's lines, and over which height the
+    // floor fades above the lower side of the panel (px).
     background: vec4<f32>,
     floor: vec4<f32>,
     grid: vec4<f32>,
@@ -28,9 +29,8 @@ struct Corner {
     @location(0) on_floor: vec2<f32>,
 }
 
-// Parts of the panel's width and height over which the floor fades.
+// The part of the panel's width over which the floor fades on each side.
 const SIDE_FADE = 0.16;
-const BOTTOM_FADE = 0.13;
 const GRID_ALPHA = 0.85;
 
 @vertex
@@ -52,13 +52,13 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let at = corner.on_floor;
     let pixel = corner.place.xy - ground.viewport.xy;
     let size = ground.viewport.zw;
-    let cells = at + vec2(ground.first.w, ground.second.w);
+    let cells = (at + vec2(ground.first.w, ground.second.w)) / ground.grid.w;
     let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
     let width = max(across, vec2(1e-6));
     let radius = length(at - ground.middle);
     let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
-    let bottom = smoothstep(0.0, BOTTOM_FADE * size.y, size.y - pixel.y);
+    let bottom = smoothstep(0.0, ground.shadow.w, size.y - pixel.y);
     let fade = round * side * bottom;
 
     var colour = ground.floor.rgb;

@@ -15,12 +15,12 @@ const CONTOUR = 2u;
 const ALARM_CONTOUR = 3u;
 
 // Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
-const REACH = 1.1;
-// As for the surfaces of turned-over elements.
+const REACH = 1.25;
+// As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
 const OFFSET = 0.0016;
-// From this step of depth on, a contour inside the body is drawn (sides).
+// From this step of depth on, a contour inside the body is drawn (soft units).
 const STEP = 0.22;
 // Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
 const SMALL_ELEMENT = 26.0;
@@ -92,6 +92,9 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let visible = before >= here || panel.flatness > 0.5;
     let scale = panel.line_scale;
     let strength = min(1.0, panel.element / SMALL_ELEMENT);
+    if segment.kind == EDGE && panel.flatness > 0.5 {
+        return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
+    }
     if segment.kind == EDGE {
         let seen = 0.80 * strength * covered(distance, 1.15 * scale);
         let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
@@ -103,18 +106,26 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
         let alpha = select(hidden, 0.95, visible) * strength;
         return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
     }
+    if panel.flatness > 0.5 {
+        let outline = covered(distance, 2.5 * scale);
+        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
+    }
     // A contour: what lies on its two sides decides.
     let along = difference / max(length(difference), 1e-6);
-    let across = vec2(-along.y, along.x) * (0.9 + 1.3 * scale);
+    let normal = vec2(-along.y, along.x);
+    let across = normal * (0.9 + 1.3 * scale);
     let sides = vec2(depth_at(middle + across), depth_at(middle - across));
     let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
     // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
-    let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP;
-    if shown && farther <= 0.0 {
+    let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
+    // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
+    let close = normal * 0.9;
+    let open = min(depth_at(middle + close), depth_at(middle - close)) <= 0.0;
+    if farther <= 0.0 && (shown || open) {
         return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
     }
-    if shown && distance_of(farther) - distance_of(nearer) > STEP {
+    if shown && distance_of(farther) - distance_of(nearer) > STEP * panel.soft {
         let step = 0.85 * covered(distance, 1.5 * scale);
         return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
     }

@@ -31,6 +31,36 @@ struct Canvas {
 const FILLED = 0u;
 const STRUCK = 1u;
 const GLYPH = 2u;
+const NODE = 3u;
+const COUNTER_CLOCKWISE = 4u;
+const CLOCKWISE = 5u;
+const FADING = 6u;
+const SHADOW = 7u;
+
+// The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
+// the right), length and half width of its head.
+const RING = 0.80;
+const THICKNESS = vec2<f32>(0.14, 0.22);
+const BEGIN = 0.9;
+const END = -0.25;
+const HEAD = vec2<f32>(0.72, 0.42);
+
+// The opacity of a ring arrow; coordinates run from −1 to 1, upwards, and a pixel is `pixel` of them.
+fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
+    let off_ring = abs(length(at) - RING) - 0.5 * thickness;
+    let angle = atan2(at.y, at.x);
+    // Distance from the ends of the line, along it.
+    let open = min(angle - END, BEGIN - angle) * RING;
+    let ring = min(0.5 - off_ring / pixel, 0.5 - open / pixel);
+    let along = vec2(-sin(END), cos(END));
+    let from_base = at - RING * vec2(cos(END), sin(END));
+    let t = dot(from_base, along);
+    let s = abs(dot(from_base, vec2(along.y, -along.x)));
+    let slant = vec2(HEAD.x, HEAD.y) / length(HEAD);
+    let side = s * slant.x - (HEAD.x - t) * slant.y;
+    let head = min(0.5 - side / pixel, 0.5 + t / pixel);
+    return saturate(max(ring, head));
+}
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32, mark: Mark) -> Corner {
@@ -49,8 +79,34 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
     if corner.shape == STRUCK {
         let size = corner.rectangle.zw;
         let off = abs(at.x / size.x + at.y / size.y - 1.0) / length(1.0 / size);
-        let line = clamp(0.07 * (size.x + size.y) + 0.5 - off, 0.0, 1.0);
+        let line = clamp(0.045 * (size.x + size.y) + 0.5 - off, 0.0, 1.0);
         return vec4(mix(corner.colour.rgb, corner.second.rgb, line), 1.0);
     }
-    return vec4(corner.colour.rgb, 1.0);
+    let middle = vec2(2.0, -2.0) * at / corner.rectangle.zw + vec2(-1.0, 1.0);
+    let pixel = 2.0 / corner.rectangle.z;
+    switch corner.shape {
+        case NODE: {
+            let inward = (1.0 - length(middle)) / pixel;
+            let rim = 0.16 * corner.rectangle.z;
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), saturate(inward));
+        }
+        case COUNTER_CLOCKWISE: {
+            return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel));
+        }
+        case CLOCKWISE: {
+            return vec4(corner.colour.rgb, ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel));
+        }
+        case FADING: {
+            let left = 1.0 - at.y / corner.rectangle.w;
+            return vec4(corner.colour.rgb, 0.75 * left * left);
+        }
+        case SHADOW: {
+            let down = at.y / corner.rectangle.w;
+            let across = smoothstep(1.0, 0.55, abs(middle.x));
+            return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
+        }
+        default: {
+            return vec4(corner.colour.rgb, 1.0);
+        }
+    }
 }

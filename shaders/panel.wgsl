@@ -24,9 +24,9 @@ struct Panel {
     // Colour of the edges of sound elements; pixels for a slope of one.
     edge: vec3<f32>,
     focal: f32,
-    // Colour of the outline.
+    // Colour of the outline; unit of soft distances in light and of steps in depth.
     outline: vec3<f32>,
-    unused: f32,
+    soft: f32,
     // Left, top, width and height of the body's region in the textures that hold bodies (px).
     region: vec4<f32>,
     // Its left and top in the picture (px), less its left and top in those textures.

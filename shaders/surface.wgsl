@@ -17,7 +17,7 @@ const SKY = vec3<f32>(0.60, 0.635, 0.68);
 const GROUND = vec3<f32>(0.27, 0.262, 0.25);
 // Light that bends around edges into the shade.
 const WRAP = 0.12;
-// Below this height above the floor (sides) side faces get less light, down to this part of it.
+// Below this height above the floor (soft units) side faces get less light, down to this part of it.
 const CONTACT_HEIGHT = 0.9;
 const CONTACT_LIGHT = 0.72;
 // The turned-over set is drawn this much nearer (sides), so that faces shared with the sound one are its own.
@@ -28,7 +28,7 @@ const STRIPE_ALPHA = 0.62;
 // A flat body's hatch has this period (px in the reference picture) and this share of it is dark.
 const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
-// The depth (sides) behind the visible surface from which on a turned-over element no longer gains from being near.
+// The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
@@ -60,7 +60,7 @@ fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
     let key = max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
     let upward = dot(facing, panel.up);
     let height = dot(position, panel.up) - panel.floor;
-    let contact = mix(CONTACT_LIGHT, 1.0, smoothstep(0.0, CONTACT_HEIGHT, height));
+    let contact = mix(CONTACT_LIGHT, 1.0, smoothstep(0.0, CONTACT_HEIGHT * panel.soft, height));
     let around = mix(GROUND, SKY, 0.5 + 0.5 * upward) * mix(contact, 1.0, abs(upward));
     let shine = max(0.0, dot(facing, normalize(view + panel.key)));
     let shine4 = shine * shine * shine * shine;
@@ -115,7 +115,7 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     let behind = textureLoad(alarm_depth, at, 0);
     if behind > 0.0 && panel.flatness < 0.5 {
         let depth = panel.near / behind - 1.0 / corner.place.w;
-        let deep = smoothstep(0.0, THROUGH_DEPTH, depth);
+        let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
         let stored = textureLoad(alarm_colour, at, 0);
         let lit = stored.rgb * stored.rgb;
         let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));

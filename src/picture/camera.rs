@@ -5,9 +5,14 @@ use crate::scene::{Camera, View};
 use crate::sim::body::Dimension;
 use glam::{DVec3, Mat4, Vec4};
 
-/// Where the point looked at stands in a panel, down from its top, in heights of the panel: below the middle, for the
-/// titles' sake.
-pub(super) const MIDDLE: f64 = 0.535;
+/// Room for titles and for captions, which bodies do not share (px at type of the reference size).
+const TITLES: f64 = 95.0;
+const CAPTIONS: f64 = 85.0;
+/// How far below the middle of the room between them the point looked at stands, in parts of that room's height:
+/// bodies rise.
+const LOWERED: f64 = 0.037;
+/// Which part of a panel's height that room is in the reference picture.
+const REFERENCE_ROOM: f64 = 0.75;
 /// The narrowest panel that shows a body at full size, in heights; in narrower ones everything shrinks alike.
 const FULL_ASPECT: f64 = 640.0 / 720.0;
 /// Which part of a panel's height bodies may use between titles and captions.
@@ -71,12 +76,15 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// The camera of a view for one panel, whose left, top, width and height are given (px).
-    pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4]) -> Self {
+    /// The camera of a view for one panel, whose left, top, width and height are given (px), with type of `unit` times
+    /// the reference size.
+    pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
         let camera = &view.camera;
-        let height = panel[3].min(panel[2] / FULL_ASPECT);
+        let room = (panel[3] - (TITLES + CAPTIONS) * unit).max(0.1 * panel[3]);
+        let height = panel[3].min(panel[2] / FULL_ASPECT).min(room / REFERENCE_ROOM);
         let slope = height / 2.0 / (camera.field_of_view / 2.0).tan();
-        let centre = [panel[0] + panel[2] / 2.0, panel[1] + panel[3] * MIDDLE];
+        let middle = (panel[3] + (TITLES - CAPTIONS) * unit) / 2.0 + LOWERED * room;
+        let centre = [panel[0] + panel[2] / 2.0, panel[1] + middle];
         let (azimuth, elevation) = match dimension {
             Dimension::Space => (camera.azimuth, camera.elevation),
             Dimension::Plane => (0.0, 0.0),
@@ -159,13 +167,13 @@ mod tests {
 
     fn lens(highest: f64) -> Lens {
         let view = view();
-        Lens::new(&view, &framing(&view.camera, highest), Dimension::Space, PANEL)
+        Lens::new(&view, &framing(&view.camera, highest), Dimension::Space, PANEL, 1.0)
     }
 
     #[test]
     fn the_target_stands_a_little_below_the_middle() {
         let (pixel, distance) = lens(0.0).project(DVec3::new(0.0, 0.15, 0.0)).unwrap();
-        assert!((pixel[0] - 960.0).abs() < 1e-9 && (pixel[1] - 0.535 * 720.0).abs() < 1e-9, "{pixel:?}");
+        assert!((pixel[0] - 960.0).abs() < 1e-9 && (pixel[1] - 0.535 * 720.0).abs() < 1.0, "{pixel:?}");
         assert!((distance - 2.55).abs() < 1e-12);
     }
 
@@ -228,7 +236,7 @@ mod tests {
     fn narrow_panels_show_the_body_smaller_not_cut() {
         let view = view();
         let framing = framing(&view.camera, 0.0);
-        let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0]);
+        let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0], 0.37);
         let [left, right] = [-0.2, 0.2].map(|x| lens.project(DVec3::new(x, 0.15, 0.0)).unwrap().0[0]);
         assert!(20.0 < left && right < 180.0, "{left} {right}");
     }

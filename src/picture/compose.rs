@@ -5,10 +5,11 @@ use super::caption::{Writer, numbers};
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::{narrow, narrow_point};
 use super::palette::Palette;
+use super::plane::Flat;
 use super::shadow::{self, Plane};
 use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
-use super::{Floor, Framing, Line, LineKind, Mesh, Panel, Picture, Sight};
+use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
 use crate::sim::body::{Dimension, ElementKind};
 use crate::sim::contact::Shape;
@@ -23,6 +24,13 @@ const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
+/// on clean ground.
+const FADE_ABOVE: f64 = 94.0;
+/// Bodies of more elements than this along a side have softer light, as if their elements were larger.
+const SOFT_SHARE: f64 = 4.5;
+/// The grid's lines are a side apart, or more if that were more cells than this beside a body.
+const MOST_CELLS: f64 = 10.0;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
@@ -37,6 +45,8 @@ pub struct Composer<'a> {
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
     extent: f64,
+    /// The unit of soft distances (sides).
+    soft: f64,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -52,13 +62,15 @@ impl<'a> Composer<'a> {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
             Dimension::Space => Vec::new(),
         };
+        let extent = body.extent().max(f64::MIN_POSITIVE);
         Self {
             scene,
             palette: Palette::of(scene.view.theme),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
-            extent: body.extent().max(f64::MIN_POSITIVE),
+            extent,
+            soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
     }
 
@@ -85,18 +97,29 @@ impl<'a> Composer<'a> {
             let numbers = numbers(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             writer.count(viewport, &self.tally, &run.snapshot, &numbers);
         }
-        let Writer { marks, words, .. } = writer;
-        let panels =
-            panels.iter().zip(&frame.runs).map(|(&viewport, run)| self.panel(viewport, run, &framing, scale)).collect();
-        Picture { size, palette: self.palette, panels, marks, words }
+        let Writer { mut marks, words, .. } = writer;
+        let mut under = Vec::new();
+        let panels = panels
+            .iter()
+            .zip(&frame.runs)
+            .map(|(&viewport, run)| self.panel(viewport, run, &framing, scale, [&mut under, &mut marks]))
+            .collect();
+        Picture { size, palette: self.palette, panels, under, marks, words }
     }
 
-    fn panel(&self, viewport: Rectangle, run: &RunFrame, framing: &Framing, scale: Scale) -> Panel {
+    fn panel(
+        &self,
+        viewport: Rectangle,
+        run: &RunFrame,
+        framing: &Framing,
+        scale: Scale,
+        [under, above]: [&mut Vec<Mark>; 2],
+    ) -> Panel {
         let view = &self.scene.view;
         let body = &*self.scene.body;
         let (origin, side) = (view.camera.target, view.side);
         let edges = viewport.map(f64::from);
-        let lens = Lens::new(view, framing, body.dimension, edges);
+        let lens = Lens::new(view, framing, body.dimension, edges, scale.unit);
         let key = key_light(&lens, framing);
         // A body of which no node is known is drawn as nothing.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
@@ -104,7 +127,8 @@ impl<'a> Composer<'a> {
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if !position.is_empty() {
-            let surroundings = Surroundings { body, position: &position, lens: &lens, origin, side };
+            let surroundings =
+                Surroundings { body, position: &position, lens: &lens, origin, side, soft: self.soft * side };
             let over = &run.snapshot.turned_over;
             let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
             surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
@@ -113,6 +137,19 @@ impl<'a> Composer<'a> {
             self.add_segments(&position, origin, &mut lines);
         }
         let flat = body.dimension == Dimension::Plane;
+        if flat {
+            let flat = Flat {
+                body,
+                position: &position,
+                turned_over: &run.snapshot.turned_over,
+                lens: &lens,
+                viewport,
+                scale,
+                palette: &self.palette,
+            };
+            flat.floor(&self.scene.obstacles, under);
+            flat.signs(above);
+        }
         Panel {
             viewport,
             region: region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0),
@@ -124,9 +161,10 @@ impl<'a> Composer<'a> {
                 key: narrow_point(key),
                 flat,
                 line_scale: narrow(scale.line()),
+                soft: narrow(self.soft),
                 element: narrow(lens.focal * side / if flat { 1.0 } else { framing.distance }),
             },
-            floor: if flat { None } else { self.floor(&position, framing, key) },
+            floor: if flat { None } else { self.floor(&position, framing, key, scale) },
             sound,
             turned_over,
             lines,
@@ -144,7 +182,7 @@ impl<'a> Composer<'a> {
         }));
     }
 
-    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3) -> Option<Floor> {
+    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (view.camera.target, view.side);
         let (normal, height) = self.scene.obstacles.iter().find_map(|obstacle| match obstacle.shape {
@@ -159,19 +197,22 @@ impl<'a> Composer<'a> {
         let middle = DVec2::ZERO;
         let triangles = self.skin();
         let shades = if key.dot(plane.normal) > 0.05 {
-            shadow::shades(&points, &triangles, &plane, key, middle, fade[1])
+            shadow::shades(&points, &triangles, &plane, key, middle, fade[1], self.soft)
         } else {
             std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
+        let cell = cell(self.extent / side);
         // The grid's lines go through the origin of the world.
-        let grid = plane.axes.map(|axis| narrow((-origin / side).dot(axis).rem_euclid(1.0)));
+        let grid = plane.axes.map(|axis| narrow((origin / side).dot(axis).rem_euclid(cell)));
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
             height: narrow(plane.height),
             middle: [narrow(middle.x), narrow(middle.y)],
+            cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
+            fade_above: narrow(FADE_ABOVE * scale.unit),
             shades,
         })
     }
@@ -192,6 +233,16 @@ impl<'a> Composer<'a> {
         let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
+}
+
+/// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …
+fn cell(extent: f64) -> f64 {
+    let mut cells = 1.0;
+    while extent / cells > MOST_CELLS && cells < 1e12 {
+        let leading = cells / 10_f64.powf((cells as f64).log10().floor());
+        cells *= if leading > 1.5 && leading < 3.0 { 2.5 } else { 2.0 };
+    }
+    cells
 }
 
 /// The signed area of a polygon in the xy-plane (m²).

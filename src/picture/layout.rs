@@ -3,7 +3,7 @@
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
 /// A panel narrower than this (px, at the reference height) gets smaller type.
-const REFERENCE_WIDTH: f64 = 600.0;
+const REFERENCE_WIDTH: f64 = 540.0;
 /// A panel lower than this (px, at the reference height) gets smaller type.
 const REFERENCE_PANEL_HEIGHT: f64 = 460.0;
 /// Type smaller than this cannot be read and is left out (px).

@@ -15,6 +15,7 @@ mod layout;
 mod narrow;
 mod number;
 mod palette;
+mod plane;
 mod shadow;
 mod surface;
 mod tally;
@@ -38,7 +39,9 @@ pub struct Picture {
     pub palette: Palette,
     /// One for each run shown.
     pub panels: Vec<Panel>,
-    /// Flat marks above the panels, in the order in which they are drawn.
+    /// Flat marks below the bodies, in the order in which they are drawn.
+    pub under: Vec<Mark>,
+    /// Flat marks above the bodies, in the order in which they are drawn.
     pub marks: Vec<Mark>,
     /// Words, above everything else.
     pub words: Vec<TextRun>,
@@ -82,6 +85,8 @@ pub struct Sight {
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
+    /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.
+    pub soft: f32,
 }
 
 /// The floor of a panel.
@@ -95,10 +100,14 @@ pub struct Floor {
     pub height: f32,
     /// Coordinates along the axes of the point around which it is drawn.
     pub middle: [f32; 2],
-    /// Coordinates along the axes of a line crossing of the grid, between 0 and 1.
+    /// Distance of the grid's lines.
+    pub cell: f32,
+    /// What to add to coordinates so that the grid's lines are at whole cells.
     pub grid: [f32; 2],
     /// From where to where it fades out around the middle.
     pub fade: [f32; 2],
+    /// Over which height above the lower side of the viewport it fades out (px).
+    pub fade_above: f32,
     /// The shadows of key light and sky on it.
     pub shades: [Shade; 2],
 }
@@ -169,4 +178,14 @@ pub enum MarkShape {
     Filled,
     /// A filled rectangle with a rising diagonal.
     Struck,
+    /// A disc with a rim of the second colour.
+    Node,
+    /// A ring arrow that runs counter-clockwise.
+    CounterClockwise,
+    /// A heavier ring arrow that runs clockwise.
+    Clockwise,
+    /// A rectangle that fades out towards its lower side.
+    Fading,
+    /// The lower half of a soft disc.
+    Shadow,
 }

@@ -22,6 +22,8 @@ pub struct Palette {
     pub sound: Colour,
     /// A sound element in the plane.
     pub sound_flat: Colour,
+    /// A node in the plane.
+    pub node: Colour,
     /// A turned-over element, before light falls on it.
     pub alarm: Colour,
     /// Hatch and edges of turned-over elements.
@@ -54,6 +56,16 @@ impl Palette {
             Theme::Dark => DARK,
         }
     }
+
+    /// Signs on sound elements in the plane: their edges' colour, a third of the way to the elements' own.
+    pub(super) fn sign(&self) -> Colour {
+        std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
+    }
+
+    /// The alarm's colour for signs on white, whatever the theme.
+    pub(super) fn alarm_on_white() -> Colour {
+        LIGHT.alarm_text
+    }
 }
 
 const LIGHT: Palette = Palette {
@@ -64,6 +76,7 @@ const LIGHT: Palette = Palette {
     shadow_strength: [0.38, 0.52],
     sound: [0x93, 0xa5, 0xba],
     sound_flat: [0xb9, 0xc7, 0xd6],
+    node: [0xff, 0xff, 0xff],
     alarm: [0xe2, 0x66, 0x1c],
     alarm_line: [0x5a, 0x1f, 0x00],
     alarm_text: [0xb8, 0x4a, 0x00],
@@ -85,6 +98,7 @@ const DARK: Palette = Palette {
     shadow_strength: [0.62, 0.70],
     sound: [0xa3, 0xb5, 0xca],
     sound_flat: [0x6f, 0x83, 0x9b],
+    node: [0xee, 0xf2, 0xf6],
     alarm: [0xf2, 0x7a, 0x2e],
     alarm_line: [0x3d, 0x14, 0x00],
     alarm_text: [0xff, 0x9b, 0x5c],

@@ -54,7 +54,8 @@ impl Plane {
     }
 }
 
-/// The shadows of key light and sky that closed surfaces throw on a plane, within `reach` of `middle` on it.
+/// The shadows of key light and sky that closed surfaces throw on a plane, within `reach` of `middle` on it, with
+/// `soft` as unit of blur.
 pub(super) fn shades(
     points: &[DVec3],
     triangles: &[[u32; 3]],
@@ -62,7 +63,9 @@ pub(super) fn shades(
     key: DVec3,
     middle: DVec2,
     reach: f64,
+    soft: f64,
 ) -> [Shade; 2] {
+    let blur = BLUR.map(|blur| blur * soft);
     let thinning = (triangles.len() / MANY_TRIANGLES + 1).min(6);
     let [of_key, of_sky] = DIRECTIONS.map(|count| count / thinning);
     let frame = Plane::new(key, 0.0);
@@ -98,11 +101,11 @@ pub(super) fn shades(
     };
     // The key light's shadow has sharp ends: its grid holds the shadow and no more.
     let (low, high) = bounds(points, &key_directions, plane, middle, reach);
-    let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * BLUR[0]);
+    let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * blur[0]);
     let (sky_low, sky_length) = (middle - reach, 2.0 * reach);
     [
-        shade(&key_directions, BLUR[0], DVec2::new(key_low[0], key_low[1]), key_length[0]),
-        shade(&sky_directions, BLUR[1], sky_low, sky_length),
+        shade(&key_directions, blur[0], DVec2::new(key_low[0], key_low[1]), key_length[0]),
+        shade(&sky_directions, blur[1], sky_low, sky_length),
     ]
 }
 
@@ -251,7 +254,7 @@ mod tests {
         let (points, triangles) = block();
         let plane = Plane::new(DVec3::Y, 0.0);
         let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
-        let [of_key, of_sky] = shades(&points, &triangles, &plane, key, DVec2::ZERO, 4.0);
+        let [of_key, of_sky] = shades(&points, &triangles, &plane, key, DVec2::ZERO, 4.0, 1.0);
         let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
         assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
         assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
@@ -278,7 +281,7 @@ mod tests {
         points[3] = DVec3::new(1e300, -1e300, 1e6);
         points[5] = DVec3::splat(f64::MAX);
         let plane = Plane::new(DVec3::Y, 0.0);
-        let [a, b] = shades(&points, &triangles, &plane, DVec3::new(-0.3, 0.9, 0.1).normalize(), DVec2::ZERO, 4.0);
+        let [a, b] = shades(&points, &triangles, &plane, DVec3::new(-0.3, 0.9, 0.1).normalize(), DVec2::ZERO, 4.0, 1.0);
         assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
     }
 }

@@ -8,7 +8,7 @@ use crate::sim::topology::{around, ordered};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Stripes of the hatch have this period along `X + Y + Z` of the body at rest (sides).
+/// Stripes of the hatch have this period along `X + Y + Z` of the body at rest (units of soft distances).
 const HATCH_PERIOD: f64 = 0.30;
 /// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
 const FLATNESS: f64 = 0.35;
@@ -43,6 +43,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) origin: DVec3,
     /// The panel's unit of length (m).
     pub(super) side: f64,
+    /// The unit of the hatch (m).
+    pub(super) soft: f64,
 }
 
 /// Kinds of lines on a surface.
@@ -137,7 +139,7 @@ impl Surroundings<'_> {
         let corners: Vec<_> = face.iter().map(|&node| self.at(node)).collect();
         let phases: Vec<_> = face
             .iter()
-            .map(|&node| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.side))
+            .map(|&node| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft))
             .collect();
         let weights = weights(face.len(), patch.points.len());
         for (point, weight) in patch.points.iter().zip(&weights) {

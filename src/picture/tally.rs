@@ -65,7 +65,12 @@ impl Tally {
         marks: &mut Vec<Mark>,
     ) -> f64 {
         match self.squares(scale, room) {
-            Some(lengths) => self.draw_squares(turned_over, palette, lengths, corner, marks),
+            Some(lengths) => {
+                // Few rows stand in the middle of the height that three would take.
+                let taken = self.rows.len() as f64 * (lengths[0] + lengths[1]) - lengths[1];
+                let raised = ((HEIGHT * scale.unit - taken) / 2.0).max(0.0);
+                self.draw_squares(turned_over, palette, lengths, [corner[0], corner[1] - raised], marks)
+            }
             None => self.draw_bar(turned_over, palette, scale, room, corner, marks),
         }
     }

@@ -58,14 +58,12 @@ pub fn font(weight: Weight) -> &'static FontRef<'static> {
     }
 }
 
-/// Stands for characters that the font does not have.
-const REPLACEMENT: char = '\u{fffd}';
 /// Stands for what was cut off.
 const ELLIPSIS: char = '…';
 
+/// The glyph of a character. The first glyph of the font is a box, which stands for all characters it does not have.
 fn glyph(font: &FontRef<'static>, character: char) -> GlyphId {
-    let found = font.glyph_id(if character.is_whitespace() { ' ' } else { character });
-    if found.0 == 0 { font.glyph_id(REPLACEMENT) } else { found }
+    font.glyph_id(if character.is_whitespace() { ' ' } else { character })
 }
 
 /// How far a character moves the pen, in units of the type's size. All digits move it equally far, so that numbers

@@ -181,8 +181,8 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
         sky: shade(1),
         background: linear(palette.background).extend((2 * at) as f32),
         floor: linear(palette.floor).extend((2 * at + 1) as f32),
-        grid: linear(palette.grid).extend(0.0),
-        shadow: linear(palette.shadow).extend(0.0),
+        grid: linear(palette.grid).extend(floor.cell),
+        shadow: linear(palette.shadow).extend(floor.fade_above),
         viewport: Vec4::from_array(panel.viewport.map(|length| length as f32)),
     }
 }

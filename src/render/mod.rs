@@ -16,6 +16,8 @@ mod line;
 mod overlay;
 mod panel;
 mod pipeline;
+#[cfg(test)]
+mod shader_tests;
 mod surface;
 mod target;
 
@@ -165,9 +167,16 @@ impl Renderer {
             let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
             self.lines.draw(&mut pass, &self.panels, &places);
         }
+        let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
+        let mut background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
+        if !picture.under.is_empty() {
+            let [r, g, b] = picture.palette.background.map(|byte| f64::from(byte) / 255.0);
+            let encoded = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
+            let mut pass = begin(&mut commands, "under", &self.canvas.encoded, encoded, None);
+            self.overlay.draw_under(&mut pass);
+            background = wgpu::LoadOp::Load;
+        }
         {
-            let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
-            let background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
             let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
             self.grounds.draw(&mut pass, &self.panels, picture);
             self.composite.draw(&mut pass, &self.panels, picture);

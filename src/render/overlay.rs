@@ -3,8 +3,9 @@
 use super::glyphs::Glyphs;
 use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Colour, MarkShape, Picture};
+use crate::picture::{self, Colour, MarkShape, Picture};
 use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 
@@ -38,6 +39,8 @@ pub(super) struct Overlay {
     canvas: GrowingBuffer<CanvasUniform>,
     glyphs: Glyphs,
     marks: GrowingBuffer<Mark>,
+    /// How many of the marks lie below the bodies.
+    under: u32,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -68,27 +71,15 @@ impl Overlay {
             canvas: GrowingBuffer::new(gpu, "canvas", wgpu::BufferUsages::UNIFORM, 1),
             glyphs: Glyphs::new(gpu),
             marks: GrowingBuffer::new(gpu, "marks", wgpu::BufferUsages::VERTEX, 256),
+            under: 0,
             bind_group: None,
         }
     }
 
     /// Uploads what lies over a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
-        let opaque = |[red, green, blue]: Colour| [red, green, blue, 255];
-        let mut marks: Vec<_> = picture
-            .marks
-            .iter()
-            .map(|mark| Mark {
-                rectangle: mark.rectangle,
-                colour: opaque(mark.colour),
-                second: opaque(mark.second),
-                glyph: [0; 2],
-                shape: match mark.shape {
-                    MarkShape::Filled => 0,
-                    MarkShape::Struck => 1,
-                },
-            })
-            .collect();
+        let mut marks: Vec<_> = picture.under.iter().chain(&picture.marks).map(plain).collect();
+        self.under = picture.under.len() as u32;
         for run in &picture.words {
             for glyph in &run.glyphs {
                 if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
@@ -122,13 +113,45 @@ impl Overlay {
         })
     }
 
-    /// Draws it.
+    /// Draws what lies below the bodies.
+    pub(super) fn draw_under(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_range(pass, 0..self.under);
+    }
+
+    /// Draws what lies above the bodies.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if !self.marks.is_empty() {
+        self.draw_range(pass, self.under..self.marks.len() as u32);
+    }
+
+    fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
+        if !range.is_empty() {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
             pass.set_vertex_buffer(0, self.marks.buffer().slice(..));
-            pass.draw(0..4, 0..self.marks.len() as u32);
+            pass.draw(0..4, range);
         }
+    }
+}
+
+fn opaque([red, green, blue]: Colour) -> [u8; 4] {
+    [red, green, blue, 255]
+}
+
+/// A mark that is no glyph, as the shader reads it.
+fn plain(mark: &picture::Mark) -> Mark {
+    Mark {
+        rectangle: mark.rectangle,
+        colour: opaque(mark.colour),
+        second: opaque(mark.second),
+        glyph: [0; 2],
+        shape: match mark.shape {
+            MarkShape::Filled => 0,
+            MarkShape::Struck => 1,
+            MarkShape::Node => 3,
+            MarkShape::CounterClockwise => 4,
+            MarkShape::Clockwise => 5,
+            MarkShape::Fading => 6,
+            MarkShape::Shadow => 7,
+        },
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct PanelUniform {
     pub(super) edge: Vec3,
     pub(super) focal: f32,
     pub(super) outline: Vec3,
-    pub(super) unused: f32,
+    pub(super) soft: f32,
     pub(super) region: Vec4,
     pub(super) place: Vec4,
 }
@@ -97,7 +97,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         edge: linear(palette.edge),
         focal: sight.focal,
         outline: linear(palette.outline),
-        unused: 0.0,
+        soft: sight.soft,
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, 0.0, 0.0),
     }

@@ -1,0 +1,83 @@
+//! All shaders are valid, and their structs are laid out as ours, on any machine.
+
+use super::ground::GroundUniform;
+use super::overlay::CanvasUniform;
+use super::panel::PanelUniform;
+use super::{MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, overlay, surface};
+use std::mem::offset_of;
+
+fn parse(parts: &[&str]) -> naga::Module {
+    let text = parts.concat();
+    let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+    let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    naga::valid::Validator::new(flags, capabilities)
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+    module
+}
+
+#[test]
+fn shaders_are_valid() {
+    parse(&[PANEL_SHADER, surface::SHADER]);
+    parse(&[PANEL_SHADER, ground::SHADER]);
+    parse(&[overlay::SHADER]);
+    for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
+        parse(&[PANEL_SHADER, reading, line::ALARM_SHADER, line::SHADER]);
+        parse(&[PANEL_SHADER, reading, composite::SHADER]);
+    }
+}
+
+/// Names and places of the fields of a struct, and its size.
+fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let found = module.types.iter().find(|(_, item)| item.name.as_deref() == Some(name));
+    let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {
+        panic!("there is no struct {name}")
+    };
+    let fields = members.iter().map(|member| (member.name.clone().unwrap_or_default(), member.offset as usize));
+    (fields.collect(), *span as usize)
+}
+
+macro_rules! same_layout {
+    ($module:expr, $shader:literal, $rust:ty, [$($field:ident),* $(,)?]) => {
+        let ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
+        assert_eq!(layout(&$module, $shader), (ours, size_of::<$rust>()));
+    };
+}
+
+#[test]
+fn structs_are_laid_out_alike_on_both_sides() {
+    let module = parse(&[PANEL_SHADER, ground::SHADER]);
+    same_layout!(
+        module,
+        "Panel",
+        PanelUniform,
+        [
+            clip,
+            eye,
+            near,
+            key,
+            flatness,
+            up,
+            floor,
+            sound,
+            element,
+            alarm,
+            line_scale,
+            alarm_line,
+            outline_alpha,
+            edge,
+            focal,
+            outline,
+            soft,
+            region,
+            place
+        ]
+    );
+    same_layout!(
+        module,
+        "Ground",
+        GroundUniform,
+        [first, second, middle, fade, key, sky, background, floor, grid, shadow, viewport]
+    );
+    same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, [size, unused]);
+}

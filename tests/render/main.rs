@@ -1,0 +1,37 @@
+//! What only a device can tell: that pictures come out, the same every time, in every size.
+//!
+//! Without a graphics adapter these tests say that they are skipped. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
+#![cfg(feature = "render")]
+
+mod pictures;
+mod shown;
+
+use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+use localshape::sim::snapshot::Frame;
+use std::sync::LazyLock;
+
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match Gpu::new(&AdapterChoice::Auto) {
+    Ok(gpu) => Some(gpu),
+    Err(error) if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some_and(|value| value == "1") => {
+        panic!("LOCALSHAPE_REQUIRE_GPU is set, but {error}")
+    }
+    Err(_) => None,
+});
+
+/// The device that all tests share, or `None` after saying that a test is skipped.
+fn gpu(test: &str) -> Option<&'static Gpu> {
+    if GPU.is_none() {
+        eprintln!("SKIPPED {test}: no graphics adapter");
+    }
+    GPU.as_ref()
+}
+
+/// The scene of Fig. 4(b), and one of its frames.
+fn fig4b(frame: u64) -> (Scene, Frame) {
+    let text = include_str!("../../scenes/fig4b.toml");
+    let scene = Scene::parse(text, "fig4b.toml", &Limits::default()).expect("the shipped scene is sound");
+    let frame = Sequence::new(&scene, &[0, 1]).frame(frame);
+    (scene, frame)
+}

@@ -1,0 +1,194 @@
+//! What a picture shows, told by its numbers: no device needed.
+
+use super::fig4b;
+use localshape::picture::{Composer, LineKind, Mesh, Picture, compose};
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+use localshape::sim::snapshot::{Divergence, Frame, Status};
+use std::collections::HashMap;
+
+/// A scene with other cells, runs and view.
+fn scene(change: impl Fn(String) -> String) -> (Scene, Frame) {
+    let text = change(include_str!("../../scenes/fig4b.toml").to_owned());
+    let scene = Scene::parse(&text, "changed.toml", &Limits::default()).expect("the change keeps the scene sound");
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let frame = Sequence::new(&scene, &runs).frame(0);
+    (scene, frame)
+}
+
+/// Every number in a picture.
+fn numbers(picture: &Picture) -> Vec<f32> {
+    let mut all = Vec::new();
+    for panel in &picture.panels {
+        all.extend(panel.sight.clip.to_cols_array());
+        all.extend(panel.sight.eye.to_array());
+        all.extend([panel.sight.near, panel.sight.focal, panel.sight.element, panel.sight.soft]);
+        for mesh in [&panel.sound, &panel.turned_over] {
+            all.extend(mesh.vertices.iter().flat_map(|v| [v.position, v.normal].concat()));
+        }
+        all.extend(panel.lines.iter().flat_map(|line| [line.from, line.to].concat()));
+    }
+    all.extend(picture.words.iter().flat_map(|run| run.span));
+    all
+}
+
+/// The six volumes of the tetrahedra from the origin: the signed volume of a closed surface.
+fn volume(mesh: &Mesh) -> f32 {
+    let at = |index: u32| glam::Vec3::from(mesh.vertices[index as usize].position);
+    mesh.triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
+}
+
+/// Whether each border of the triangles is run through as often one way as the other.
+fn is_closed(mesh: &Mesh) -> bool {
+    let mut balance: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
+    let place = |index: u32| mesh.vertices[index as usize].position.map(|x| (x * 1e4).round().to_bits());
+    for triangle in &mesh.triangles {
+        for at in 0..3 {
+            let [a, b] = [place(triangle[at]), place(triangle[(at + 1) % 3])];
+            let (key, sign) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+            *balance.entry(key).or_default() += sign;
+        }
+    }
+    balance.values().all(|&sum| sum == 0)
+}
+
+#[test]
+fn both_sets_are_closed_surfaces_that_look_outward() {
+    let (scene, mut frame) = fig4b(0);
+    let snapshot = &mut frame.runs[1].snapshot;
+    // The lowest layer of the 27 cubes: those whose middles lie lowest.
+    let height = |element: usize| -> f64 {
+        scene.body.elements[element].iter().map(|&node| scene.body.rest[node as usize].y).sum()
+    };
+    let mut order: Vec<_> = (0..27).collect();
+    order.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
+    for &element in &order[..9] {
+        snapshot.turned_over[element] = true;
+    }
+    let picture = compose(&scene, &frame);
+    let panel = &picture.panels[1];
+    // Faces of a 3×3×2 and a 3×3×1 block, two triangles each.
+    assert_eq!(panel.sound.triangles.len(), 2 * (2 * 9 + 4 * 6));
+    assert_eq!(panel.turned_over.triangles.len(), 2 * (2 * 9 + 4 * 3));
+    assert!(is_closed(&panel.sound) && is_closed(&panel.turned_over));
+    assert!((volume(&panel.sound) - 18.0).abs() < 1e-2, "{}", volume(&panel.sound));
+    assert!((volume(&panel.turned_over) - 9.0).abs() < 1e-2, "{}", volume(&panel.turned_over));
+    assert!(panel.lines.iter().any(|line| line.kind == LineKind::AlarmEdge));
+    assert!(picture.panels[0].turned_over.triangles.is_empty());
+    assert!(picture.words.iter().any(|run| run.text == "9 of 27"));
+}
+
+#[test]
+fn a_cube_from_the_corner_has_six_contour_edges() {
+    let (scene, frame) = scene(|text| text.replace("cells = [3, 3, 3]", "cells = [1, 1, 1]"));
+    let picture = compose(&scene, &frame);
+    let count = |kind| picture.panels[0].lines.iter().filter(|line| line.kind == kind).count();
+    assert_eq!(count(LineKind::Edge), 12);
+    assert_eq!(count(LineKind::Contour), 6);
+}
+
+#[test]
+fn words_keep_inside_their_panels_and_apart() {
+    let long = "A name that is far too long for any panel, and then some more of it 龍龍龍";
+    for size in [[1280, 720], [640, 360], [720, 1280], [300, 200], [64, 64], [8192, 700]] {
+        for columns in [1, 2] {
+            let (mut scene, frame) = scene(|text| {
+                text.replace("\"Mass-spring\"", &format!("{long:?}"))
+                    .replace("[view]", &format!("[view]\ncolumns = {columns}"))
+            });
+            scene.view.size = size;
+            scene.view.clock = long.to_owned();
+            let picture = compose(&scene, &frame);
+            for run in &picture.words {
+                let inside = picture.panels.iter().any(|panel| {
+                    let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+                    left <= run.span[0]
+                        && run.span[1] <= left + width
+                        && top < run.baseline - 0.7 * run.size
+                        && run.baseline < top + height
+                });
+                assert!(inside, "{size:?} {columns}: {run:?}");
+            }
+            for (at, one) in picture.words.iter().enumerate() {
+                for other in &picture.words[..at] {
+                    let beside = one.span[1] <= other.span[0] || other.span[1] <= one.span[0];
+                    let apart = (one.baseline - other.baseline).abs() >= 0.9 * one.size.min(other.size);
+                    assert!(beside || apart, "{size:?} {columns}: `{}` and `{}`", one.text, other.text);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn words_do_not_move_from_frame_to_frame() {
+    let (scene, _) = fig4b(0);
+    let composer = Composer::new(&scene);
+    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let mut ends = Vec::new();
+    for index in [0, 3, 7, 40] {
+        let picture = composer.compose(&sequence.frame(index));
+        let run = |text: &str| picture.words.iter().find(|run| run.text.ends_with(text)).unwrap().clone();
+        let (clock, count) = (run(" ms"), run("of 27"));
+        ends.push((picture.words[0].span, clock.span[1], clock.baseline, count.span[0]));
+    }
+    assert!(ends.windows(2).all(|two| two[0] == two[1]), "{ends:?}");
+}
+
+#[test]
+fn a_run_that_blew_up_says_when() {
+    let (scene, mut frame) = fig4b(0);
+    let snapshot = &mut frame.runs[1].snapshot;
+    snapshot.status = Status::Diverged(Divergence { time: 0.0351, step: 7, element: Some(3) });
+    snapshot.position[0] *= 1e300;
+    snapshot.position[9].x = f64::MAX;
+    snapshot.diagnostics.shape_error = f64::INFINITY;
+    let picture = compose(&scene, &frame);
+    assert!(picture.words.iter().any(|run| run.text == "diverged at 35 ms"));
+    assert!(numbers(&picture).iter().all(|number| number.is_finite()));
+    // It pulls no camera along: the other panel is seen as if nothing had happened.
+    assert_eq!(picture.panels[0].sight.eye, compose(&scene, &fig4b(0).1).panels[0].sight.eye);
+}
+
+#[test]
+fn one_to_six_panels_find_their_place() {
+    let (mut scene, frame) = fig4b(0);
+    for count in 1..=6 {
+        for columns in 1..=4 {
+            scene.view.columns = columns;
+            let runs = (0..count).map(|at| frame.runs[at % 2].clone()).collect();
+            let picture = compose(&scene, &Frame { runs, ..frame.clone() });
+            assert_eq!(picture.panels.len(), count);
+            let clocks = picture.words.iter().filter(|run| run.text == "0 ms").count();
+            assert_eq!(clocks, 1, "{count} panels, {columns} columns");
+            for panel in &picture.panels {
+                let ([x, y, w, h], [left, top, width, height]) = (panel.region, panel.viewport);
+                assert!(left <= x && top <= y && x + w <= left + width && y + h <= top + height);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_frame_without_runs_is_an_empty_picture() {
+    let (scene, frame) = fig4b(0);
+    let picture = compose(&scene, &Frame { runs: Vec::new(), ..frame });
+    assert!(picture.panels.is_empty() && picture.words.is_empty());
+}
+
+#[test]
+fn many_elements_are_counted_in_a_bar() {
+    let (scene, mut frame) = scene(|text| text.replace("cells = [3, 3, 3]", "cells = [8, 8, 8]"));
+    frame.runs[0].snapshot.turned_over[5] = true;
+    let picture = compose(&scene, &frame);
+    // A hairline, a bar and its alarmed part, and another bar.
+    assert_eq!(picture.marks.len(), 4);
+    assert!(picture.words.iter().any(|run| run.text == "1 of 512"));
+}
+
+#[test]
+fn few_elements_are_counted_in_squares() {
+    let (scene, frame) = fig4b(0);
+    let picture = compose(&scene, &frame);
+    assert_eq!(picture.marks.len(), 1 + 2 * 27);
+}
