@@ -1,3 +1,7 @@
-//! The program; see `localshape::cli`.
+//! The program; see [`localshape::cli`].
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    localshape::cli::run(std::env::args_os())
+}

@@ -33,8 +33,9 @@ impl<'a> Sequence<'a> {
             world.advance(target.checked_sub(world.steps()).expect("frames are taken in rising order"));
             RunFrame { run: *run, snapshot: world.snapshot() }
         });
-        let runs = runs.collect();
-        Frame { index, time: scene.frame_time(index), runs }
+        let runs: Vec<RunFrame> = runs.collect();
+        let time = runs.first().map_or_else(|| scene.frame_time(index), |run| run.snapshot.time);
+        Frame { index, time, runs }
     }
 }
 

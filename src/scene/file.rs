@@ -24,7 +24,7 @@ pub(super) struct SceneFile {
     /// The body, the same in all runs.
     pub(super) body: BodyFile,
     /// The runs, at least one: each is one panel of the picture.
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = 256))]
     pub(super) run: Vec<RunFile>,
     /// What the body bounces off, in the order in which they act. Default: nothing.
     #[serde(default)]
@@ -72,7 +72,7 @@ fn sixty() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(super) enum StepFile {
-    /// Seconds.
+    /// A number of seconds.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// A fraction of the cycle T.
     Cycles(#[schemars(extend("format" = "fraction-of-T"))] super::step::FractionOfCycle),
@@ -88,10 +88,11 @@ impl Default for StepFile {
 ///
 /// It starts as given, is turned by `rotation`, moved by `offset`, set down by `lowest` and thrown with `velocity`,
 /// in this order. At rest it is never turned nor moved.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
     "oneOf" = [{ "required": ["lattice"] }, { "required": ["nodes", "elements"] }],
+    "allOf" = [{ "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } }],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
         "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"]
@@ -236,9 +237,9 @@ pub(super) struct CameraFile {
     /// Turn to the right around the vertical, from looking along −z (rad). Default: 0.541, which is 31°. Not in the
     /// plane.
     pub(super) azimuth: Option<f64>,
-    /// Height above the horizon (rad), less than a quarter turn either way. Default: 0.297, which is 17°. Not in
+    /// Height above the horizon (rad), less than a quarter turn (1.57) either way. Default: 0.297, which is 17°. Not in
     /// the plane.
-    #[schemars(extend("exclusiveMinimum" = -1.5707963, "exclusiveMaximum" = 1.5707963))]
+    #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(super) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
     #[schemars(range(min = 0.001, max = 3.0))]

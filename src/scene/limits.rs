@@ -17,7 +17,7 @@ pub struct Limits {
 const GIB: u64 = 1 << 30;
 
 impl Default for Limits {
-    /// Eight million nodes, a block of 200 × 200 × 200: it takes some 10 GiB with two runs, which a workstation has,
+    /// Eight million nodes, a block of 200 × 200 × 200: it takes some 14 GiB with two runs, which a workstation has,
     /// and its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three
     /// counts is beyond it. A scene file may have 256 MiB, some four million listed nodes.
     fn default() -> Self {
@@ -52,13 +52,13 @@ impl Demand {
         Self { nodes: product(1), elements, corners, runs: runs as u128 }
     }
 
-    /// Memory (bytes), a rough estimate: the body with its faces while they are matched, and for each run its state,
-    /// its forces and what its model keeps for each element.
+    /// Memory (bytes), a rough estimate, some tenths above what was measured on a million cubes: the body with its
+    /// faces while they are matched, and for each run its state, its forces and what its model keeps.
     pub(super) fn bytes(&self) -> u128 {
         const NODE: u128 = 80;
         const CORNER: u128 = 60;
         const NODE_IN_RUN: u128 = 120;
-        const CORNER_IN_RUN: u128 = 40;
+        const CORNER_IN_RUN: u128 = 70;
         let body = self.nodes.saturating_mul(NODE).saturating_add(self.corners.saturating_mul(CORNER));
         let run = self.nodes.saturating_mul(NODE_IN_RUN).saturating_add(self.corners.saturating_mul(CORNER_IN_RUN));
         body.saturating_add(run.saturating_mul(self.runs.max(1)))
@@ -79,7 +79,7 @@ impl Demand {
             size(self.bytes_per_frame()),
         );
         // Indices have 32 bits, and so has the length of all element lists and that of all faces together.
-        if self.nodes > u128::from(u32::MAX) || self.corners.saturating_mul(3) > u128::from(u32::MAX) {
+        if self.nodes > u128::from(u32::MAX) || self.corners.saturating_mul(2) > u128::from(u32::MAX) {
             return Some((format!("{asked}: more than 32-bit indices can count"), "use fewer cells".into()));
         }
         let allowed = if self.nodes > u128::from(limits.nodes) {

@@ -6,7 +6,7 @@ use super::report::{Report, mistake};
 use super::resolve::{self, Parts};
 use super::schema::SCHEMA;
 use super::source::Source;
-use super::words::nearest;
+use super::words::{nearest, quoted};
 use super::{Scene, digest, file::SceneFile, structure};
 use serde::Deserialize;
 use serde_json::Value;
@@ -31,6 +31,24 @@ impl Scene {
     ///
     /// # Errors
     /// A text that is empty, no TOML, or no scene, with all mistakes in it.
+    ///
+    /// ```
+    /// use localshape::scene::{Limits, Scene};
+    /// let text = "
+    ///     time.duration = 3
+    ///     body.lattice = { cells = [3, 3, 3], side = 0.1 }
+    ///     [[run]]
+    ///     name = 'Local shape'
+    ///     model = { kind = 'shape-based', stiffness = 1e4 }
+    /// ";
+    /// let scene = Scene::parse(text, "cubes.toml", &Limits::default())?;
+    /// assert_eq!((scene.name.as_str(), scene.body.len()), ("cubes", 64));
+    ///
+    /// let wrong = text.replace("side", "size");
+    /// let error = Scene::parse(&wrong, "cubes.toml", &Limits::default()).unwrap_err();
+    /// assert!(error.to_string().starts_with("cubes.toml:3:41: unknown key `size` in `body.lattice`"));
+    /// # Ok::<(), localshape::scene::SceneError>(())
+    /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = || name.to_owned();
@@ -43,17 +61,18 @@ impl Scene {
             return Err(SceneError::Syntax(syntax(&source, &errors, name)));
         }
         let mut report = Report::new(&source, root.get_ref());
-        let json = structure::check(&SCHEMA, root.get_ref(), &mut report);
-        let parts = Parts::new(&json, &mut report);
+        let checked = structure::check(&SCHEMA, root.get_ref(), &mut report);
+        let parts = Parts::new(&checked, &mut report);
         let digest = match report.total() {
-            0 => SceneFile::deserialize(Value::Object(json)).map(|scene| digest::digest(&scene)).unwrap_or_default(),
+            0 => SceneFile::deserialize(Value::Object(checked.sound))
+                .map(|scene| digest::digest(&scene))
+                .unwrap_or_default(),
             _ => String::new(),
         };
         let scene = resolve::resolve(&parts, &stem(name), &digest, limits, &mut report);
-        match (report.finish(name), scene) {
-            (None, Some(scene)) => Ok(scene),
-            (None, None) => Err(SceneError::Empty { file: file() }),
-            (Some(mistakes), _) => Err(SceneError::Mistakes(mistakes)),
+        match (scene, report) {
+            (Some(scene), report) if report.total() == 0 => Ok(scene),
+            (_, report) => Err(SceneError::Mistakes(report.finish(name))),
         }
     }
 }
@@ -64,7 +83,11 @@ fn stem(name: &str) -> String {
     stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "scene".into())
 }
 
-/// What the TOML reader said, the first of each line: the rest follows from it.
+/// What may help with a value where an array's comma or end was expected.
+const UNCLOSED: &str = "is an array before this not closed with `]`?";
+
+/// What the TOML reader said, the first of each line and up to the first array that does not end: the rest follows
+/// from it.
 fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistakes {
     let mut found: Vec<_> = errors
         .iter()
@@ -74,11 +97,22 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
                 ("duplicate key", Some(key)) => format!("`{key}` is given a second time"),
                 (message, _) => format!("this is not TOML: {message}"),
             };
-            mistake(source, span, message, None)
+            let help = match (error.message(), source.text().get(span.clone())) {
+                (message, _) if message.contains("array") => Some(UNCLOSED.to_owned()),
+                // What is neither a number nor in quotation marks is taken for a truth value.
+                (message, Some(text)) if message.starts_with("invalid boolean") => {
+                    Some(format!("a text needs quotation marks: {}", quoted(text)))
+                }
+                _ => None,
+            };
+            mistake(source, span, message, help)
         })
         .collect();
     found.sort_by_key(|mistake| (mistake.line, mistake.column));
     found.dedup_by_key(|mistake| mistake.line);
+    if let Some(array) = found.iter().position(|mistake| mistake.help.as_deref() == Some(UNCLOSED)) {
+        found.truncate(array + 1);
+    }
     let total = found.len();
     found.truncate(1000);
     Mistakes { file: name.into(), found, total }

@@ -16,12 +16,14 @@ mod schema;
 mod source;
 mod step;
 mod structure;
+mod summary;
 mod view;
 mod words;
 
 pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
 pub use schema::schema;
+pub use summary::{RunSummary, Summary};
 pub use view::{Camera, Theme, View};
 
 use crate::sim::body::{Body, State};

@@ -72,10 +72,10 @@ impl<'t> Report<'t> {
         self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), message, help.into());
     }
 
-    /// All that was found in the order of the text; `None` if that is nothing.
-    pub(super) fn finish(mut self, file: &str) -> Option<Mistakes> {
+    /// All that was found, in the order of the text.
+    pub(super) fn finish(mut self, file: &str) -> Mistakes {
         self.found.sort_by_key(|mistake| (mistake.line, mistake.column));
-        (self.total > 0).then(|| Mistakes { file: file.into(), found: self.found, total: self.total })
+        Mistakes { file: file.into(), found: self.found, total: self.total }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Words for messages.
 
+use serde_json::Value as Json;
 use toml::de::{DeInteger, DeValue};
 
 /// A text in quotation marks, shortened.
@@ -67,12 +68,18 @@ pub(super) fn to_f64(integer: &DeInteger<'_>) -> f64 {
     }
 }
 
+/// A whole number as JSON, if 64 bits hold it.
+pub(super) fn to_json(integer: &DeInteger<'_>) -> Option<Json> {
+    let exact = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
+    u64::try_from(exact).map(Json::from).or_else(|_| i64::try_from(exact).map(Json::from)).ok()
+}
+
 /// A count with its thousands set apart: `1 030 301`.
 pub(super) fn count(number: u128) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at) % 3 == 0 {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
             text.push(' ');
         }
         text.push(digit);

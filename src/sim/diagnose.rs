@@ -126,7 +126,7 @@ fn element_size(body: &Body, element: usize) -> ElementSize {
 ///
 /// A face with more than three corners is the mean of its fans of triangles from every corner. For a quadrilateral
 /// that is exactly the bilinear patch, so a hexahedron gets the volume of its trilinear map.
-fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> f64 {
+pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> f64 {
     // Relative to the first node, so that distance from the origin costs no digits.
     let origin = position[nodes[0] as usize];
     let at = |node: u32| position[node as usize] - origin;

@@ -72,7 +72,8 @@ pub struct Diagnostics {
 pub struct Frame {
     /// Number of the frame (0: the start).
     pub index: u64,
-    /// Nominal time of the frame (s): its number over the frames per second. Each snapshot has the time of its step.
+    /// Time of the step that the frame shows (s), by the first run's clock: drawing never changes the steps, so it is
+    /// the nearest one to the frame's nominal time.
     pub time: f64,
     /// The runs shown, in the scene's order.
     pub runs: Vec<RunFrame>,

@@ -1,7 +1,7 @@
 //! Faces and edges of each kind of element, and the springs made from them.
 
 use super::body::{Dimension, ElementKind, Faces, IndexLists};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 
 /// The kind of an element from the number of its nodes.
 pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
@@ -53,33 +53,53 @@ pub fn faces_of(kind: ElementKind, nodes: &[u32]) -> Vec<Vec<u32>> {
     faces
 }
 
-/// A list of nodes that is the same for every starting corner and either direction.
-fn unordered(nodes: &[u32]) -> Vec<u32> {
-    let mut key = nodes.to_vec();
-    key.sort_unstable();
-    key
-}
-
 /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
 pub fn shared_faces(elements: &IndexLists, kinds: &[ElementKind]) -> Faces {
-    let mut faces = Faces::default();
-    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+    let mut all = IndexLists::default();
+    let mut owner = Vec::new();
     for (element, (nodes, &kind)) in (0u32..).zip(elements.iter().zip(kinds)) {
-        for face in faces_of(kind, nodes) {
-            match known.get(&unordered(&face)) {
-                Some(&at) if faces.outer[at].is_none() && kind != ElementKind::Polygon => {
-                    faces.outer[at] = Some(element);
-                }
-                _ => {
-                    known.insert(unordered(&face), faces.inner.len());
-                    faces.nodes.push(&face);
-                    faces.inner.push(Some(element));
-                    faces.outer.push(None);
-                }
-            }
+        for_each_face(kind, nodes, |face| {
+            all.push(face);
+            owner.push(element);
+        });
+    }
+    let partner = partners(&all, |face| kinds[owner[face] as usize] == ElementKind::Polygon);
+    let mut faces = Faces::default();
+    for (at, face) in all.iter().enumerate() {
+        // The second of two equal faces is only named by the first.
+        if partner[at].is_none_or(|other| other > at) {
+            faces.nodes.push(face);
+            faces.inner.push(Some(owner[at]));
+            faces.outer.push(partner[at].map(|other| owner[other]));
         }
     }
     faces
+}
+
+/// For each face the one other face with the same corners; polygons of the plane, and whatever is shared by more than
+/// two elements in file order, stay single.
+fn partners(faces: &IndexLists, is_single: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
+    // Sorting finds equal faces several times faster than hashing at a million elements.
+    let mut keyed: Vec<([u32; 4], usize)> = Vec::with_capacity(faces.len());
+    for (at, face) in faces.iter().enumerate().filter(|(at, _)| !is_single(*at)) {
+        let mut key = [u32::MAX; 4];
+        key[..face.len()].copy_from_slice(face);
+        key.sort_unstable();
+        keyed.push((key, at));
+    }
+    keyed.sort_unstable();
+    let mut partner = vec![None; faces.len()];
+    let mut at = 0;
+    while at + 1 < keyed.len() {
+        let ((key, first), (next, second)) = (keyed[at], keyed[at + 1]);
+        if key == next {
+            partner[first] = Some(second);
+            partner[second] = Some(first);
+            at += 1;
+        }
+        at += 1;
+    }
+    partner
 }
 
 /// Faces given by hand; each belongs to the first element that holds all its nodes, if there is one.
@@ -103,11 +123,11 @@ pub fn edges_of(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 2]> {
     if kind == ElementKind::Segment {
         return vec![[nodes[0], nodes[1]]];
     }
-    let mut edges = BTreeSet::new();
-    for face in faces_of(kind, nodes) {
-        edges.extend(around(&face).map(ordered));
-    }
-    edges.into_iter().collect()
+    let mut edges = Vec::new();
+    for_each_face(kind, nodes, |face| edges.extend(around(face).map(ordered)));
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// The sides of a polygon: each node with the next.
@@ -144,14 +164,17 @@ pub enum Springs {
 
 /// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
 pub fn springs(topology: Springs, elements: &IndexLists, kinds: &[ElementKind]) -> Vec<[u32; 2]> {
-    let mut pairs = BTreeSet::new();
+    let mut pairs = Vec::new();
     for (nodes, &kind) in elements.iter().zip(kinds) {
         add_springs(topology, kind, nodes, &mut pairs);
     }
-    pairs.into_iter().collect()
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
-fn add_springs(topology: Springs, kind: ElementKind, nodes: &[u32], pairs: &mut BTreeSet<[u32; 2]>) {
+/// Adds the springs of one element, some of them more than once.
+fn add_springs(topology: Springs, kind: ElementKind, nodes: &[u32], pairs: &mut Vec<[u32; 2]>) {
     let every = || (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])));
     if topology == Springs::All {
         pairs.extend(every());

@@ -73,7 +73,7 @@ fn in_the_plane_a_turn_needs_no_axis() {
     let text = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1], side = 2 }}\nrotation = {{ angle = 0.5 }}\n");
     let scene = good(&text);
     let edge = scene.initial.position[1] - scene.initial.position[0];
-    assert!(edge.distance(2.0 * DVec3::new(0.5_f64.cos(), 0.5_f64.sin(), 0.0)) < 1e-15, "{edge}");
+    assert!(edge.distance(2.0 * DVec3::new(libm::cos(0.5), libm::sin(0.5), 0.0)) < 1e-15, "{edge}");
     assert!(scene.initial.position.iter().all(|point| point.z == 0.0));
     assert_eq!(scene.body.kinds, [ElementKind::Polygon]);
 }
@@ -162,4 +162,53 @@ fn files_that_are_no_scenes_are_told_apart() {
     let limits = Limits { file: 10, ..Limits::default() };
     let error = Scene::load(&folder.path().join("cubes.toml"), &limits).unwrap_err();
     assert!(matches!(error, SceneError::TooLong { limit: 10, .. }));
+}
+
+#[test]
+fn a_scene_may_say_everything() {
+    let scene = good(include_str!("explicit.toml"));
+    let start = &scene.initial;
+    assert_eq!(scene.body.len(), 7);
+    assert_eq!(start.position.iter().map(|point| point.y).fold(f64::INFINITY, f64::min), 10.0);
+    // Turned by .1 rad about the mean of the nodes, then moved by 2 m.
+    let edge = start.position[1] - start.position[0];
+    assert!((libm::atan2(edge.y, edge.x) - 0.1).abs() < 1e-14, "{edge}");
+    let mean_x = start.position.iter().map(|point| point.x).sum::<f64>() / 7.0;
+    assert!((mean_x - 3.5 / 7.0 - 2.0).abs() < 1e-14, "{mean_x}");
+    assert_eq!(start.velocity[6], DVec3::new(0.0, -2.0, 0.0));
+    // The lightest node of 0.5 kg sets T for both runs.
+    let cycle = std::f64::consts::TAU * (0.5_f64 / 1e4).sqrt();
+    assert_eq!((scene.runs[0].step, scene.runs[1].step), (1e-3, cycle / 100.0));
+    assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
+    let view = &scene.view;
+    assert_eq!((view.theme, view.columns, view.size), (Theme::Dark, 1, [800, 600]));
+    assert_eq!((view.camera.target, view.camera.distance), (DVec3::new(2.0, 1.0, 0.0), 30.0));
+    assert!((view.side - 0.9).abs() < 0.2, "{}", view.side);
+}
+
+#[test]
+fn a_summary_says_what_a_scene_holds() {
+    let summary = good(&shipped("fig4b.toml")).summary();
+    assert_eq!(
+        summary.to_string(),
+        format!(
+            "  scene     3×3×3 cubes dropped on a floor (test)
+  body      64 nodes, 27 hexahedra, 0.3 × 0.3 × 0.3 m, 64 kg
+  gravity   (0, -9.8, 0) m/s²
+  time      3 s, 181 frames at 60 per second
+  cycle     T = 0.06283 s
+  run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1
+            ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
+  run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
+            ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
+  obstacle  floor at 0 m along (0, 1, 0), e = 0.5, μ = 0.3
+  picture   1280 × 720 px, light, 2 panels in a row, seen from 31° right and 17° up, 2.651 m away, following
+  digest    {}",
+            summary.digest
+        )
+    );
+    let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
+    assert_eq!(json["elements"], serde_json::json!(["6 polygons"]));
+    assert_eq!(json["runs"][1]["name"], "Mass-spring");
+    assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }

@@ -1,6 +1,10 @@
 //! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
 
+mod digest;
 mod good;
+mod mistakes;
+mod robust;
+mod schema;
 
 use localshape::scene::{Limits, Scene, SceneError};
 
@@ -20,6 +24,15 @@ fn good(text: &str) -> Scene {
     match Scene::parse(text, "test.toml", &Limits::default()) {
         Ok(scene) => scene,
         Err(error) => panic!("{error}"),
+    }
+}
+
+/// What is wrong with a text, which must be bad.
+#[track_caller]
+fn bad(text: &str) -> SceneError {
+    match Scene::parse(text, "test.toml", &Limits::default()) {
+        Ok(_) => panic!("this was taken for a good scene:\n{text}"),
+        Err(error) => error,
     }
 }
 

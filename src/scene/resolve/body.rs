@@ -29,85 +29,90 @@ pub(super) fn dimension(file: &BodyFile) -> Option<Dimension> {
     Some(if count == 2 { Dimension::Plane } else { Dimension::Space })
 }
 
-/// The body, or `None` after reporting every mistake in it.
-pub(super) fn resolve(file: &BodyFile, runs: usize, limits: &Limits, report: &mut Report<'_>) -> Option<ResolvedBody> {
+/// The body, or `None` after reporting every mistake in it. `flawed`: keys with mistakes have been left out.
+pub(super) fn resolve(
+    file: &BodyFile,
+    flawed: bool,
+    runs: usize,
+    limits: &Limits,
+    report: &mut Report<'_>,
+) -> Option<ResolvedBody> {
     let before = report.total();
     let dimension = dimension(file)?;
-    let (rest, elements) = match &file.lattice {
-        Some(typed) => {
+    let at = |key| [Way::Key("body"), Way::Key(key)];
+    let (rest, elements) = match (&file.lattice, &file.nodes) {
+        (Some(typed), _) => {
             let demand = Demand::of_lattice(&typed.cells, runs);
             if let Some((message, help)) = demand.beyond(limits) {
-                report.at(&[Way::Key("body"), Way::Key("lattice"), Way::Key("cells")], message, help);
+                report.at(&[at("lattice")[0], at("lattice")[1], Way::Key("cells")], message, help);
                 check_start(file, dimension, report);
                 return None;
             }
             (lattice::nodes(&typed.cells, typed.side), lattice::elements(&typed.cells))
         }
-        None => {
-            let nodes = points(file.nodes.as_deref()?, "nodes", dimension, report)?;
-            let lists = file.elements.as_deref()?;
-            elements::check(lists, file.springs.as_deref(), file.faces.as_deref(), &nodes, dimension, report);
+        (None, Some(typed)) => {
+            let lists = file.elements.as_deref().unwrap_or_default();
+            let corners = lists.iter().map(|list| list.len() as u128).sum();
+            let demand =
+                Demand { nodes: typed.len() as u128, elements: lists.len() as u128, corners, runs: runs as u128 };
+            if let Some((message, help)) = demand.beyond(limits) {
+                report.at_key(&at("nodes"), message, help);
+                return None;
+            }
+            let nodes = points(typed, "nodes", dimension, report);
+            let body = elements::Listed { dimension, nodes: &nodes, flawed: flawed || report.total() > before };
+            body.check(lists, file.springs.as_deref(), file.faces.as_deref(), report);
             (nodes, lists.iter().map(Vec::as_slice).collect())
         }
+        (None, None) => return None,
     };
-    let masses = masses(file, rest.len(), report);
-    let start = start(file, &rest, dimension, report);
-    if report.total() > before {
+    let mass = masses(file, rest.len(), report);
+    let initial = start(file, &rest, dimension, report);
+    if report.total() > before || elements.is_empty() {
         return None;
     }
     let faces: Option<IndexLists> = file.faces.as_ref().map(|faces| faces.iter().map(Vec::as_slice).collect());
-    let body = Body::new(dimension, rest, masses?, elements, faces.as_ref());
+    let body = Body::new(dimension, rest, mass, elements, faces.as_ref());
     let side = file.lattice.as_ref().map_or_else(|| elements::mean_edge(&body), |lattice| lattice.side);
-    Some(ResolvedBody { body, initial: start?, springs: file.springs.clone(), side })
+    Some(ResolvedBody { body, initial, springs: file.springs.clone(), side })
 }
 
-/// Listed points as vectors, `None` after reporting those with another number of coordinates.
-fn points(typed: &[Coordinates], key: &str, dimension: Dimension, report: &mut Report<'_>) -> Option<Vec<DVec3>> {
+/// Listed points as vectors, after reporting those with another number of coordinates.
+fn points(typed: &[Coordinates], key: &str, dimension: Dimension, report: &mut Report<'_>) -> Vec<DVec3> {
     let mut points = Vec::with_capacity(typed.len());
     for (at, coordinates) in typed.iter().enumerate() {
         let path = [Way::Key("body"), Way::Key(key), Way::Index(at)];
-        points.extend(vector(coordinates, dimension, &path, report));
+        points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
     }
-    (points.len() == typed.len()).then_some(points)
+    points
 }
 
-/// Reports a list that has not one entry for each node, and a list that stands beside a value for all nodes.
-fn check_list(key: &str, length: usize, nodes: usize, for_all: Option<&str>, report: &mut Report<'_>) {
-    let path = [Way::Key("body"), Way::Key(key)];
+/// Reports a list that has not one entry for each node.
+fn check_count(key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
     if length != nodes {
+        let entries = if length == 1 { "entry" } else { "entries" };
         let message =
-            format!("`body.{key}` has {length} entries, and the body has {nodes} nodes; expected one for each");
-        report.at_key(&path, message, None);
-    }
-    if let Some(other) = for_all {
-        let message = format!("`body` has both `{other}` for all nodes and `{key}` for each; keep one");
-        report.at_key(&path, message, None);
+            format!("`body.{key}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
+        report.at_key(&[Way::Key("body"), Way::Key(key)], message, None);
     }
 }
 
-fn masses(file: &BodyFile, nodes: usize, report: &mut Report<'_>) -> Option<Vec<f64>> {
-    let Some(listed) = &file.masses else { return Some(vec![file.mass.unwrap_or(1.0); nodes]) };
-    check_list("masses", listed.len(), nodes, file.mass.map(|_| "mass"), report);
-    (listed.len() == nodes).then(|| listed.iter().map(|&Positive(mass)| mass).collect())
+fn masses(file: &BodyFile, nodes: usize, report: &mut Report<'_>) -> Vec<f64> {
+    let Some(listed) = &file.masses else { return vec![file.mass.unwrap_or(1.0); nodes] };
+    check_count("masses", listed.len(), nodes, report);
+    listed.iter().map(|&Positive(mass)| mass).collect()
 }
 
 /// Where and how fast the body starts.
-fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Report<'_>) -> Option<State> {
+fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Report<'_>) -> State {
     let (turn, offset, velocity) = check_start(file, dimension, report);
-    let mut position = match &file.positions {
-        Some(listed) => {
-            check_list("positions", listed.len(), rest.len(), None, report);
-            points(listed, "positions", dimension, report)?
-        }
-        None => rest.to_vec(),
+    let mut listed = |typed: &Option<Vec<Coordinates>>, key| {
+        let typed = typed.as_ref()?;
+        check_count(key, typed.len(), rest.len(), report);
+        Some(points(typed, key, dimension, report))
     };
-    let velocity = match &file.velocities {
-        Some(listed) => {
-            check_list("velocities", listed.len(), rest.len(), file.velocity.as_ref().map(|_| "velocity"), report);
-            points(listed, "velocities", dimension, report)?
-        }
-        None => vec![velocity; position.len()],
-    };
+    let mut position = listed(&file.positions, "positions").unwrap_or_else(|| rest.to_vec());
+    let velocity = listed(&file.velocities, "velocities").unwrap_or_else(|| vec![velocity; rest.len()]);
     if let Some((axis, angle)) = turn {
         let centre = position.iter().sum::<DVec3>() / position.len() as f64;
         position.iter_mut().for_each(|point| *point = centre + turned(*point - centre, axis, angle));
@@ -118,7 +123,7 @@ fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Rep
         // In this order the lowest node stands at the very height that was typed.
         position.iter_mut().for_each(|point| point.y = height + (point.y - lowest));
     }
-    Some(State { position, velocity })
+    State { position, velocity }
 }
 
 /// A turn (unit axis, angle), a shift and a velocity, each with its mistakes reported and then left out.

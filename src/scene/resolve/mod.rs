@@ -10,13 +10,15 @@ mod view;
 use super::Scene;
 use super::file::{BodyFile, Coordinates, ObstacleFile, RunFile, TimeFile, ViewFile};
 use super::limits::Limits;
-use super::report::{Report, Way};
+use super::report::{Report, Way, written};
+use super::structure::Checked;
 use super::words::count;
 use crate::sim::body::Dimension;
 use crate::sim::contact::{Obstacle, Shape};
 use glam::DVec3;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The parts of a scene file without those that have a mistake in their structure.
@@ -26,6 +28,8 @@ pub(super) struct Parts {
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
+    /// Keys of the top level below which something is left out because of mistakes.
+    flawed: BTreeSet<String>,
     runs: Vec<Option<RunFile>>,
     obstacles: Vec<Option<ObstacleFile>>,
     view: Option<ViewFile>,
@@ -33,12 +37,20 @@ pub(super) struct Parts {
 
 impl Parts {
     /// The sound parts of a checked file.
-    pub(super) fn new(file: &Map<String, Json>, report: &mut Report<'_>) -> Self {
+    pub(super) fn new(checked: &Checked, report: &mut Report<'_>) -> Self {
+        let file = &checked.sound;
+        let mut body: Option<BodyFile> = part(file, "body", report);
+        // Beside a lattice lists for each node are mistakes, which have been said.
+        if let Some(BodyFile { lattice: Some(lattice), mass, rotation, offset, lowest, velocity, .. }) = body {
+            let lattice = Some(lattice);
+            body = Some(BodyFile { lattice, mass, rotation, offset, lowest, velocity, ..BodyFile::default() });
+        }
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
             time: part(file, "time", report),
-            body: part(file, "body", report),
+            body,
+            flawed: checked.flawed.clone(),
             runs: several(file, "run", report),
             obstacles: several(file, "obstacle", report),
             view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
@@ -59,8 +71,16 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
     if json.is_null() {
         return None;
     }
-    // The schema has found it sound; should the types know better, their words are better than none.
-    T::deserialize(json).map_err(|error| report.at(path, error.to_string(), None)).ok()
+    let known = report.total();
+    let read = T::deserialize(json);
+    // Where mistakes were found a needed key may be left out. Else the schema has found it sound, and should the
+    // types know better, their words are better than none.
+    read.map_err(|error| {
+        if known == 0 {
+            report.at(path, error.to_string(), None)
+        }
+    })
+    .ok()
 }
 
 /// The most frames a scene may have: at 60 a second nearly two days of film.
@@ -74,7 +94,8 @@ pub(super) fn resolve(
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<Scene> {
-    let body = parts.body.as_ref().and_then(|file| body::resolve(file, parts.runs.len(), limits, report));
+    let read_body = |file| body::resolve(file, parts.flawed.contains("body"), parts.runs.len(), limits, report);
+    let body = parts.body.as_ref().and_then(read_body);
     let dimension = match &body {
         Some(body) => Some(body.body.dimension),
         None => parts.body.as_ref().and_then(body::dimension),
@@ -84,7 +105,7 @@ pub(super) fn resolve(
         _ => Some(DVec3::ZERO),
     };
     let obstacles = obstacles(&parts.obstacles, dimension, report);
-    if let Some(time) = &parts.time {
+    if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);
@@ -160,8 +181,7 @@ fn vector(typed: &Coordinates, dimension: Dimension, path: &[Way<'_>], report: &
                 Dimension::Space => "3, because the body is in space",
                 Dimension::Plane => "2, because the body is in the plane",
             };
-            let message =
-                format!("`{}` has {} coordinates; expected {expected}", super::report::written(path), other.len());
+            let message = format!("`{}` has {} coordinates; expected {expected}", written(path), other.len());
             report.at(path, message, None);
             None
         }
@@ -176,6 +196,6 @@ fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option
     if largest > 0.0 && unit.is_finite() {
         return Some(unit);
     }
-    report.at(path, format!("`{}` is zero, so it has no direction", super::report::written(path)), None);
+    report.at(path, format!("`{}` is zero, so it has no direction", written(path)), None);
     None
 }

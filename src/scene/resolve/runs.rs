@@ -6,7 +6,7 @@ use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::report::{Report, Way};
 use crate::scene::words;
 use crate::sim::model::ElasticModel;
-use std::f64::consts::TAU;
+use crate::sim::world::cycle;
 use std::sync::Arc;
 
 /// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
@@ -31,7 +31,7 @@ pub(super) fn resolve(
         .collect();
     // One missing model would make another T, and with it mistakes that are none.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
-    let cycle = cycle(&body.body.mass, models.iter().map(|model| model.stiffness()))?;
+    let cycle = models.iter().map(|model| cycle(&body.body, model.stiffness())).reduce(f64::min)?;
     let mut runs = Vec::with_capacity(models.len());
     for (at, (run, model)) in typed.iter().zip(models).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
@@ -43,7 +43,7 @@ pub(super) fn resolve(
         let step = seconds(step, cycle);
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
-                format!("the time step comes out as {step:e} s with T = {cycle:e} s, which cannot be counted");
+                format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
             report.at(path, message, "make it larger".to_owned());
             return None;
         }
@@ -51,12 +51,6 @@ pub(super) fn resolve(
         runs.push(Run { name: run.name.clone(), model, integrator, step });
     }
     Some(runs)
-}
-
-/// The smallest cycle T = 2π√(m/k) of a node over all runs (s).
-pub(in crate::scene) fn cycle(masses: &[f64], stiffnesses: impl Iterator<Item = f64>) -> Option<f64> {
-    let lightest = masses.iter().copied().reduce(f64::min)?;
-    stiffnesses.map(|stiffness| TAU * (lightest / stiffness).sqrt()).reduce(f64::min)
 }
 
 fn seconds(step: &StepFile, cycle: f64) -> f64 {
@@ -72,9 +66,10 @@ fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
         let Some(run) = run else { continue };
         let path = [Way::Key("run"), Way::Index(at), Way::Key("name")];
         let quoted = words::quoted(&run.name);
-        if run.name.trim() != run.name || run.name.contains(['/', '\\']) {
+        let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
+        if run.name.trim() != run.name || run.name.contains(unfit) {
             let message = format!("the name {quoted} cannot be used in files");
-            report.at(&path, message, "no slash, and no space at either end".to_owned());
+            report.at(&path, message, "no slash, no control character, and no space at either end".to_owned());
         }
         let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
         if let Some(first) = typed[..at].iter().position(same) {

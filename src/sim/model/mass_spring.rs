@@ -16,6 +16,7 @@ use std::sync::Arc;
 /// What a scene types for this model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
 pub struct Parameters {
     /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m).
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -1,10 +1,15 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 
+mod expect;
+mod keys;
+
 use super::report::{Report, Way, written};
 use super::schema::{choices, variants};
 use super::step::FractionOfCycle;
 use super::words::{self, list, nearest, quoted};
+use expect::{expected, first_sentence, range};
 use serde_json::{Map, Value as Json};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -12,36 +17,49 @@ use toml::de::{DeTable, DeValue};
 /// The largest magnitude of any number (SI). Beyond it squares and volumes leave the range of double precision.
 const LARGEST: f64 = 1e30;
 
-/// Checks a whole file. The result is the file as JSON, without whatever has a mistake in it: a key of the top
-/// level or an entry of a top-level array is there as a whole, or null, so that the sound parts can be looked at
-/// further.
-pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Map<String, Json> {
-    let mut walk = Walk { report, path: Vec::new() };
+/// What is left of a file when whatever has a mistake in it is taken out.
+#[derive(Debug)]
+pub(super) struct Checked {
+    /// The file as JSON. Tables of the top level lack the keys with mistakes; an entry of a top-level array, or
+    /// another value, that has one is null.
+    pub(super) sound: Map<String, Json>,
+    /// Keys of the top level that had mistakes in or below them.
+    pub(super) flawed: BTreeSet<String>,
+}
+
+/// Checks a whole file.
+pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Checked {
+    let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
-    let mut sound = Map::new();
+    let (mut sound, mut flawed) = (Map::new(), BTreeSet::new());
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
+        let before = walk.report.total();
         walk.path.push(Way::Key(name));
-        let part = match schema["properties"].get(name) {
-            None => {
+        let part = match (schema["properties"].get(name), value.get_ref()) {
+            (None, _) => {
                 walk.unknown_key(schema, name, key.span());
                 Json::Null
             }
-            Some(inner) => match value.get_ref().as_array() {
-                Some(items) if inner["type"] == "array" => {
-                    walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                    Json::Array(walk.entries(inner, items))
-                }
-                _ => walk.guarded(inner, value),
-            },
+            (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
+                walk.lengths(inner, "entries", "entry", items.len(), value.span());
+                Json::Array(walk.entries(inner, items))
+            }
+            (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => walk.table(inner, table, value.span()),
+            (Some(inner), _) => walk.guarded(inner, value),
         };
         walk.path.pop();
-        sound.insert(name.into(), part);
+        if walk.report.total() > before {
+            flawed.insert(name.to_owned());
+        }
+        sound.insert(name.to_owned(), part);
     }
-    sound
+    Checked { sound, flawed }
 }
 
 struct Walk<'r, 't, 'p> {
+    /// That of the whole file.
+    schema: &'r Json,
     report: &'r mut Report<'t>,
     path: Vec<Way<'p>>,
 }
@@ -53,6 +71,12 @@ impl<'p> Walk<'_, '_, 'p> {
 
     fn here(&self) -> String {
         written(&self.path)
+    }
+
+    /// What a key means, in its first sentence; nothing for an entry of an array.
+    fn meaning(&self, schema: &Json) -> Option<String> {
+        let keyed = matches!(self.path.last(), Some(Way::Key(_)));
+        schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
     }
 
     /// A value as JSON, or null if there is any mistake in it.
@@ -104,7 +128,7 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 
     fn wrong_type(&mut self, schema: &Json, value: &Spanned<DeValue<'_>>) -> Json {
-        let mut help = schema.get("description").and_then(Json::as_str).map(String::from);
+        let mut help = self.meaning(schema);
         if let [Way::Key(key)] = self.path[..] {
             match (schema["type"].as_str(), value.get_ref()) {
                 (Some("array"), DeValue::Table(_)) => {
@@ -163,17 +187,23 @@ impl<'p> Walk<'_, '_, 'p> {
             && above.is_none_or(|above| number > above)
             && below.is_none_or(|below| number < below);
         if number.is_finite() && inside && number.abs() <= LARGEST {
-            // Whole numbers are within the 32 bits of their range here.
-            return if whole { Json::from(number as i64) } else { Json::from(number) };
+            match value.get_ref().as_integer().filter(|_| whole).map(words::to_json) {
+                None => return Json::from(number),
+                Some(Some(exact)) => return exact,
+                Some(None) => {}
+            }
         }
-        let expected = if !number.is_finite() && !text.starts_with(|c: char| c.is_ascii_digit()) {
+        let expected = if whole && inside {
+            "a whole number of 64 bits".into()
+        } else if !number.is_finite() && !text.starts_with(|c: char| c.is_ascii_digit()) {
             "a finite number".into()
         } else if inside {
             format!("a magnitude up to {LARGEST:e}")
         } else {
             range(if whole { "a whole number" } else { "a number" }, least, most, above, below)
         };
-        let help = schema.get("description").and_then(Json::as_str).map(String::from);
+        let help = self.meaning(schema);
+        let text = words::shortened(&text);
         self.mistake(value.span(), format!("`{}` is {text}; expected {expected}", self.here()), help);
         Json::Null
     }
@@ -209,7 +239,7 @@ impl<'p> Walk<'_, '_, 'p> {
         match given.get_ref().as_str().and_then(|name| kinds.iter().find(|(known, _)| *known == name)) {
             Some((_, branch)) => self.table(branch, table, span),
             None => {
-                let found = words::found(given.get_ref());
+                let found = given.get_ref().as_str().map_or_else(|| words::found(given.get_ref()), quoted);
                 let message = format!("`{}.{tag}` is {found}; expected {}", self.here(), list(&names, "or", quoted));
                 let near = given.get_ref().as_str().and_then(|name| nearest(name, &names));
                 self.mistake(given.span(), message, near.map(|name| format!("did you mean {}?", quoted(name))));
@@ -227,100 +257,16 @@ impl<'p> Walk<'_, '_, 'p> {
             match schema["properties"].get(name) {
                 None => self.unknown_key(schema, name, key.span()),
                 Some(inner) => {
-                    json.insert(name.into(), self.value(inner, value));
+                    let inner = self.guarded(inner, value);
+                    if !inner.is_null() {
+                        json.insert(name.into(), inner);
+                    }
                 }
             }
             self.path.pop();
         }
         Json::Object(json)
     }
-
-    /// Which keys a table needs, which need each other and which exclude each other.
-    fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
-        let has = |name: &str| table.contains_key(name);
-        let within = match self.path.as_slice() {
-            [] => String::new(),
-            path => format!("`{}` has ", written(path)),
-        };
-        for name in strings(schema.get("required")).filter(|name| !has(name)) {
-            let property = &schema["properties"][name];
-            let missing = match (self.path.is_empty(), property["type"].as_str()) {
-                (true, Some("object")) => format!("there is no table [{name}]"),
-                (true, Some("array")) => format!("there is no table [[{name}]]"),
-                (true, _) => format!("there is no `{name}`"),
-                (false, _) => format!("{within}no `{name}`"),
-            };
-            let help = property["description"].as_str().map(|text| format!("`{name}`: {text}"));
-            self.mistake(span.clone(), missing, help);
-        }
-        let sets: Vec<Vec<&str>> = match schema.get("oneOf").and_then(Json::as_array) {
-            Some(branches) => branches.iter().map(|branch| strings(branch.get("required")).collect()).collect(),
-            None => Vec::new(),
-        };
-        let first_key = |set: &Vec<&str>| set.iter().find_map(|name| table.get_key_value(*name));
-        let begun: Vec<_> = sets.iter().filter(|set| first_key(set).is_some()).collect();
-        let name_set = |set: &Vec<&str>| list(set, "and", |name| format!("`{name}`"));
-        match begun.as_slice() {
-            [] if !sets.is_empty() => {
-                let all: Vec<_> = sets.iter().map(name_set).collect();
-                self.mistake(
-                    span,
-                    format!("{within}neither {}; one is needed", list(&all, "nor", |set| set.into())),
-                    None,
-                );
-            }
-            [] => {}
-            [only] => {
-                for name in only.iter().filter(|name| !has(name)) {
-                    let given: Vec<_> = only.iter().copied().filter(|name| has(name)).collect();
-                    let message = format!("{within}{} but no `{name}`", name_set(&given));
-                    let help = schema["properties"][name]["description"].as_str();
-                    self.mistake(span.clone(), message, help.map(|text| format!("`{name}`: {text}")));
-                }
-            }
-            [one, .., other] => {
-                if let (Some((first, _)), Some((second, _))) = (first_key(one), first_key(other)) {
-                    let message = format!("{within}both `{}` and `{}`; keep one", first.get_ref(), second.get_ref());
-                    let later = if first.span().start > second.span().start { first } else { second };
-                    self.mistake(later.span(), message, None);
-                }
-            }
-        }
-        self.dependencies(schema, table, &sets);
-    }
-
-    fn dependencies(&mut self, schema: &Json, table: &DeTable<'_>, sets: &[Vec<&str>]) {
-        let Some(dependent) = schema.get("dependentRequired").and_then(Json::as_object) else { return };
-        for (name, needed) in dependent {
-            let Some((key, _)) = table.get_key_value(name.as_str()) else { continue };
-            for other in strings(Some(needed)).filter(|other| !table.contains_key(*other)) {
-                // An alternative that is begun but not complete has been said already.
-                if !sets.iter().any(|set| set.contains(&name.as_str()) && set.contains(&other)) {
-                    let message = format!("`{}.{name}` needs `{other}`", self.here());
-                    self.mistake(key.span(), message, Some(format!("list `{other}`, or take `{name}` out")));
-                }
-            }
-        }
-    }
-
-    fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>) {
-        let known: Vec<&str> =
-            schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
-        let place = match &self.path[..] {
-            [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
-            _ => String::new(),
-        };
-        let help = match nearest(name, &known) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known here: {}", known.join(", ")),
-        };
-        self.mistake(span, format!("unknown key `{}`{place}", words::shortened(name)), Some(help));
-    }
-}
-
-/// The strings in a JSON array.
-fn strings(list: Option<&Json>) -> impl Iterator<Item = &str> {
-    list.and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str)
 }
 
 /// Whether a value is of the type that a schema without alternatives asks for.
@@ -334,36 +280,5 @@ fn fits(schema: &Json, value: &DeValue<'_>) -> bool {
         Some("array") => value.is_array(),
         Some("object") => value.is_table(),
         _ => true,
-    }
-}
-
-/// The types that a schema allows, in words.
-fn expected(schema: &Json) -> String {
-    if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        let names: Vec<_> = branches.iter().map(expected).collect();
-        return list(&names, "or", |name| name.into());
-    }
-    if let Some(choices) = choices(schema) {
-        return list(&choices, "or", quoted);
-    }
-    match schema.get("type").and_then(Json::as_str) {
-        Some("number") => "a number",
-        Some("integer") => "a whole number",
-        Some("string") => "a string",
-        Some("boolean") => "true or false",
-        Some("array") => "an array",
-        _ => "a table",
-    }
-    .into()
-}
-
-fn range(noun: &str, least: Option<f64>, most: Option<f64>, above: Option<f64>, below: Option<f64>) -> String {
-    match (least, most, above, below) {
-        (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
-        (Some(least), ..) => format!("{noun} of at least {least}"),
-        (None, _, Some(above), Some(below)) => format!("{noun} between {above} and {below}"),
-        (None, _, Some(above), None) => format!("{noun} greater than {above}"),
-        (None, Some(most), ..) => format!("{noun} of at most {most}"),
-        _ => noun.into(),
     }
 }

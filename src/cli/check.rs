@@ -1,0 +1,60 @@
+//! `check`: what scenes hold, or every mistake in them.
+
+use super::console::{print, print_json};
+use super::failure::{Failure, Status, complain, with_causes};
+use super::options::SceneOptions;
+use super::scenes::{status_of, worse};
+use clap::Args;
+use serde_json::{Value, json};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape check scenes/fig4b.toml
+  localshape check scenes/*.toml --quiet && echo all right";
+
+/// Read scenes and print what they hold, or every mistake found
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Check {
+    #[command(flatten)]
+    scenes: SceneOptions,
+
+    /// Only mistakes
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Print what was found as one JSON document
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+impl Check {
+    pub(super) fn run(self) -> Result<Status, Failure> {
+        let mut failed = None;
+        let mut documents = Vec::new();
+        for (number, path) in self.scenes.scenes.iter().enumerate() {
+            let file = path.to_string_lossy();
+            match self.scenes.load(path) {
+                Ok(scene) if self.json => documents.push(json!({ "file": file, "ok": true, "scene": scene.summary() })),
+                Ok(_) if self.quiet => {}
+                Ok(scene) => {
+                    let blank = if number > 0 { "\n" } else { "" };
+                    print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
+                }
+                Err(error) => {
+                    failed = Some(worse(failed, status_of(&error)));
+                    if self.json {
+                        let (message, mistakes) = (with_causes(&error), error.mistakes());
+                        documents.push(json!({ "file": file, "ok": false, "error": message, "mistakes": mistakes }));
+                    } else {
+                        complain(&with_causes(&error));
+                    }
+                }
+            }
+        }
+        if self.json {
+            print_json(&json!({ "scenes": Value::from(documents) }))?;
+        }
+        Ok(failed.unwrap_or(Status::Done))
+    }
+}

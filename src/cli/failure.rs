@@ -1,0 +1,89 @@
+//! Exit statuses, and how a failure is told.
+
+use crate::output::OutputError;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+/// How the program ends. The numbers are part of its interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Status {
+    Done = 0,
+    Usage = 2,
+    #[cfg(feature = "render")]
+    Adapter = 3,
+    Files = 4,
+    Interrupted = 130,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status as u8)
+    }
+}
+
+/// Why a command ended early.
+#[derive(Debug)]
+pub(super) struct Failure {
+    status: Status,
+    /// What to tell; `None` if all is told already.
+    message: Option<String>,
+}
+
+impl Failure {
+    /// Wrong usage, or a wrong scene.
+    pub(super) fn usage(message: impl Into<String>) -> Self {
+        Self { status: Status::Usage, message: Some(message.into()) }
+    }
+
+    /// Nothing to draw with.
+    #[cfg(feature = "render")]
+    pub(super) fn adapter(error: &dyn Error) -> Self {
+        Self { status: Status::Adapter, message: Some(with_causes(error)) }
+    }
+
+    /// Reading or writing failed.
+    pub(super) fn files(message: impl Into<String>) -> Self {
+        Self { status: Status::Files, message: Some(message.into()) }
+    }
+
+    /// An end without a word.
+    pub(super) fn silent(status: Status) -> Self {
+        Self { status, message: None }
+    }
+
+    /// Tells the user, and returns the status to end with.
+    pub(super) fn report(self) -> Status {
+        if let Some(message) = &self.message {
+            complain(message);
+        }
+        self.status
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        let status = match &error {
+            OutputError::Occupied { .. } => Status::Usage,
+            OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
+        };
+        Self { status, message: Some(with_causes(&error)) }
+    }
+}
+
+/// An error and its causes on one line.
+pub(super) fn with_causes(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        write!(text, ": {error}").expect("a string takes all");
+        cause = error.source();
+    }
+    text
+}
+
+/// Tells of an error on standard error. Nobody is left to be told if that fails.
+pub(super) fn complain(message: &str) {
+    let _ = writeln!(std::io::stderr(), "error: {message}");
+}

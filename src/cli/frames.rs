@@ -1,0 +1,116 @@
+//! `--frames`: which frames are wanted.
+
+use std::str::FromStr;
+
+/// Frames as typed: `5`, `0-119`, every third of them as `0-119x3`, or several of these as `5,9,40-60`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct FrameRanges(Vec<Span>);
+
+/// From `first` to `last`, ends included, in steps of `stride` ≥ 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Span {
+    first: u64,
+    last: u64,
+    stride: u64,
+}
+
+/// The most frames of one command: more come from a slip of the keyboard, and their list alone would take a while.
+const MOST_FRAMES: u64 = 10_000_000;
+
+impl FrameRanges {
+    /// All frames from 0 to `last`.
+    pub(super) fn all(last: u64) -> Self {
+        Self(vec![Span { first: 0, last, stride: 1 }])
+    }
+
+    /// The frames in rising order, each once, of a scene that ends with frame `last`.
+    pub(super) fn select(&self, last: u64) -> Result<Vec<u64>, String> {
+        if let Some(beyond) = self.0.iter().map(|span| span.last).find(|&frame| frame > last) {
+            return Err(format!("there is no frame {beyond}, the last one is {last}"));
+        }
+        let count = |span: &Span| (span.last - span.first) / span.stride;
+        let count = self.0.iter().map(count).fold(self.0.len() as u64, u64::saturating_add);
+        if count > MOST_FRAMES {
+            return Err(format!("{count} frames are too many; one command makes {MOST_FRAMES} at most"));
+        }
+        let numbers =
+            |span: &Span| (span.first..=span.last).step_by(usize::try_from(span.stride).unwrap_or(usize::MAX));
+        let mut frames: Vec<u64> = self.0.iter().flat_map(numbers).collect();
+        frames.sort_unstable();
+        frames.dedup();
+        Ok(frames)
+    }
+}
+
+impl FromStr for FrameRanges {
+    type Err = String;
+
+    fn from_str(typed: &str) -> Result<Self, String> {
+        typed.split(',').map(|part| span(part.trim())).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+fn span(part: &str) -> Result<Span, String> {
+    let number = |digits: &str| -> Result<u64, String> {
+        digits
+            .trim()
+            .parse()
+            .map_err(|_| format!("`{part}` is no frame and no range such as 0-119, 0-119x3 or 5,9,40-60"))
+    };
+    let Some((first, rest)) = part.split_once('-') else {
+        let frame = number(part)?;
+        return Ok(Span { first: frame, last: frame, stride: 1 });
+    };
+    let (last, stride) = match rest.split_once(['x', '×']) {
+        Some((last, stride)) => (last, number(stride)?),
+        None => (rest, 1),
+    };
+    let span = Span { first: number(first)?, last: number(last)?, stride };
+    if span.stride == 0 {
+        return Err(format!("`{part}` would take every 0th frame; the number after x is 1 or more"));
+    }
+    if span.first > span.last {
+        return Err(format!("`{part}` runs backwards; did you mean {}-{}?", span.last, span.first));
+    }
+    Ok(span)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frames(typed: &str) -> Vec<u64> {
+        typed.parse::<FrameRanges>().unwrap().select(180).unwrap()
+    }
+
+    #[test]
+    fn ends_are_included() {
+        assert_eq!(frames("0-3"), [0, 1, 2, 3]);
+        assert_eq!(frames("0-9x3"), [0, 3, 6, 9]);
+        assert_eq!(frames("1-9x3"), [1, 4, 7]);
+        assert_eq!(frames("9, 5 ,7-9"), [5, 7, 8, 9]);
+        assert_eq!(frames("180"), [180]);
+    }
+
+    #[test]
+    fn mistakes_are_told() {
+        for (typed, told) in [
+            ("", "`` is no frame"),
+            ("a", "`a` is no frame"),
+            ("1,,2", "`` is no frame"),
+            ("-3", "`-3` is no frame"),
+            ("3-", "`3-` is no frame"),
+            ("0-9x", "`0-9x` is no frame"),
+            ("1.5", "`1.5` is no frame"),
+            ("99999999999999999999", "is no frame"),
+            ("9-0", "did you mean 0-9?"),
+            ("0-9x0", "every 0th frame"),
+        ] {
+            let error = typed.parse::<FrameRanges>().unwrap_err();
+            assert!(error.contains(told), "{typed}: {error}");
+        }
+        let select = |typed: &str, last| typed.parse::<FrameRanges>().unwrap().select(last).unwrap_err();
+        assert_eq!(select("0-9,170-181", 180), "there is no frame 181, the last one is 180");
+        assert!(select("0-18446744073709551615", u64::MAX).contains("too many"));
+    }
+}

@@ -1,0 +1,102 @@
+//! The command line: one file per command, texts and exit statuses, no physics.
+//!
+//! It is part of the library so that tests and other programs can call it. Exit statuses: 0 done; 1 a check found a
+//! difference; 2 wrong usage or a wrong scene; 3 no usable graphics adapter; 4 reading or writing failed;
+//! 130 interrupted.
+
+mod check;
+mod completions;
+mod console;
+#[cfg(feature = "render")]
+mod driver;
+mod failure;
+mod frames;
+mod info;
+mod interrupt;
+mod options;
+mod record;
+#[cfg(feature = "render")]
+mod render;
+mod report;
+mod scenes;
+mod schema;
+mod simulate;
+
+use clap::{Parser, Subcommand};
+use failure::{Failure, Status};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+const STATUSES: &str = "\
+Exit status:
+    0  done (a run that diverges is a result and recorded as one)
+    1  a check found a difference
+    2  wrong usage, or a wrong scene file
+    3  no usable graphics adapter
+    4  reading or writing failed
+  130  interrupted; what was made until then is whole";
+
+#[cfg(not(feature = "render"))]
+const EXAMPLES: &str = "\
+Examples:
+  localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
+  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+
+This program was built without the feature `render`: it draws no pictures.";
+
+#[cfg(feature = "render")]
+const EXAMPLES: &str = "\
+Examples:
+  localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
+  localshape simulate scenes/fig4b.toml        the same without pictures
+  localshape check scenes/*.toml               what scenes hold, or every mistake in them";
+
+/// Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models
+#[derive(Debug, Parser)]
+#[command(name = "localshape", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    #[cfg(feature = "render")]
+    Render(render::Render),
+    Simulate(simulate::Simulate),
+    Check(check::Check),
+    Info(info::Info),
+    Schema(schema::Schema),
+    Completions(completions::Completions),
+}
+
+/// Runs the program with the words of a command line, the program's name first, and returns what to exit with.
+///
+/// Results go to standard output, progress and errors to standard error. Interrupts are listened for from the first
+/// scene that is run.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let words: Vec<_> = words.into_iter().collect();
+    let status = match Cli::try_parse_from(&words) {
+        Ok(cli) => cli.command.run(&words).unwrap_or_else(Failure::report),
+        // Also how help and version are asked for. Nobody is left to be told if printing fails.
+        Err(error) => {
+            let _ = error.print();
+            if error.use_stderr() { Status::Usage } else { Status::Done }
+        }
+    };
+    status.into()
+}
+
+impl Command {
+    fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+        match self {
+            #[cfg(feature = "render")]
+            Self::Render(render) => render.run(words),
+            Self::Simulate(simulate) => simulate.run(words),
+            Self::Check(check) => check.run(),
+            Self::Info(info) => info.run(),
+            Self::Schema(schema) => schema.run(),
+            Self::Completions(completions) => completions.run(),
+        }
+    }
+}

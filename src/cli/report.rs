@@ -1,0 +1,91 @@
+//! What is said after a scene was run.
+
+use super::console::{columns, significant};
+use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A block of text: what was made and where, how each run fares at the end, and how long it took.
+pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String {
+    let mut text = format!("{}\n{}\n", summary.scene.title, made(summary, folder));
+    let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);
+    let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().map(row)).collect();
+    text += &columns(&rows, [false, false, true, true]);
+    text += &times(summary);
+    if timings {
+        text += &all_times(summary);
+    }
+    text
+}
+
+fn made(summary: &Summary, folder: &Path) -> String {
+    let frames = &summary.frames;
+    let made = frames.written.unwrap_or(frames.recorded);
+    let plural = if made == 1 { "" } else { "s" };
+    let mut text = match summary.outcome {
+        Outcome::Interrupted => format!("interrupted after {made} of {} frames", frames.asked),
+        _ => format!("{made} frame{plural}"),
+    };
+    match frames.size {
+        Some([width, height]) => write!(text, " of {width}×{height}"),
+        None => write!(text, " simulated"),
+    }
+    .expect("a string takes all");
+    text + &format!(" in {}", folder.display())
+}
+
+fn row(run: &RunSummary) -> [String; 4] {
+    let status = match run.status {
+        RunStatus::Ok => "ok".to_owned(),
+        RunStatus::Diverged { time, step, element } => {
+            let element = element.map(|element| format!(", element {element}")).unwrap_or_default();
+            format!("diverged at {} s (step {step}{element})", significant(time))
+        }
+    };
+    let (turned_over, shape_error) = match &run.last {
+        Some(last) => (last.turned_over.to_string(), format!("{} m", significant(last.shape_error))),
+        None => Default::default(),
+    };
+    [run.name.clone(), status, turned_over, shape_error]
+}
+
+fn times(summary: &Summary) -> String {
+    let Some(times) = &summary.times else { return String::new() };
+    let stages = [(Some(times.simulate), "simulating"), (times.draw, "drawing"), (times.encode, "encoding")];
+    let shares = stages.into_iter().filter_map(|(spent, name)| Some(format!("{name} {}", seconds(spent?.wall))));
+    let overlap = if times.encode.is_some() { ", overlapping" } else { "" };
+    format!("{}: {}{overlap}\n", seconds(times.total.wall), shares.collect::<Vec<_>>().join(", "))
+}
+
+fn all_times(summary: &Summary) -> String {
+    let Some(times) = &summary.times else { return String::new() };
+    let stages = [
+        ("simulate", Some(times.simulate)),
+        ("compose", times.compose),
+        ("draw", times.draw),
+        ("encode and write", times.encode),
+        ("all, overlapping", Some(times.total)),
+    ];
+    let frames = summary.frames.recorded.max(1) as f64;
+    let row = |(name, spent): (&str, Option<Spent>)| {
+        let Spent { wall, cpu } = spent?;
+        let cpu = |scale: f64| cpu.map_or("–".to_owned(), |cpu| format!("{:.1}", cpu * scale));
+        let [wall_frame, cpu_frame] = [format!("{:.2}", wall * 1e3 / frames), cpu(1e3 / frames)];
+        Some([name.to_owned(), format!("{:.1}", wall * 1e3), cpu(1e3), wall_frame, cpu_frame])
+    };
+    let heads = ["stage", "wall ms", "cpu ms", "wall ms/frame", "cpu ms/frame"].map(str::to_owned);
+    let rows: Vec<_> = std::iter::once(heads).chain(stages.into_iter().filter_map(row)).collect();
+    columns(&rows, [false, true, true, true, true])
+}
+
+fn seconds(time: f64) -> String {
+    if time < 0.9995 {
+        format!("{:.0} ms", time * 1e3)
+    } else if time < 59.95 {
+        format!("{time:.1} s")
+    } else {
+        let whole = time.round() as u64;
+        let (hours, minutes, seconds) = (whole / 3600, whole / 60 % 60, whole % 60);
+        if hours > 0 { format!("{hours} h {minutes} min") } else { format!("{minutes} min {seconds} s") }
+    }
+}

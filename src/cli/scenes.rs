@@ -1,0 +1,112 @@
+//! From scene files as typed to scenes that can be run.
+
+use super::failure::{Failure, Status, complain, with_causes};
+use super::frames::FrameRanges;
+use super::options::{RunOptions, SceneOptions};
+use crate::output::Folder;
+use crate::scene::{Limits, Scene, SceneError};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+impl SceneOptions {
+    /// Reads one scene.
+    pub(super) fn load(&self, path: &Path) -> Result<Scene, SceneError> {
+        let limits = if self.allow_large { Limits::NONE } else { Limits::default() };
+        Scene::load(path, &limits)
+    }
+
+    /// Reads all scenes. The mistakes in all of them are told before this fails.
+    pub(super) fn load_all(&self) -> Result<Vec<Scene>, Failure> {
+        let mut scenes = Vec::new();
+        let mut failed = None;
+        for path in &self.scenes {
+            match self.load(path) {
+                Ok(scene) => scenes.push(scene),
+                Err(error) => {
+                    complain(&with_causes(&error));
+                    failed = Some(worse(failed, status_of(&error)));
+                }
+            }
+        }
+        match failed {
+            Some(status) => Err(Failure::silent(status)),
+            None => Ok(scenes),
+        }
+    }
+}
+
+/// A wrong scene, unless the system kept us from reading it.
+pub(super) fn status_of(error: &SceneError) -> Status {
+    if error.is_unreadable() { Status::Files } else { Status::Usage }
+}
+
+/// A mistake of the user's comes before one of the system's.
+pub(super) fn worse(one: Option<Status>, other: Status) -> Status {
+    if one == Some(Status::Usage) { Status::Usage } else { other }
+}
+
+/// One scene with what is wanted of it, all checked; nothing is written yet.
+#[derive(Debug)]
+pub(super) struct Job {
+    pub(super) scene: Scene,
+    /// Indices into the scene's runs, in its order.
+    pub(super) runs: Vec<usize>,
+    /// Numbers of frames, rising.
+    pub(super) frames: Vec<u64>,
+    pub(super) folder: Folder,
+}
+
+impl RunOptions {
+    /// What is to be done for each scene.
+    pub(super) fn jobs(&self, scenes: Vec<Scene>) -> Result<Vec<Job>, Failure> {
+        let several = scenes.len() > 1;
+        let mut folders: HashMap<PathBuf, String> = HashMap::new();
+        let mut jobs = Vec::new();
+        for scene in scenes {
+            let path = match &self.out {
+                Some(out) if several => out.join(&scene.name),
+                Some(out) => out.clone(),
+                None => Path::new("output").join(&scene.name),
+            };
+            if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
+                let (second, path) = (&scene.title, path.display());
+                let message =
+                    format!("“{first}” and “{second}” would both go to {path}; run them one at a time with -o");
+                return Err(Failure::usage(message));
+            }
+            let folder = Folder::inspect(&path, &scene, self.overwrite)?;
+            jobs.push(Job { runs: self.runs(&scene)?, frames: self.frames(&scene)?, folder, scene });
+        }
+        Ok(jobs)
+    }
+
+    fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
+        let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
+        if let Some(unknown) = self.only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
+            return Err(Failure::usage(unknown_run(scene, unknown, &names)));
+        }
+        let wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|only| only == name);
+        Ok((0..names.len()).filter(|&run| wanted(names[run])).collect())
+    }
+
+    fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
+        let last = scene.last_frame();
+        let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
+        ranges.select(last).map_err(|told| Failure::usage(format!("frames of “{}”: {told}", scene.title)))
+    }
+}
+
+/// How close a name must come to be taken for a slip, of 1 for equal.
+const SIMILAR: f64 = 0.7;
+
+fn unknown_run(scene: &Scene, unknown: &str, names: &[&str]) -> String {
+    let lower = unknown.to_lowercase();
+    let likeness = |name: &str| strsim::jaro_winkler(&lower, &name.to_lowercase());
+    let nearest = names.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let hint = match nearest.filter(|name| likeness(name) >= SIMILAR) {
+        Some(name) => format!("; did you mean “{name}”?"),
+        None => ".".to_owned(),
+    };
+    let all: Vec<_> = names.iter().map(|name| format!("“{name}”")).collect();
+    format!("--only: “{}” has no run “{unknown}”{hint} Its runs are {}", scene.title, all.join(", "))
+}

@@ -1,0 +1,170 @@
+//! Files that appear whole or not at all.
+
+use super::OutputError;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+const PREFIX: &str = ".localshape-";
+const SUFFIX: &str = ".partial";
+
+/// A file under a hidden name until [`Self::commit`] gives it its own. Dropped before that, it leaves nothing.
+#[derive(Debug)]
+pub struct AtomicFile {
+    path: PathBuf,
+    temporary: NamedTempFile,
+}
+
+impl AtomicFile {
+    /// Begins the file `path`, whose folder exists.
+    ///
+    /// # Errors
+    /// If the folder cannot be written to.
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        let folder = folder_of(path);
+        // Made by the standard library, results are as open to others as any file; tempfile's own are their owner's.
+        let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
+        let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
+        let temporary = made.map_err(OutputError::writing(path))?;
+        claim(temporary.as_file());
+        Ok(Self { path: path.to_owned(), temporary })
+    }
+
+    /// The name that the file will have.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The open file.
+    pub fn file(&mut self) -> &mut File {
+        self.temporary.as_file_mut()
+    }
+
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// If they cannot be written; some of them may have been.
+    pub fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        self.temporary.as_file_mut().write_all(bytes).map_err(OutputError::writing(&self.path))
+    }
+
+    /// Gives the file its own name, in place of what had that name before.
+    ///
+    /// # Errors
+    /// If it cannot be renamed; then it is removed.
+    pub fn commit(self) -> Result<(), OutputError> {
+        let Self { path, temporary } = self;
+        temporary.persist(&path).map_err(|error| error.error).map_err(OutputError::writing(&path))?;
+        Ok(())
+    }
+}
+
+/// Writes a whole file at once.
+///
+/// # Errors
+/// If it cannot be written; then an earlier file of that name is as it was.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    let mut file = AtomicFile::create(path)?;
+    file.append(bytes)?;
+    file.commit()
+}
+
+/// Locks a file until it is closed, also by a crash: so that others see that somebody is at work on it. `false` if
+/// somebody else is. Where files cannot be locked, nobody ever is.
+fn claim(file: &File) -> bool {
+    #[cfg(unix)]
+    {
+        use rustix::fs::{FlockOperation, flock};
+        flock(file, FlockOperation::NonBlockingLockExclusive) != Err(rustix::io::Errno::WOULDBLOCK)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        true
+    }
+}
+
+/// Removes what killed programs have left unfinished in a folder; nothing else, and nothing that a program still
+/// works on.
+///
+/// # Errors
+/// If the folder cannot be read or a leftover cannot be removed.
+pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
+    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
+        let entry = entry.map_err(OutputError::reading(folder))?;
+        let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if entry.file_name().to_str().is_some_and(hidden) && File::open(entry.path()).is_ok_and(|file| claim(&file)) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes a file, or finds it gone already.
+pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError::writing(path)(error)),
+        _ => Ok(()),
+    }
+}
+
+/// The folder that a file is in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn appears_only_when_committed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("whole.txt");
+        let mut file = AtomicFile::create(&path).unwrap();
+        file.append(b"text").unwrap();
+        assert!(!path.exists());
+        file.commit().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"text");
+
+        drop(AtomicFile::create(&path).unwrap());
+        assert_eq!(fs::read(&path).unwrap(), b"text");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn leftovers_go_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let leftover = folder.path().join(".localshape-abc123.partial");
+        let other = folder.path().join(".localshape-notes");
+        fs::write(&leftover, "").unwrap();
+        fs::write(&other, "").unwrap();
+        remove_leftovers(folder.path()).unwrap();
+        assert!(!leftover.exists() && other.exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn work_of_others_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let at_work = AtomicFile::create(&folder.path().join("whole.txt")).unwrap();
+        remove_leftovers(folder.path()).unwrap();
+        at_work.commit().expect("nobody has removed it");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn as_readable_as_any_other_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("ours"), folder.path().join("plain"));
+        write_whole(&ours, b"").unwrap();
+        fs::write(&plain, "").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

@@ -1,0 +1,154 @@
+//! Whose folder it is: frames of different scenes never mix, and files of others are never removed.
+
+use super::atomic::{remove, remove_leftovers};
+use super::{DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE, read_tags};
+use crate::scene::Scene;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The file name of frame `index`: `frame_00000.png`.
+pub fn frame_file_name(index: u64) -> String {
+    format!("frame_{index:05}.png")
+}
+
+/// Whether a file has the name of a frame.
+fn names_frame(name: &str) -> bool {
+    let digits = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".png"));
+    digits.is_some_and(|digits| digits.parse().is_ok_and(|index| frame_file_name(index) == name))
+}
+
+/// A folder for the output of one scene, looked at but not yet touched.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// Files of ours that belong to another scene.
+    stale: Vec<PathBuf>,
+}
+
+impl Folder {
+    /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
+    ///
+    /// A folder with files of another scene, or with files of others under the names of ours, is refused unless
+    /// `overwrite`. Files of the same scene are fine: they are replaced one by one.
+    ///
+    /// # Errors
+    /// If the folder cannot be read or is refused.
+    pub fn inspect(path: &Path, scene: &Scene, overwrite: bool) -> Result<Self, OutputError> {
+        let found = Found::in_folder(path, &scene.digest)?;
+        match found.describe() {
+            Some(what) if !overwrite => Err(OutputError::Occupied { path: path.to_owned(), what }),
+            _ => Ok(Self { path: path.to_owned(), stale: found.frames.into_iter().chain(found.records).collect() }),
+        }
+    }
+
+    /// Makes the folder if there is none, and removes leftovers of killed programs and the files of another scene.
+    ///
+    /// # Errors
+    /// If the folder cannot be made or written to.
+    pub fn prepare(self) -> Result<PathBuf, OutputError> {
+        fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
+        remove_leftovers(&self.path)?;
+        for path in &self.stale {
+            remove(path)?;
+        }
+        Ok(self.path)
+    }
+}
+
+/// What is in the way in a folder.
+#[derive(Debug, Default)]
+struct Found {
+    /// Frames of another scene.
+    frames: Vec<PathBuf>,
+    /// Diagnostics, states and summary of another scene.
+    records: Vec<PathBuf>,
+    /// Title of that scene, if its summary is there.
+    title: Option<String>,
+    /// Files of others under the names of ours.
+    foreign: Vec<String>,
+}
+
+impl Found {
+    fn in_folder(path: &Path, digest: &str) -> Result<Self, OutputError> {
+        let mut found = Self::default();
+        let entries = match fs::read_dir(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(found),
+            entries => entries.map_err(OutputError::reading(path))?,
+        };
+        let owner = Owner::read(&path.join(SUMMARY_FILE))?;
+        for entry in entries {
+            let entry = entry.map_err(OutputError::reading(path))?;
+            let name = entry.file_name();
+            let Some(name) = name.to_str() else { continue };
+            if names_frame(name) {
+                match read_tags(&entry.path())? {
+                    Some(tags) if tags.scene == digest => {}
+                    Some(_) => found.frames.push(entry.path()),
+                    None => found.foreign.push(name.to_owned()),
+                }
+            } else if [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name) {
+                match &owner {
+                    Some(owner) if owner.digest == digest => {}
+                    Some(_) => found.records.push(entry.path()),
+                    None => found.foreign.push(name.to_owned()),
+                }
+            }
+        }
+        found.title = owner.filter(|owner| owner.digest != digest).map(|owner| owner.title);
+        found.foreign.sort_unstable();
+        Ok(found)
+    }
+
+    /// What is in the way, in words; `None` if nothing is.
+    fn describe(&self) -> Option<String> {
+        let title = self.title.as_ref().map(|title| format!(" (“{title}”)")).unwrap_or_default();
+        match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
+            (0, true, []) => None,
+            (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
+            (0, true, [name, others @ ..]) => {
+                Some(format!("{name} and {} more, which were not written by localshape", others.len()))
+            }
+            (0, false, _) => Some(format!("the results of another scene{title}")),
+            (1, ..) => Some(format!("a frame of another scene{title}")),
+            (count, ..) => Some(format!("{count} frames of another scene{title}")),
+        }
+    }
+}
+
+/// The scene that a summary belongs to.
+struct Owner {
+    digest: String,
+    title: String,
+}
+
+impl Owner {
+    /// Reads it from `run.json`; `None` if there is none or it is not one of ours.
+    fn read(path: &Path) -> Result<Option<Self>, OutputError> {
+        let bytes = match fs::read(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            bytes => bytes.map_err(OutputError::reading(path))?,
+        };
+        let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
+        let text = |key: &str| summary["scene"][key].as_str().map(str::to_owned);
+        let ours = summary.get("localshape").is_some();
+        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title: text("title").unwrap_or_default() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frame_names() {
+        assert_eq!(frame_file_name(7), "frame_00007.png");
+        assert_eq!(frame_file_name(123_456), "frame_123456.png");
+        for name in ["frame_00000.png", "frame_99999.png", "frame_100000.png"] {
+            assert!(names_frame(name), "{name}");
+        }
+        for name in ["frame_0.png", "frame_000000.png", "frame_.png", "frame_+0001.png", "frame_00000.jpg", "a.png"] {
+            assert!(!names_frame(name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Compressing and writing frames on threads of their own, so that drawing need not wait.
+
+use super::{Clock, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// A frame as drawn.
+#[derive(Clone, Debug)]
+pub struct PixelFrame {
+    /// Width and height (px).
+    pub size: [u32; 2],
+    /// Red, green and blue of each pixel, in rows from the top left, sRGB.
+    pub pixels: Vec<u8>,
+    /// What it shows.
+    pub tags: Tags,
+}
+
+/// Threads that compress and write frames. Memory is bounded: when they are all behind, [`Self::write`] waits.
+#[derive(Debug)]
+pub struct FrameWriter {
+    queue: Option<SyncSender<PixelFrame>>,
+    threads: Vec<JoinHandle<Written>>,
+    written: Written,
+}
+
+/// What was written, by one thread or all.
+#[derive(Debug, Default)]
+struct Written {
+    frames: usize,
+    spent: Spent,
+    failure: Option<OutputError>,
+}
+
+impl FrameWriter {
+    /// Starts `threads` (at least one) threads that write into `folder`, which exists.
+    pub fn start(folder: &Path, threads: usize) -> Self {
+        let (queue, frames) = sync_channel(threads);
+        let frames = Arc::new(Mutex::new(Some(frames)));
+        let thread = |_| {
+            let (folder, frames) = (folder.to_owned(), Arc::clone(&frames));
+            std::thread::spawn(move || write_frames(&folder, &frames))
+        };
+        let threads = (0..threads.max(1)).map(thread).collect();
+        Self { queue: Some(queue), threads, written: Written::default() }
+    }
+
+    /// Hands over one frame.
+    ///
+    /// # Errors
+    /// If a frame handed over earlier could not be written. Then this one and all that follow are not taken.
+    pub fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
+        match &self.queue {
+            Some(queue) if queue.send(frame).is_ok() => Ok(()),
+            _ => self.wait(),
+        }
+    }
+
+    /// Waits for all frames handed over. Returns how many were written in all and the time that took, summed over
+    /// threads.
+    ///
+    /// # Errors
+    /// If one could not be written and [`Self::write`] did not report it.
+    pub fn finish(mut self) -> (usize, Spent, Result<(), OutputError>) {
+        let result = self.wait();
+        (self.written.frames, self.written.spent, result)
+    }
+
+    fn wait(&mut self) -> Result<(), OutputError> {
+        self.queue = None;
+        let all = &mut self.written;
+        for thread in self.threads.drain(..) {
+            let one = thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            all.frames += one.frames;
+            all.spent += one.spent;
+            all.failure = all.failure.take().or(one.failure);
+        }
+        all.failure.take().map_or(Ok(()), Err)
+    }
+}
+
+/// Writes frames until there are no more or one fails. After a failure the queue is gone: nobody waits for it.
+fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>) -> Written {
+    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut written = Written::default();
+    loop {
+        let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
+        let clock = Clock::thread();
+        let path: PathBuf = folder.join(frame_file_name(frame.tags.frame));
+        let result = write_whole(&path, &encode(frame.size, &frame.pixels, &frame.tags));
+        written.spent += clock.spent();
+        match result {
+            Ok(()) => written.frames += 1,
+            Err(failure) => {
+                written.failure = Some(failure);
+                *lock() = None;
+                return written;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(index: u64) -> PixelFrame {
+        let tags = Tags {
+            scene: String::new(),
+            states: Vec::new(),
+            frame: index,
+            time: 0.0,
+            version: String::new(),
+            adapter: String::new(),
+        };
+        PixelFrame { size: [2, 1], pixels: vec![0; 6], tags }
+    }
+
+    #[test]
+    fn all_frames_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = FrameWriter::start(folder.path(), 3);
+        (0..20).for_each(|index| writer.write(frame(index)).unwrap());
+        let (count, spent, result) = writer.finish();
+        result.unwrap();
+        assert_eq!(count, 20);
+        assert!(spent.wall > 0.0);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 20);
+    }
+
+    #[test]
+    fn a_failure_is_told_and_nobody_waits() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = FrameWriter::start(&folder.path().join("absent"), 2);
+        let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
+        assert!(failure.to_string().contains("frame_"));
+        let (count, _, result) = writer.finish();
+        assert_eq!(count, 0);
+        result.expect("told once");
+    }
+}

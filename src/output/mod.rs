@@ -1,0 +1,50 @@
+//! What stays on disk: frames, diagnostics, states and a summary of each run of the program.
+//!
+//! Every file is first made under a hidden name in its own folder and then renamed: under its own name it is whole
+//! or not there, also when the program is killed or the disk is full. Equal input gives equal bytes, except for the
+//! times in `run.json`.
+
+mod atomic;
+mod diagnostics;
+mod digest;
+mod error;
+mod folder;
+mod frames;
+mod png;
+mod states;
+mod summary;
+mod timing;
+
+pub use atomic::{AtomicFile, remove_leftovers, write_whole};
+pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
+pub use digest::state_digest;
+pub use error::OutputError;
+pub use folder::{Folder, frame_file_name};
+pub use frames::{FrameWriter, PixelFrame};
+pub use png::{Tags, encode, read_tags};
+pub use states::{STATES_FILE, StatesWriter};
+pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};
+pub(crate) use timing::thread_time;
+pub use timing::{Clock, Spent, Timings};
+
+/// A number with 17 significant digits, from which the same double precision number is read again.
+///
+/// Not-a-number is `nan` and infinity `inf`, which the readers of most languages know.
+pub fn exact(number: f64) -> String {
+    if number.is_nan() { "nan".to_owned() } else { format!("{number:.16e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exact;
+
+    #[test]
+    fn exact_numbers_survive_reading() {
+        for number in [0.1, -1.0 / 3.0, 5e-324, f64::MAX, 0.0, 9.899495] {
+            let text = exact(number);
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), number.to_bits(), "{text}");
+        }
+        assert_eq!(exact(f64::NAN), "nan");
+        assert_eq!(exact(f64::NEG_INFINITY), "-inf");
+    }
+}

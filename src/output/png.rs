@@ -1,0 +1,164 @@
+//! Frames as PNG, with what they show written into them.
+
+use super::{OutputError, exact, state_digest};
+use crate::scene::Scene;
+use crate::sim::snapshot::Frame;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// What a frame says about itself, in text chunks. There is no time of day among them: equal pictures are equal files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tags {
+    /// `localshape:scene`: the scene's digest.
+    pub scene: String,
+    /// `localshape:state`: digest of the state and name of each run drawn, one line each.
+    pub states: Vec<(String, String)>,
+    /// `localshape:frame`: the frame's number.
+    pub frame: u64,
+    /// `localshape:time`: the moment shown (s), 17 significant digits.
+    pub time: f64,
+    /// `localshape:version`: the version of this crate that drew it.
+    pub version: String,
+    /// `localshape:adapter`: the graphics adapter that drew it.
+    pub adapter: String,
+}
+
+impl Tags {
+    /// The tags of a frame of `scene` drawn by `adapter`.
+    pub fn new(scene: &Scene, frame: &Frame, adapter: &str) -> Self {
+        let state =
+            |run: &crate::sim::snapshot::RunFrame| (state_digest(&run.snapshot), scene.runs[run.run].name.clone());
+        Self {
+            scene: scene.digest.clone(),
+            states: frame.runs.iter().map(state).collect(),
+            frame: frame.index,
+            time: frame.time,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            adapter: adapter.to_owned(),
+        }
+    }
+
+    fn chunks(&self) -> [(&'static str, String); 6] {
+        let states: Vec<_> = self.states.iter().map(|(digest, run)| format!("{digest} {run}")).collect();
+        [
+            ("scene", self.scene.clone()),
+            ("state", states.join("\n")),
+            ("frame", self.frame.to_string()),
+            ("time", exact(self.time)),
+            ("version", self.version.clone()),
+            ("adapter", self.adapter.clone()),
+        ]
+    }
+
+    fn parse(text: impl Fn(&str) -> Option<String>) -> Option<Self> {
+        let line = |line: &str| line.split_once(' ').map(|(digest, run)| (digest.to_owned(), run.to_owned()));
+        Some(Self {
+            scene: text("scene")?,
+            states: text("state")?.lines().map(line).collect::<Option<_>>()?,
+            frame: text("frame")?.parse().ok()?,
+            time: text("time")?.parse().ok()?,
+            version: text("version")?,
+            adapter: text("adapter")?,
+        })
+    }
+}
+
+/// A picture of 8-bit red, green and blue as a PNG file in sRGB, with its tags.
+///
+/// `pixels` holds three bytes for each pixel, in rows from the top left.
+///
+/// # Panics
+/// If `pixels` does not have the length that `size`, width and height (px), asks for, or the size is zero.
+pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
+    let [width, height] = size;
+    assert_eq!(pixels.len() as u64, 3 * u64::from(width) * u64::from(height), "three bytes for each pixel");
+    let mut bytes = Vec::with_capacity(pixels.len() / 8);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (name, text) in tags.chunks() {
+        let name = format!("localshape:{name}");
+        // The plain text chunk knows Latin-1 only, without control characters.
+        let plain = text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
+        let added = if plain { encoder.add_text_chunk(name, text) } else { encoder.add_itxt_chunk(name, text) };
+        added.expect("the header is not written yet");
+    }
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(pixels)?;
+        writer.finish()
+    });
+    written.expect("a picture of the right length into memory");
+    bytes
+}
+
+/// Reads what a frame says about itself; `None` if the file is no PNG or was not written by this crate.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_tags(path: &Path) -> Result<Option<Tags>, OutputError> {
+    let file = File::open(path).map_err(OutputError::reading(path))?;
+    let reader = match png::Decoder::new(BufReader::new(file)).read_info() {
+        Ok(reader) => reader,
+        Err(png::DecodingError::IoError(error)) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
+            return Err(OutputError::reading(path)(error));
+        }
+        Err(_) => return Ok(None),
+    };
+    let info = reader.info();
+    Ok(Tags::parse(|name| {
+        let keyword = format!("localshape:{name}");
+        let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
+        let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
+        plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tags() -> Tags {
+        Tags {
+            scene: "0123".to_owned(),
+            states: vec![
+                ("ab".to_owned(), "Local shape".to_owned()),
+                ("cd".to_owned(), "Ressorts à ½ · 弾性".to_owned()),
+            ],
+            frame: 7,
+            time: 0.1 + 0.2,
+            version: "1.2.3".to_owned(),
+            adapter: "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned(),
+        }
+    }
+
+    #[test]
+    fn tags_survive_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        let pixels: Vec<u8> = (0..5 * 3 * 3).map(|byte| byte * 5).collect();
+        let bytes = encode([5, 3], &pixels, &tags());
+        assert_eq!(bytes, encode([5, 3], &pixels, &tags()), "equal input, equal bytes");
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(read_tags(&path).unwrap(), Some(tags()));
+
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+        assert_eq!(reader.info().srgb, Some(png::SrgbRenderingIntent::Perceptual));
+        let mut back = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut back).unwrap();
+        assert_eq!(back, pixels);
+    }
+
+    #[test]
+    fn no_file_of_ours_has_no_tags() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        std::fs::write(&path, "no picture").unwrap();
+        assert_eq!(read_tags(&path).unwrap(), None);
+        std::fs::write(&path, &encode([1, 1], &[0; 3], &tags())[..40]).unwrap();
+        assert_eq!(read_tags(&path).unwrap(), None);
+        assert!(read_tags(&folder.path().join("absent.png")).is_err());
+    }
+}

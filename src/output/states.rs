@@ -1,0 +1,169 @@
+//! `states.npz`: positions and velocities of every frame, for numerical work elsewhere.
+
+use super::atomic::folder_of;
+use super::{AtomicFile, OutputError};
+use crate::scene::Scene;
+use crate::sim::snapshot::Frame;
+use glam::DVec3;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+/// The name of the file in its folder.
+pub const STATES_FILE: &str = "states.npz";
+
+/// Writes the states of frames as they come, in memory that does not grow with their number.
+///
+/// The archive holds `time` (F), the moment of each frame (s), and for each run `NAME.position` (m) and
+/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. A scene lets no run have a name that
+/// does not fit into an archive.
+///
+/// Arrays lie one behind the other in the archive but grow all at once, and how many frames come is known only
+/// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
+/// the end: for a moment that takes twice the space on disk.
+#[derive(Debug)]
+pub struct StatesWriter {
+    path: PathBuf,
+    spool: File,
+    arrays: Vec<Array>,
+    /// Length of one frame in the spool (bytes).
+    record: u64,
+    frames: u64,
+}
+
+/// One array of the archive, and where its part of each record lies.
+#[derive(Debug)]
+struct Array {
+    name: String,
+    /// The shape behind the number of frames, in Python's spelling.
+    shape: String,
+    /// From the start of a record (bytes).
+    offset: u64,
+    /// In each record (bytes).
+    length: usize,
+}
+
+impl StatesWriter {
+    /// Begins the file in `folder`, for frames that show `runs`, indices into the scene's runs.
+    ///
+    /// # Errors
+    /// If the folder cannot be written to.
+    pub fn create(folder: &Path, scene: &Scene, runs: &[usize]) -> Result<Self, OutputError> {
+        let path = folder.join(STATES_FILE);
+        let spool = tempfile::tempfile_in(folder_of(&path)).map_err(OutputError::writing(&path))?;
+        let nodes = scene.body.len();
+        let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
+        let mut record = 8;
+        for &run in runs {
+            for quantity in ["position", "velocity"] {
+                let length = 24 * nodes;
+                let name = format!("{}.{quantity}", scene.runs[run].name);
+                arrays.push(Array { name, shape: format!(" {nodes}, 3"), offset: record, length });
+                record += length as u64;
+            }
+        }
+        Ok(Self { path, spool, arrays, record, frames: 0 })
+    }
+
+    /// Appends one frame.
+    ///
+    /// # Errors
+    /// If it cannot be written; frames written before stay.
+    pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
+        let mut record = Vec::with_capacity(self.record as usize);
+        record.extend(frame.time.to_le_bytes());
+        for run in &frame.runs {
+            for vector in run.snapshot.position.iter().chain(&run.snapshot.velocity) {
+                record.extend(vector_bytes(vector));
+            }
+        }
+        assert_eq!(record.len() as u64, self.record, "every frame shows the runs that the file was begun for");
+        self.spool.write_all(&record).map_err(OutputError::writing(&self.path))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Arranges the frames written so far and gives the file its name.
+    ///
+    /// # Errors
+    /// If the file cannot be written; then there is none.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        let mut file = AtomicFile::create(&self.path)?;
+        self.arrange(file.file()).map_err(OutputError::writing(&self.path))?;
+        file.commit()
+    }
+
+    fn arrange(&mut self, file: &mut File) -> io::Result<()> {
+        let mut archive = ZipWriter::new(BufWriter::new(file));
+        match self.fill(&mut archive) {
+            Ok(()) => archive.finish()?.flush(),
+            Err(error) => {
+                // Dropped unfinished, it would try to finish on the same disk and talk on standard error.
+                std::mem::forget(archive);
+                Err(error)
+            }
+        }
+    }
+
+    fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
+        let mut part = Vec::new();
+        for array in &self.arrays {
+            let header = header(self.frames, &array.shape);
+            let size = header.len() as u64 + self.frames * array.length as u64;
+            let options = SimpleFileOptions::default()
+                .compression_method(CompressionMethod::Stored)
+                .last_modified_time(DateTime::default())
+                .unix_permissions(0o644)
+                .large_file(size >= u64::from(u32::MAX));
+            archive.start_file(format!("{}.npy", array.name), options)?;
+            archive.write_all(&header)?;
+            part.resize(array.length, 0);
+            for frame in 0..self.frames {
+                self.spool.seek(SeekFrom::Start(frame * self.record + array.offset))?;
+                self.spool.read_exact(&mut part)?;
+                archive.write_all(&part)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The head of an array in NumPy's file format, version 1.0.
+fn header(frames: u64, shape: &str) -> Vec<u8> {
+    let mut text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({frames},{shape}), }}");
+    // Ten bytes stand before the text; the data begin at a multiple of 64.
+    let unpadded = 10 + text.len() + 1;
+    text.extend(std::iter::repeat_n(' ', unpadded.next_multiple_of(64) - unpadded));
+    text.push('\n');
+    let length = u16::try_from(text.len()).expect("a short text");
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend(length.to_le_bytes());
+    header.extend(text.bytes());
+    header
+}
+
+/// The three coordinates, little-endian.
+pub(super) fn vector_bytes(vector: &DVec3) -> [u8; 24] {
+    let mut bytes = [0; 24];
+    for (into, coordinate) in bytes.chunks_exact_mut(8).zip(vector.to_array()) {
+        into.copy_from_slice(&coordinate.to_le_bytes());
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn header_is_aligned() {
+        for shape in ["", " 64, 3", " 1000000, 3"] {
+            let header = header(181, shape);
+            assert_eq!(header.len() % 64, 0);
+            assert_eq!(usize::from(header[8]) + 256 * usize::from(header[9]), header.len() - 10);
+            assert_eq!(header.last(), Some(&b'\n'));
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! `run.json`: what was made, by what, and how it went.
+
+use super::{OutputError, Timings, state_digest, write_whole};
+use crate::scene::Scene;
+use crate::sim::snapshot::{Frame, Status};
+use serde::Serialize;
+use std::path::Path;
+
+/// The name of the file in its folder.
+pub const SUMMARY_FILE: &str = "run.json";
+
+/// The contents of `run.json`, with its keys in this order.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Version of this crate.
+    pub localshape: String,
+    /// The scene.
+    pub scene: SceneSummary,
+    /// The command line, word by word.
+    pub command: Vec<String>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// The frames asked for and made.
+    pub frames: FrameSummary,
+    /// The graphics adapter; `null` without pictures.
+    pub adapter: Option<String>,
+    /// The runs asked for, in the scene's order.
+    pub runs: Vec<RunSummary>,
+    /// Times by stage (s); `null` as long as it has not ended.
+    pub times: Option<Timings>,
+}
+
+/// Which scene it is.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneSummary {
+    /// Its title.
+    pub title: String,
+    /// Digest of its meaning.
+    pub digest: String,
+}
+
+/// How a command ended for one scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// It has not ended, or was killed.
+    Unfinished,
+    /// All frames were made.
+    Done,
+    /// The user stopped it; what was made until then is whole.
+    Interrupted,
+    /// Writing or drawing failed; what was made until then is whole.
+    Failed,
+}
+
+/// The frames asked for and made.
+#[derive(Clone, Debug, Serialize)]
+pub struct FrameSummary {
+    /// How many were asked for.
+    pub asked: usize,
+    /// How many were simulated and recorded.
+    pub recorded: usize,
+    /// How many pictures were written; `null` without pictures.
+    pub written: Option<usize>,
+    /// Width and height of the pictures (px); `null` without pictures.
+    pub size: Option<[u32; 2]>,
+    /// Samples per pixel; `null` without pictures.
+    pub samples: Option<u32>,
+}
+
+/// How a run went.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunSummary {
+    /// Its name.
+    pub name: String,
+    /// `ok` or `diverged`.
+    #[serde(flatten)]
+    pub status: RunStatus,
+    /// What it looked like in the last frame recorded; `null` before the first.
+    pub last: Option<LastState>,
+}
+
+/// Whether a run went well.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "status", rename_all = "kebab-case")]
+pub enum RunStatus {
+    /// It did.
+    Ok,
+    /// It blew up.
+    Diverged {
+        /// Time of the first step that could not be kept (s).
+        time: f64,
+        /// Number of that step.
+        step: u64,
+        /// The first element concerned.
+        element: Option<usize>,
+    },
+}
+
+/// A run in the last frame recorded.
+#[derive(Clone, Debug, Serialize)]
+pub struct LastState {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Elements that have changed sign.
+    pub turned_over: usize,
+    /// Volume over rest volume.
+    pub volume_ratio: f64,
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    pub shape_error: f64,
+    /// Digest of the state.
+    pub state: String,
+}
+
+impl Summary {
+    /// The summary before the first frame, of `asked` frames of some of the scene's runs.
+    pub fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
+        let run = |&run: &usize| RunSummary { name: scene.runs[run].name.clone(), status: RunStatus::Ok, last: None };
+        Self {
+            localshape: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: SceneSummary { title: scene.title.clone(), digest: scene.digest.clone() },
+            command: command.to_vec(),
+            outcome: Outcome::Unfinished,
+            frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },
+            adapter: None,
+            runs: runs.iter().map(run).collect(),
+            times: None,
+        }
+    }
+
+    /// Takes note of the last frame recorded.
+    pub fn note_last(&mut self, frame: &Frame) {
+        for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
+            let snapshot = &run.snapshot;
+            summary.status = match snapshot.status {
+                Status::Ok => RunStatus::Ok,
+                Status::Diverged(at) => RunStatus::Diverged { time: at.time, step: at.step, element: at.element },
+            };
+            summary.last = Some(LastState {
+                frame: frame.index,
+                time: snapshot.time,
+                turned_over: snapshot.diagnostics.turned_over,
+                volume_ratio: snapshot.diagnostics.volume_ratio,
+                shape_error: snapshot.diagnostics.shape_error,
+                state: state_digest(snapshot),
+            });
+        }
+    }
+
+    /// Writes `run.json` into `folder`.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+        let mut text = serde_json::to_string_pretty(self).expect("plain data");
+        text.push('\n');
+        write_whole(&folder.join(SUMMARY_FILE), text.as_bytes())
+    }
+}

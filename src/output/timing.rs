@@ -1,0 +1,112 @@
+//! Wall and processor time by stage.
+
+use serde::Serialize;
+use std::ops::AddAssign;
+use std::time::{Duration, Instant};
+
+/// Time spent on something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spent {
+    /// Wall time (s).
+    pub wall: f64,
+    /// Time on processors, summed over threads (s); `None` where the system does not tell.
+    pub cpu: Option<f64>,
+}
+
+impl AddAssign for Spent {
+    fn add_assign(&mut self, other: Self) {
+        self.wall += other.wall;
+        self.cpu = match (self.cpu, other.cpu) {
+            (Some(one), Some(other)) => Some(one + other),
+            // Nothing spent so far says nothing about the system.
+            (None, other) => other,
+            (one, None) => one,
+        };
+    }
+}
+
+/// Times by stage. Stages overlap: their wall times may add up to more than the whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Timings {
+    /// Stepping all runs and diagnosing them.
+    pub simulate: Spent,
+    /// Laying out pictures; `None` without pictures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compose: Option<Spent>,
+    /// Drawing and reading back. Its processor time is that of the thread that waits for the device and, with a
+    /// software driver, of the driver's own threads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub draw: Option<Spent>,
+    /// Compressing and writing frames, summed over the threads that do it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub encode: Option<Spent>,
+    /// Everything from the first step to the last file.
+    pub total: Spent,
+}
+
+/// A moment, from which time is counted on the wall and on processors.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    wall: Instant,
+    cpu: Option<Duration>,
+    read: fn() -> Option<Duration>,
+}
+
+impl Clock {
+    /// Counts the processor time of the calling thread only; must be read on the same thread.
+    pub fn thread() -> Self {
+        Self::new(thread_time)
+    }
+
+    /// Counts the processor time of all threads.
+    pub fn process() -> Self {
+        Self::new(process_time)
+    }
+
+    fn new(read: fn() -> Option<Duration>) -> Self {
+        Self { wall: Instant::now(), cpu: read(), read }
+    }
+
+    /// What was spent since.
+    pub fn spent(&self) -> Spent {
+        let cpu = self.cpu.zip((self.read)()).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
+        Spent { wall: self.wall.elapsed().as_secs_f64(), cpu }
+    }
+}
+
+/// Processor time of the calling thread so far.
+pub(crate) fn thread_time() -> Option<Duration> {
+    #[cfg(unix)]
+    return processor_clock(rustix::time::ClockId::ThreadCPUTime);
+    #[cfg(not(unix))]
+    None
+}
+
+/// Processor time of all threads so far.
+fn process_time() -> Option<Duration> {
+    #[cfg(unix)]
+    return processor_clock(rustix::time::ClockId::ProcessCPUTime);
+    #[cfg(not(unix))]
+    None
+}
+
+#[cfg(unix)]
+fn processor_clock(clock: rustix::time::ClockId) -> Option<Duration> {
+    Duration::try_from(rustix::time::clock_gettime(clock)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_and_counts() {
+        let clock = Clock::thread();
+        let mut sum = clock.spent();
+        assert!(sum.wall >= 0.0);
+        sum = Spent { wall: 1.0, cpu: None };
+        sum += Spent { wall: 0.5, cpu: Some(2.0) };
+        sum += Spent { wall: 0.5, cpu: Some(1.0) };
+        assert_eq!(sum, Spent { wall: 2.0, cpu: Some(3.0) });
+    }
+}

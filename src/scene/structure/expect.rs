@@ -1,0 +1,51 @@
+//! What a schema asks for, in words.
+
+use crate::scene::schema::choices;
+use crate::scene::words::{list, quoted};
+use serde_json::Value as Json;
+
+/// The types that a schema allows, in words.
+pub(super) fn expected(schema: &Json) -> String {
+    if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
+        let names: Vec<_> = branches.iter().map(expected).collect();
+        return list(&names, "or", |name| name.into());
+    }
+    if let Some(choices) = choices(schema) {
+        return list(&choices, "or", quoted);
+    }
+    match schema.get("type").and_then(Json::as_str) {
+        Some("number") => "a number",
+        Some("integer") => "a whole number",
+        Some("string") => "a string",
+        Some("boolean") => "true or false",
+        Some("array") => "an array",
+        _ => "a table",
+    }
+    .into()
+}
+
+/// The numbers that are allowed, in words.
+pub(super) fn range(
+    noun: &str,
+    least: Option<f64>,
+    most: Option<f64>,
+    above: Option<f64>,
+    below: Option<f64>,
+) -> String {
+    // That a whole number has 32 bits is nothing that anybody asked for.
+    let most = most.filter(|&most| most < f64::from(u32::MAX));
+    match (least, most, above, below) {
+        (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
+        (Some(least), ..) => format!("{noun} of at least {least}"),
+        (None, _, Some(above), Some(below)) => format!("{noun} between {above} and {below}"),
+        (None, _, Some(above), None) => format!("{noun} greater than {above}"),
+        (None, Some(most), ..) => format!("{noun} of at most {most}"),
+        _ => noun.into(),
+    }
+}
+
+/// The first sentence of a description.
+pub(super) fn first_sentence(text: &str) -> &str {
+    let ends = text.match_indices(". ").find(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
+    ends.map_or(text, |(at, _)| &text[..=at])
+}

@@ -1,0 +1,149 @@
+//! Which keys a table may have, which it needs, and which need or exclude each other.
+
+use super::Walk;
+use super::expect::first_sentence;
+use crate::scene::report::written;
+use crate::scene::words::{list, nearest, shortened};
+use serde_json::Value as Json;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+impl Walk<'_, '_, '_> {
+    /// Which keys a table needs, which need each other and which exclude each other.
+    pub(super) fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
+        let has = |name: &str| table.contains_key(name);
+        for name in strings(schema.get("required")).filter(|name| !has(name)) {
+            self.missing_key(schema, table, name, "", span.clone());
+        }
+        self.alternatives(schema, table, span.clone());
+        let all_of = schema.get("allOf").and_then(Json::as_array).into_iter().flatten();
+        for rule in all_of.chain([schema]).filter_map(|rule| rule.get("not")) {
+            let pair: Vec<_> = strings(rule.get("required")).filter_map(|name| table.get_key_value(name)).collect();
+            if pair.len() == strings(rule.get("required")).count() {
+                self.exclusive(&pair);
+            }
+        }
+        let Some(dependent) = schema.get("dependentRequired").and_then(Json::as_object) else { return };
+        for (name, needed) in dependent {
+            let Some((key, _)) = table.get_key_value(name.as_str()) else { continue };
+            // Where the keys of an alternative need each other, that has been said already.
+            let partner = |other: &str| {
+                let begun = |set: &Json| {
+                    strings(Some(set)).any(|key| key == name) && strings(Some(set)).any(|key| key == other)
+                };
+                schema["oneOf"].as_array().into_iter().flatten().any(|branch| begun(&branch["required"]))
+            };
+            for other in strings(Some(needed)).filter(|other| !has(other) && !partner(other)) {
+                if !misspelt(schema, table, other) {
+                    let message = format!("`{}.{name}` needs `{other}`", self.here());
+                    self.mistake(key.span(), message, Some(format!("list `{other}`, or take `{name}` out")));
+                }
+            }
+        }
+    }
+
+    /// A missing key, unless there is an unknown one that is nearly it.
+    fn missing_key(&mut self, schema: &Json, table: &DeTable<'_>, name: &str, given: &str, span: Range<usize>) {
+        if misspelt(schema, table, name) {
+            return;
+        }
+        let property = &schema["properties"][name];
+        let missing = match (self.path.is_empty(), property["type"].as_str()) {
+            (true, Some("object")) => format!("there is no table [{name}]"),
+            (true, Some("array")) => format!("there is no table [[{name}]]"),
+            (true, _) => format!("there is no `{name}`"),
+            (false, _) => format!("`{}` has {given}no `{name}`", self.here()),
+        };
+        let help = property["description"].as_str().map(|text| format!("`{name}`: {}", first_sentence(text)));
+        self.mistake(span, missing, help);
+    }
+
+    /// Sets of keys of which a table has exactly one, and that whole.
+    fn alternatives(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
+        let branches = schema.get("oneOf").and_then(Json::as_array).into_iter().flatten();
+        let sets: Vec<Vec<&str>> = branches.map(|branch| strings(branch.get("required")).collect()).collect();
+        let given = |set: &Vec<&str>| -> Vec<_> { set.iter().filter_map(|name| table.get_key_value(*name)).collect() };
+        let begun: Vec<_> = sets.iter().filter(|set| !given(set).is_empty()).collect();
+        match begun.as_slice() {
+            [] if sets.iter().flatten().any(|name| misspelt(schema, table, name)) => {}
+            [] if !sets.is_empty() => {
+                let all: Vec<_> = sets.iter().map(|set| list(set, "and", |name| format!("`{name}`"))).collect();
+                let all = list(&all, "nor", |set| set.into());
+                self.mistake(span, format!("`{}` has neither {all}; one is needed", self.here()), None);
+            }
+            [] => {}
+            [only] => {
+                let there = list(&names(&given(only)), "and", |key| format!("`{key}`"));
+                for name in only.iter().filter(|name| !table.contains_key(**name)) {
+                    self.missing_key(schema, table, name, &format!("{there} but "), span.clone());
+                }
+            }
+            [one, .., other] => self.exclusive(&[given(one)[0], given(other)[0]]),
+        }
+    }
+
+    /// Keys that must not stand together; said of the later one.
+    fn exclusive(&mut self, keys: &[(&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) {
+        let last = keys.iter().map(|(key, _)| key.span()).max_by_key(|span| span.start);
+        let names = list(&names(keys), "and", |key| format!("`{key}`"));
+        self.mistake(
+            last.unwrap_or(0..0),
+            format!("`{}` has both {names}, which exclude each other", self.here()),
+            Some("keep one".into()),
+        );
+    }
+
+    pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>) {
+        let known = known(schema);
+        let place = match &self.path[..] {
+            [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
+            _ => String::new(),
+        };
+        let help = match (nearest(name, &known), elsewhere(self.schema, name)) {
+            (Some(near), _) => format!("did you mean `{near}`?"),
+            (None, Some(other)) => format!("`{name}` belongs to `{other}`; known here: {}", known.join(", ")),
+            (None, None) => format!("known here: {}", known.join(", ")),
+        };
+        self.mistake(span, format!("unknown key `{}`{place}", shortened(name)), Some(help));
+    }
+}
+
+/// The strings in a JSON array.
+fn strings(list: Option<&Json>) -> impl Iterator<Item = &str> {
+    list.and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str)
+}
+
+/// The names of keys.
+fn names<'a>(keys: &[(&'a Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) -> Vec<&'a str> {
+    keys.iter().map(|(key, _)| key.get_ref().as_ref()).collect()
+}
+
+/// The keys that a table may have.
+fn known(schema: &Json) -> Vec<&str> {
+    schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect()
+}
+
+/// Whether a table has an unknown key that is nearly this one.
+fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
+    let known = known(schema);
+    let unknown = table.keys().map(|key| key.get_ref().as_ref()).filter(|key| !known.contains(key));
+    unknown.into_iter().any(|key| nearest(key, &known) == Some(name))
+}
+
+/// The table in which a key is known, as written: `view.camera`.
+fn elsewhere(schema: &Json, name: &str) -> Option<String> {
+    let mut properties = tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
+    properties.find_map(|(key, inner)| {
+        if tables(inner).any(|table| table["properties"].get(name).is_some()) {
+            return Some(key.clone());
+        }
+        elsewhere(inner, name).map(|deeper| format!("{key}.{deeper}"))
+    })
+}
+
+/// The tables that a schema describes: itself, its entries, and the variants of either.
+fn tables(schema: &Json) -> impl Iterator<Item = &Json> {
+    let both = [schema, &schema["items"]].into_iter();
+    both.flat_map(|one| std::iter::once(one).chain(one["oneOf"].as_array().into_iter().flatten()))
+}

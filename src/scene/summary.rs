@@ -1,0 +1,194 @@
+//! What a scene holds, in words and numbers, for whoever checks it.
+
+use super::Scene;
+use super::words::{count, list};
+use crate::sim::body::{Dimension, ElementKind, bounds};
+use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::world::cycle;
+use glam::DVec3;
+use serde::Serialize;
+use std::fmt;
+
+/// What a scene holds. It prints as a short table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// The scene's title.
+    pub title: String,
+    /// The scene's name.
+    pub name: String,
+    /// The digest of its meaning.
+    pub digest: String,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of elements of each kind that there is, such as `27 hexahedra`.
+    pub elements: Vec<String>,
+    /// Sides of the box around the body at rest (m): three in space, two in the plane.
+    pub extent: Vec<f64>,
+    /// Mass of the body (kg).
+    pub mass: f64,
+    /// Acceleration of gravity (m/s²): three coordinates in space, two in the plane.
+    pub gravity: Vec<f64>,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Number of frames, the first and the last included.
+    pub frames: u64,
+    /// Frames per second of simulated time (1/s).
+    pub frames_per_second: f64,
+    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s).
+    pub cycle: f64,
+    /// The runs in order.
+    pub runs: Vec<RunSummary>,
+    /// Each obstacle in a few words.
+    pub obstacles: Vec<String>,
+    /// The picture in a few words.
+    pub picture: String,
+}
+
+/// One run of a [`Summary`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Its name.
+    pub name: String,
+    /// Its model, in the words of the picture's second line.
+    pub model: String,
+    /// How time is stepped, as typed in a scene.
+    pub integrator: String,
+    /// Time step (s).
+    pub step: f64,
+    /// Number of steps up to the last frame.
+    pub steps: u64,
+}
+
+impl Scene {
+    /// What the scene holds.
+    pub fn summary(&self) -> Summary {
+        let body = &self.body;
+        let coordinates = |vector: DVec3| match body.dimension {
+            Dimension::Plane => vec![vector.x, vector.y],
+            Dimension::Space => vector.to_array().to_vec(),
+        };
+        let (low, high) = bounds(&body.rest);
+        let last = self.last_frame();
+        let run = |(at, run): (usize, &super::Run)| RunSummary {
+            name: run.name.clone(),
+            model: run.model.describe(body),
+            integrator: typed(&run.integrator),
+            step: run.step,
+            steps: self.frame_step(at, last),
+        };
+        Summary {
+            title: self.title.clone(),
+            name: self.name.clone(),
+            digest: self.digest.clone(),
+            nodes: body.len(),
+            elements: elements(&body.kinds),
+            extent: coordinates(high - low),
+            mass: body.mass.iter().sum(),
+            gravity: coordinates(self.gravity),
+            duration: self.duration,
+            frames: last.saturating_add(1),
+            frames_per_second: self.frames_per_second,
+            cycle: self.cycle(),
+            runs: self.runs.iter().enumerate().map(run).collect(),
+            obstacles: self.obstacles.iter().map(|obstacle| describe(obstacle, &coordinates)).collect(),
+            picture: self.picture(),
+        }
+    }
+
+    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), of which a scene's steps are fractions.
+    pub fn cycle(&self) -> f64 {
+        self.runs.iter().map(|run| cycle(&self.body, run.model.stiffness())).fold(f64::INFINITY, f64::min)
+    }
+
+    fn picture(&self) -> String {
+        let view = &self.view;
+        let [width, height] = view.size;
+        let panels = match (self.runs.len(), view.columns) {
+            (1, _) => "one panel".to_owned(),
+            (runs, columns) if columns >= runs => format!("{runs} panels in a row"),
+            (runs, columns) => format!("{runs} panels, {columns} in a row"),
+        };
+        let from = match self.body.dimension {
+            Dimension::Plane => "from the front".to_owned(),
+            Dimension::Space => format!(
+                "from {}° right and {}° up",
+                short(view.camera.azimuth.to_degrees()),
+                short(view.camera.elevation.to_degrees())
+            ),
+        };
+        let follow = if view.camera.follow { ", following" } else { "" };
+        let (theme, distance) = (typed(&view.theme), short(view.camera.distance));
+        format!("{width} × {height} px, {theme}, {panels}, seen {from}, {distance} m away{follow}")
+    }
+}
+
+/// A choice as it is typed in a scene.
+fn typed(choice: &impl Serialize) -> String {
+    serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
+}
+
+/// How many elements there are of each kind.
+fn elements(kinds: &[ElementKind]) -> Vec<String> {
+    use ElementKind::*;
+    let names = [
+        (Segment, "segment", "segments"),
+        (Polygon, "polygon", "polygons"),
+        (Tetrahedron, "tetrahedron", "tetrahedra"),
+        (Pyramid, "pyramid", "pyramids"),
+        (Wedge, "wedge", "wedges"),
+        (Hexahedron, "hexahedron", "hexahedra"),
+        (Other, "other element", "other elements"),
+    ];
+    let of_kind = |(kind, one, many)| match kinds.iter().filter(|&&other| other == kind).count() {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        several => Some(format!("{} {many}", count(several as u128))),
+    };
+    names.into_iter().filter_map(of_kind).collect()
+}
+
+fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
+    let Obstacle { shape: Shape::Floor { normal, height }, restitution, friction } = obstacle;
+    let normal = vector(&coordinates(*normal));
+    format!("floor at {} m along {normal}, e = {}, μ = {}", short(*height), short(*restitution), short(*friction))
+}
+
+fn vector(coordinates: &[f64]) -> String {
+    let numbers: Vec<_> = coordinates.iter().map(|&number| short(number)).collect();
+    format!("({})", numbers.join(", "))
+}
+
+/// A number with up to four significant digits.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    // Adding zero takes the sign off a negative one.
+    let rounded = rounded + 0.0;
+    if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = |name: &str, text: &str| writeln!(f, "  {name:<9} {text}");
+        line("scene", &format!("{} ({})", self.title, self.name))?;
+        let extent: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
+        let (extent, nodes) = (extent.join(" × "), count(self.nodes as u128));
+        let elements = list(&self.elements, "and", |words| words.into());
+        line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
+        line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
+        let (duration, rate) = (short(self.duration), short(self.frames_per_second));
+        let plural = if self.frames == 1 { "" } else { "s" };
+        line("time", &format!("{duration} s, {} frame{plural} at {rate} per second", count(self.frames.into())))?;
+        line("cycle", &format!("T = {} s", short(self.cycle)))?;
+        for run in &self.runs {
+            line("run", &format!("{}: {}", run.name, run.model))?;
+            let (step, part) = (short(run.step), short(self.cycle / run.step));
+            let steps = count(run.steps.into());
+            line("", &format!("ΔT = {step} s = T/{part}, {steps} steps, {}", run.integrator))?;
+        }
+        for obstacle in &self.obstacles {
+            line("obstacle", obstacle)?;
+        }
+        line("picture", &self.picture)?;
+        write!(f, "  {:<9} {}", "digest", self.digest)
+    }
+}

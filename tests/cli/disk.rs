@@ -1,0 +1,66 @@
+//! A full disk: one message, nothing half-written, what was finished stays.
+#![cfg(target_os = "linux")]
+
+use crate::support::{Place, Ran, lasting, skip};
+use std::process::Command;
+
+/// Runs the program with its output in `out`, on a disk of `size` that goes when it ends, and then `after` in a shell.
+/// `None` if this machine does not let us make a disk.
+fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Option<Ran> {
+    std::fs::create_dir_all(place.path("out")).unwrap();
+    let program = env!("CARGO_BIN_EXE_localshape");
+    let script = format!(
+        "mount -t tmpfs -o size={size} none out || exit 99; '{program}' {arguments}; status=$?; {after}; exit $status"
+    );
+    let mut command = Command::new("unshare");
+    command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).current_dir(place.path("."));
+    let Ok(output) = command.output() else {
+        skip("there is no unshare");
+        return None;
+    };
+    let ran = Ran::from(output);
+    if ran.status == Some(99) || ran.err.starts_with("unshare:") {
+        skip(&format!("no disk could be made for the test: {}", ran.err));
+        return None;
+    }
+    Some(ran)
+}
+
+#[test]
+fn simulate_on_a_full_disk() {
+    let place = Place::new();
+    place.write("long.toml", &lasting("10"));
+    let after = "ls -A out; tail -n 1 out/diagnostics.csv; grep outcome out/run.json";
+    let Some(ran) = on_small_disk(&place, "64k", "simulate long.toml -o out", after) else { return };
+    let ran = ran.bad(4, &["cannot write out/diagnostics.csv", "disk is full"]);
+    let lines: Vec<_> = ran.out.lines().collect();
+    assert_eq!(lines[..2], ["diagnostics.csv", "run.json"], "{ran:?}");
+    assert!(lines[2].starts_with("Mass-spring,") && lines[2].ends_with(",ok"), "whole rows of whole frames: {ran:?}");
+}
+
+#[test]
+fn states_on_a_full_disk() {
+    let place = Place::new();
+    place.write("long.toml", &lasting("10"));
+    let Some(ran) = on_small_disk(&place, "400k", "simulate long.toml -o out --states", "ls -A out") else { return };
+    let ran = ran.bad(4, &["cannot write out/states.npz", "disk is full"]);
+    assert_eq!(ran.out.lines().collect::<Vec<_>>(), ["diagnostics.csv", "run.json"]);
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn frames_on_a_full_disk() {
+    let place = Place::new();
+    place.write("long.toml", &lasting("10"));
+    let after = "ls -A out";
+    let Some(ran) = on_small_disk(&place, "300k", "render long.toml -o out --size 320x240 --samples 1", after) else {
+        return;
+    };
+    if ran.status == Some(3) {
+        return skip("no graphics adapter");
+    }
+    let ran = ran.bad(4, &["cannot write out/", "disk is full"]);
+    assert!(!ran.err.contains(".localshape-"), "no hidden names: {}", ran.err);
+    assert!(ran.out.lines().all(|name| !name.starts_with('.')), "{ran:?}");
+    assert!(ran.out.contains("frame_00000.png") && ran.out.contains("run.json"), "{ran:?}");
+}

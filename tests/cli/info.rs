@@ -1,0 +1,84 @@
+//! `info`, `schema` and `completions`; and what becomes of results that nobody reads.
+
+use crate::support::{Place, Ran};
+use std::process::Stdio;
+
+#[test]
+fn information_works_without_any_driver() {
+    let place = Place::new();
+    let nowhere = place.path("nowhere.json");
+    let none = |arguments: &str| {
+        let mut command = place.command(arguments.split(' '));
+        Ran::from(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap()).good()
+    };
+    for ran in [place.run("info").good(), none("info")] {
+        assert!(ran.out.starts_with(concat!("localshape ", env!("CARGO_PKG_VERSION"))), "{}", ran.out);
+        assert!(ran.out.contains("adapters") && ran.out.contains("thread"), "{}", ran.out);
+    }
+    let document = none("info --json").json();
+    assert_eq!(document["version"], env!("CARGO_PKG_VERSION"));
+    if cfg!(all(feature = "render", target_os = "linux")) {
+        assert!(none("info").out.contains("mesa-vulkan-drivers"), "it says what to install");
+        assert_eq!(document["adapters"].as_array().unwrap().len(), 0);
+    }
+}
+
+#[test]
+fn the_schema_is_one_document() {
+    let document = Place::new().run("schema").good().json();
+    assert!(document["$schema"].is_string());
+    assert!(document["properties"]["body"].is_object());
+}
+
+#[test]
+fn completions_for_each_shell() {
+    let place = Place::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(place.run(&format!("completions {shell}")).good().out.contains("overwrite"), "{shell}");
+    }
+    place.run("completions csh").bad(2, &["csh", "bash"]);
+}
+
+/// A reader that has seen enough closes its end: that is no failure.
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let place = Place::with_small();
+    place.write("other.toml", crate::support::SMALL);
+    for arguments in
+        ["schema", "completions bash", "info", "check small.toml", "simulate small.toml other.toml", "--help"]
+    {
+        let mut command = place.command(arguments.split(' '));
+        // The end for reading is gone before the program writes a word.
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let ran = Ran::from(command.stdout(writer).stderr(Stdio::piped()).output().unwrap());
+        assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{arguments}");
+    }
+    // The work is done all the same.
+    assert_eq!(place.names("output/other"), ["diagnostics.csv", "run.json"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn results_that_cannot_be_written() {
+    let place = Place::with_small();
+    for arguments in ["schema", "check small.toml", "simulate small.toml --json"] {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let mut command = place.command(arguments.split(' '));
+        Ran::from(command.stdout(full).stderr(Stdio::piped()).output().unwrap()).bad(4, &["standard output"]);
+    }
+}
+
+/// Programs may be started without any standard output or error.
+#[cfg(unix)]
+#[test]
+fn closed_outputs() {
+    let place = Place::with_small();
+    let program = env!("CARGO_BIN_EXE_localshape");
+    for (arguments, status) in [("simulate small.toml -o out", 0), ("check absent.toml", 2), ("nonsense", 2)] {
+        let line = format!("'{program}' {arguments} >&- 2>&-");
+        let ended = std::process::Command::new("sh").args(["-c", &line]).current_dir(place.path(".")).status().unwrap();
+        assert_eq!(ended.code(), Some(status), "{arguments}");
+    }
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
+}

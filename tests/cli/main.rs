@@ -1,0 +1,12 @@
+//! Every command as a user runs it: the program itself, its files, its words and its exit status.
+
+mod check;
+mod disk;
+mod folders;
+mod info;
+mod interrupt;
+#[cfg(feature = "render")]
+mod render;
+mod simulate;
+mod support;
+mod usage;

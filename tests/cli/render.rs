@@ -1,0 +1,216 @@
+//! `render`: frames and what they say about themselves.
+
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, lasting, skip};
+use localshape::output::{Tags, read_tags};
+use std::path::Path;
+
+/// Whether something can be drawn here; says so if not. Machines that must be able to say `LOCALSHAPE_REQUIRE_GPU=1`.
+fn can_draw() -> bool {
+    let found = Place::new().run("info --json").good().json();
+    let any = !found["adapters"].as_array().unwrap().is_empty();
+    assert!(any || std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no graphics adapter");
+    if !any {
+        skip("no graphics adapter");
+    }
+    any
+}
+
+fn tags(path: &Path) -> Tags {
+    read_tags(path).expect("readable").expect("a frame of ours")
+}
+
+/// Width, height and bytes of the pixels of a frame.
+fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("a frame"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a small picture")];
+    let info = reader.next_frame(&mut bytes).expect("a whole picture");
+    assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
+    ([info.width, info.height], bytes)
+}
+
+#[test]
+fn frames_diagnostics_and_summary() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    let ran = place.run("render small.toml --samples 1").good();
+    assert!(ran.out.contains("7 frames of 96×64 in output/small"), "{}", ran.out);
+    assert!(ran.out.contains("drawing") && ran.out.contains("encoding"), "{}", ran.out);
+    let names = place.names("output/small");
+    assert_eq!(names.len(), SMALL_FRAMES + 2);
+    assert_eq!((names[0].as_str(), names[1].as_str()), ("diagnostics.csv", "frame_00000.png"));
+
+    let run = place.json("output/small/run.json");
+    assert_eq!(run["frames"]["written"], SMALL_FRAMES);
+    assert_eq!(run["frames"]["size"], serde_json::json!([96, 64]));
+    let adapter = run["adapter"].as_str().expect("the adapter's name");
+    for stage in ["simulate", "compose", "draw", "encode", "total"] {
+        assert!(run["times"][stage]["wall"].as_f64().unwrap() > 0.0, "{stage}: {run}");
+    }
+
+    let path = place.path("output/small/frame_00006.png");
+    let (size, bytes) = pixels(&path);
+    assert_eq!(size, [96, 64]);
+    assert!(bytes.iter().any(|&byte| byte != bytes[0]), "something is to be seen");
+    let tags = tags(&path);
+    assert_eq!((tags.frame, tags.adapter.as_str(), tags.version.as_str()), (6, adapter, env!("CARGO_PKG_VERSION")));
+    assert_eq!(Some(tags.scene.as_str()), run["scene"]["digest"].as_str());
+    let states: Vec<_> = tags.states.iter().map(|(digest, run)| (run.as_str(), digest.as_str())).collect();
+    let last = |run: usize, place: &Place| place.json("output/small/run.json")["runs"][run]["last"]["state"].clone();
+    assert_eq!(
+        states,
+        [("Local shape", last(0, &place).as_str().unwrap()), ("Mass-spring", last(1, &place).as_str().unwrap())]
+    );
+    let table = place.read("output/small/diagnostics.csv");
+    let time = table.lines().last().unwrap().split(',').nth(2).unwrap();
+    assert_eq!(tags.time.to_bits(), time.parse::<f64>().unwrap().to_bits());
+}
+
+/// Drawing never changes the simulation, and equal runs give equal files.
+#[test]
+fn again_and_without_pictures() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.run("render small.toml -o one --threads 1 --samples 1").good();
+    place.run("render small.toml -o two --threads 3 --samples 1").good();
+    place.run("simulate small.toml -o numbers").good();
+    assert_eq!(place.read("one/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
+    for name in place.names("one").into_iter().filter(|name| name != "run.json") {
+        let bytes = |folder: &str| std::fs::read(place.path(folder).join(&name)).unwrap();
+        assert!(bytes("one") == bytes("two"), "{name} differs");
+    }
+}
+
+#[test]
+fn some_frames_of_one_run_in_another_size() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    let ran = place.run("render small.toml --frames 2,4-6x2 --only Mass-spring --size 63x41 --timings --states").good();
+    for word in ["3 frames of 63×41", "wall ms", "encode and write"] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    let frames = ["frame_00002.png", "frame_00004.png", "frame_00006.png"];
+    let names = place.names("output/small");
+    assert_eq!(names, ["diagnostics.csv", frames[0], frames[1], frames[2], "run.json", "states.npz"]);
+    let path = place.path("output/small/frame_00004.png");
+    assert_eq!(pixels(&path).0, [63, 41]);
+    assert_eq!(tags(&path).states.iter().map(|(_, run)| run.as_str()).collect::<Vec<_>>(), ["Mass-spring"]);
+
+    // A frame drawn alone is the frame drawn with others.
+    place.run("render small.toml --frames 4 --only Mass-spring --size 63x41 -o alone").good();
+    assert!(std::fs::read(path).unwrap() == std::fs::read(place.path("alone/frame_00004.png")).unwrap());
+}
+
+#[test]
+fn samples_and_adapters() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    for (folder, more) in [("smooth", ""), ("hard", " --samples 1"), ("auto", " --adapter auto")] {
+        place.run(&format!("render small.toml --frames 3 -o {folder}{more}")).good();
+    }
+    let bytes = |folder: &str| std::fs::read(place.path(folder).join("frame_00003.png")).unwrap();
+    assert!(bytes("smooth") != bytes("hard"), "samples make a difference");
+    assert!(bytes("smooth") == bytes("auto"), "auto is the default");
+    let adapter = place.json("auto/run.json")["adapter"].as_str().unwrap().to_owned();
+    let name = adapter.split([' ', '(']).next().unwrap();
+    place.run(&format!("render small.toml --frames 3 -o named --adapter {name}")).good();
+    place.run("render small.toml --adapter sundial -o none").bad(3, &["sundial", name]);
+    assert!(!place.path("none").exists(), "nothing is written before it is known that it can be drawn");
+}
+
+#[test]
+fn json_with_pictures() {
+    if !can_draw() {
+        return;
+    }
+    let document = Place::with_small().run("render small.toml --frames 0 --json").good().json();
+    assert_eq!(document["scenes"][0]["frames"]["written"], 1);
+    assert_eq!(document["scenes"][0]["outcome"], "done");
+}
+
+#[test]
+fn wrong_options() {
+    let place = Place::with_small();
+    place.run("render small.toml --samples 2").bad(2, &["--samples", "1, 4"]);
+    place.run("render small.toml --size 1280").bad(2, &["--size", "1280x720"]);
+    place.run("render small.toml --size 0x4").bad(2, &["--size", "16384"]);
+    assert_eq!(place.names("."), ["small.toml"]);
+}
+
+/// Frames of another scene are not mixed with those of this one, also when the summary is gone.
+#[test]
+fn frames_of_another_scene() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.write("other.toml", &lasting("0.05"));
+    place.run("render small.toml -o out --samples 1").good();
+    std::fs::remove_file(place.path("out/run.json")).unwrap();
+    std::fs::remove_file(place.path("out/diagnostics.csv")).unwrap();
+    place.run("render other.toml -o out").bad(2, &["7 frames of another scene", "--overwrite"]);
+    place.run("simulate other.toml -o out").bad(2, &["7 frames of another scene", "--overwrite"]);
+    place.run("render other.toml -o out --samples 1 --overwrite").good();
+    let frames: Vec<_> = place.names("out").into_iter().filter(|name| name.ends_with(".png")).collect();
+    assert_eq!(frames.len(), 4, "{frames:?}");
+
+    // Of the same scene, other frames stay beside the new ones.
+    place.run("render other.toml -o out --frames 1 --samples 1").good();
+    assert_eq!(place.names("out").len(), 4 + 2);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_driver() {
+    let place = Place::with_small();
+    let nowhere = place.path("nowhere.json");
+    let run = |arguments: &str| {
+        let mut command = place.command(arguments.split(' '));
+        Ran::from(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap())
+    };
+    run("render small.toml").bad(3, &["mesa-vulkan-drivers"]);
+    assert_eq!(place.names("."), ["small.toml"]);
+    run("simulate small.toml").good();
+}
+
+#[test]
+fn a_diverged_run_is_drawn_to_the_end() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
+    place.run("render wild.toml --frames 0-300x100 --samples 1").good();
+    let tags = |frame: &str| tags(&place.path("output/wild").join(frame));
+    assert_eq!(tags("frame_00200.png").states, tags("frame_00300.png").states);
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_while_drawing() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("long.toml", &lasting("1000"));
+    let child = crate::interrupt::start(&place, "render long.toml --samples 1", "output/long/frame_00003.png");
+    crate::interrupt::signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let run = place.json("output/long/run.json");
+    let written = run["frames"]["written"].as_u64().unwrap();
+    assert_eq!(run["frames"]["recorded"].as_u64(), Some(written));
+    let names = place.names("output/long");
+    assert_eq!(names.len() as u64, written + 2);
+    for name in names.iter().filter(|name| name.ends_with(".png")) {
+        pixels(&place.path("output/long").join(name));
+    }
+}

@@ -1,0 +1,156 @@
+//! `simulate`: diagnostics, summary and states.
+
+use crate::support::{Place, SMALL, SMALL_FRAMES};
+use std::io::Read;
+
+const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
+                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,status";
+
+/// The rows of a table without its heads.
+fn rows(table: &str) -> Vec<Vec<&str>> {
+    table.lines().skip(1).map(|line| line.split(',').collect()).collect()
+}
+
+#[test]
+fn diagnostics_of_each_run_and_frame() {
+    let place = Place::with_small();
+    let ran = place.run("simulate small.toml").good();
+    for word in ["Two cubes", "7 frames", "output/small", "Local shape", "Mass-spring", "ok", "turned over"] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    assert_eq!(place.names("output/small"), ["diagnostics.csv", "run.json"]);
+
+    let table = place.read("output/small/diagnostics.csv");
+    assert_eq!(table.lines().next(), Some(HEADS));
+    let rows = rows(&table);
+    assert_eq!(rows.len(), 2 * SMALL_FRAMES);
+    assert_eq!((rows[0][0], rows[1][0]), ("Local shape", "Mass-spring"));
+    // Twelve nodes of one kilogram at 2 m/s.
+    assert_eq!(rows[0][3].parse::<f64>().unwrap(), 24.0);
+    assert_eq!(rows[0][7].parse::<f64>().unwrap(), -24.0);
+    // A model without rotations has no error in them.
+    assert!(rows.iter().all(|row| (row[12] == "nan") == (row[0] == "Mass-spring")), "{table}");
+    let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
+    assert!(rows.iter().all(|row| digits(row[2]) == 17 && digits(row[3]) == 17), "{table}");
+    assert!(rows.iter().all(|row| row[16] == "ok"));
+}
+
+#[test]
+fn summary_of_what_was_run() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --threads 1").good();
+    let run = place.json("output/small/run.json");
+    assert_eq!(run["localshape"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(run["scene"]["title"], "Two cubes");
+    assert_eq!(run["scene"]["digest"].as_str().unwrap().len(), 64);
+    assert_eq!(run["command"].as_array().unwrap().len(), 5);
+    assert_eq!(run["command"][1], "simulate");
+    assert_eq!(run["outcome"], "done");
+    assert_eq!((run["frames"]["asked"].as_u64(), run["frames"]["recorded"].as_u64()), (Some(7), Some(7)));
+    assert!(run["adapter"].is_null());
+    assert_eq!((run["runs"][0]["name"].as_str(), run["runs"][0]["status"].as_str()), (Some("Local shape"), Some("ok")));
+    assert_eq!(run["runs"][1]["last"]["frame"], 6);
+    assert!(run["times"]["simulate"]["wall"].as_f64().unwrap() > 0.0);
+    assert!(run["times"]["draw"].is_null());
+}
+
+/// The command line never changes a bit of the state.
+#[test]
+fn the_same_for_any_number_of_threads() {
+    let place = Place::with_small();
+    place.run("simulate small.toml -o one --threads 1 --states").good();
+    place.run("simulate small.toml -o four --threads 4 --states").good();
+    assert_eq!(place.read("one/diagnostics.csv"), place.read("four/diagnostics.csv"));
+    let states = |folder: &str| std::fs::read(place.path(folder).join("states.npz")).unwrap();
+    assert!(states("one") == states("four"), "states.npz differs");
+}
+
+#[test]
+fn some_frames_of_one_run() {
+    let place = Place::with_small();
+    place.run("simulate small.toml -o all").good();
+    place.run("simulate small.toml -o some --frames 1-5x2,6 --only Mass-spring").good();
+    let (all, some) = (place.read("all/diagnostics.csv"), place.read("some/diagnostics.csv"));
+    let wanted: Vec<_> = rows(&all)
+        .into_iter()
+        .filter(|row| row[0] == "Mass-spring" && ["1", "3", "5", "6"].contains(&row[1]))
+        .collect();
+    assert_eq!(wanted.len(), 4);
+    assert_eq!(rows(&some), wanted);
+}
+
+#[test]
+fn json_is_one_document() {
+    let place = Place::with_small();
+    place.write("other.toml", SMALL);
+    let ran = place.run("simulate small.toml other.toml -o both --json").good();
+    let document = ran.json();
+    let scenes = document["scenes"].as_array().unwrap();
+    assert_eq!(scenes.len(), 2);
+    assert_eq!(scenes[1]["folder"].as_str().unwrap(), std::path::Path::new("both").join("other").to_str().unwrap());
+    assert_eq!(scenes[0]["runs"][0]["status"], "ok");
+    assert_eq!(place.names("both/small"), ["diagnostics.csv", "run.json"]);
+    assert_eq!(place.names("both/other"), ["diagnostics.csv", "run.json"]);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let place = Place::with_small();
+    assert_eq!(place.run("simulate small.toml --quiet").good().out, "");
+}
+
+#[test]
+fn a_run_that_diverges_is_a_result() {
+    let place = Place::new();
+    // Far beyond the largest stable step.
+    place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
+    let ran = place.run("simulate wild.toml").good();
+    assert!(ran.out.contains("diverged at"), "{}", ran.out);
+    let run = &place.json("output/wild/run.json")["runs"][1];
+    assert_eq!(run["status"], "diverged");
+    assert!(run["time"].as_f64().unwrap() > 0.0 && run["step"].as_u64().unwrap() > 0, "{run}");
+    assert!(place.read("output/wild/diagnostics.csv").trim_end().ends_with(",diverged"));
+}
+
+/// One array of `states.npz`: its head and its numbers.
+fn array(place: &Place, file: &str, name: &str) -> (String, Vec<f64>) {
+    let file = std::fs::File::open(place.path(file)).expect("an archive");
+    let mut archive = zip::ZipArchive::new(file).expect("a whole archive");
+    let mut bytes = Vec::new();
+    archive.by_name(&format!("{name}.npy")).expect("the array").read_to_end(&mut bytes).expect("its bytes");
+    let length = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let numbers = bytes[length..].chunks_exact(8).map(|number| f64::from_le_bytes(number.try_into().unwrap()));
+    (String::from_utf8_lossy(&bytes[10..length]).trim_end().to_owned(), numbers.collect())
+}
+
+#[test]
+fn states_of_every_frame() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --states --frames 0,3-6").good();
+    let file = "output/small/states.npz";
+    let (head, time) = array(&place, file, "time");
+    assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (5,), }");
+    let (head, position) = array(&place, file, "Local shape.position");
+    assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (5, 12, 3), }");
+    let (_, velocity) = array(&place, file, "Mass-spring.velocity");
+    assert_eq!((time.len(), position.len(), velocity.len()), (5, 5 * 12 * 3, 5 * 12 * 3));
+    assert_eq!((time[0], velocity[1]), (0.0, -2.0));
+    // The times are those of the diagnostics, to the last bit.
+    let table = place.read("output/small/diagnostics.csv");
+    let times: Vec<f64> = rows(&table).iter().step_by(2).map(|row| row[2].parse().unwrap()).collect();
+    assert_eq!(time, times);
+    // The lowest nodes start on the floor.
+    assert_eq!(position[..36].chunks(3).map(|node| node[1]).fold(f64::INFINITY, f64::min), 0.0);
+}
+
+#[test]
+fn states_of_runs_with_odd_names() {
+    let place = Place::new();
+    place.write("odd.toml", &SMALL.replace("Local shape", "k: ½ 弾性"));
+    place.run("simulate odd.toml --states").good();
+    array(&place, "output/odd/states.npz", "k: ½ 弾性.position");
+    for name in ["../out", "line\\nbreak", ""] {
+        place.write("odd.toml", &SMALL.replace("Local shape", name));
+        place.run("simulate odd.toml --states").bad(2, &["odd.toml:14:8"]);
+    }
+}

@@ -1,0 +1,166 @@
+//! Golden images: the last frame of each scene in this folder, against the picture of the same name beside it.
+//!
+//! A golden is a frame as the program writes it, so it carries the digest of the state it shows. A failure can say
+//! whether the physics moved or only the drawing.
+//!
+//! A scene without a picture fails, and so does a picture without a scene. To make or renew pictures:
+//! `UPDATE_GOLDENS=1 cargo test --release --test golden`, then look at every one that changed.
+#![cfg(feature = "render")]
+
+use image::RgbImage;
+use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::output::{Tags, encode, read_tags};
+use localshape::picture::Composer;
+use localshape::render::Renderer;
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// By how much a channel must differ before a pixel counts: rounding differs by 1 between processors.
+const CHANNEL: u8 = 2;
+
+/// How many pixels may differ by more, as a part of all and at least. Weaker processors and other drivers differ in
+/// 10 to 30 pixels of a 1280×720 picture, now and then strongly where an outline passes through a pixel's corner.
+/// A limit on the largest difference would be wrong either way.
+const PART: f64 = 1e-4;
+const AT_LEAST: usize = 8;
+
+/// The largest golden (bytes): small pictures say as much and keep the store small.
+const LARGEST_FILE: u64 = 40 * 1024;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+}
+
+/// The stems of the files with an ending.
+fn stems(ending: &str) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder()).expect("the folder of goldens");
+    let paths = entries.map(|entry| entry.expect("a readable folder").path());
+    let matching = paths.filter(|path| path.extension().is_some_and(|found| found == ending));
+    matching.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect()
+}
+
+/// A device, or `None` with a word about it; with `LOCALSHAPE_REQUIRE_GPU=1` there must be one.
+fn device() -> Option<Gpu> {
+    match Gpu::new(&AdapterChoice::Cpu).or_else(|_| Gpu::new(&AdapterChoice::Auto)) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some_and(|value| value == "1") => panic!("{error}"),
+        Err(error) => {
+            eprintln!("skipped, nothing was compared: {error}");
+            None
+        }
+    }
+}
+
+/// The last frame of a scene, drawn.
+fn draw(gpu: &Gpu, scene: &Scene) -> (RgbImage, Tags) {
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let frame = Sequence::new(scene, &runs).frame(scene.last_frame());
+    let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a renderer");
+    let image = renderer.draw(&Composer::new(scene).compose(&frame)).expect("a picture");
+    (image, Tags::new(scene, &frame, &gpu.description().to_string()))
+}
+
+/// How many pixels differ by more than [`CHANNEL`]; `None` if the sizes differ.
+fn different_pixels(expected: &RgbImage, actual: &RgbImage) -> Option<usize> {
+    let differs = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > CHANNEL);
+    (expected.dimensions() == actual.dimensions())
+        .then(|| expected.pixels().zip(actual.pixels()).filter(|(a, b)| differs(a, b)).count())
+}
+
+fn allowed(picture: &RgbImage) -> usize {
+    AT_LEAST.max((PART * f64::from(picture.width()) * f64::from(picture.height())) as usize)
+}
+
+/// What is wrong with a picture, in words; `None` if it is as expected.
+fn judge(golden: &Path, actual: &RgbImage, tags: &Tags) -> Option<String> {
+    let accept = "look at both, then accept with UPDATE_GOLDENS=1 cargo test --release --test golden";
+    if !golden.exists() {
+        return Some("the golden is missing; make it with UPDATE_GOLDENS=1 cargo test --release --test golden".into());
+    }
+    let expected = match image::open(golden) {
+        Ok(expected) => expected.to_rgb8(),
+        Err(error) => return Some(format!("the golden cannot be read: {error}")),
+    };
+    let Ok(Some(expected_tags)) = read_tags(golden) else {
+        return Some(format!("the golden records no state; {accept}"));
+    };
+    if expected_tags.states != tags.states {
+        return Some(format!("state moved: the simulation gives other positions or velocities; {accept}"));
+    }
+    match different_pixels(&expected, actual) {
+        None => Some(format!("{:?} instead of {:?}; {accept}", actual.dimensions(), expected.dimensions())),
+        Some(count) if count > allowed(&expected) => {
+            Some(format!("same state, drawn differently: {count} pixels, {} allowed; {accept}", allowed(&expected)))
+        }
+        Some(_) => None,
+    }
+}
+
+#[test]
+fn every_scene_looks_as_it_did() {
+    let Some(gpu) = device() else { return };
+    let update = std::env::var_os("UPDATE_GOLDENS").is_some_and(|value| value == "1");
+    let failed = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+    std::fs::create_dir_all(&failed).expect("a folder for failures");
+    let mut complaints = Vec::new();
+    for stem in stems("toml") {
+        let scene = Scene::load(&folder().join(&stem).with_extension("toml"), &Limits::default());
+        let (image, tags) = draw(&gpu, &scene.unwrap_or_else(|error| panic!("{error}")));
+        let golden = folder().join(&stem).with_extension("png");
+        let Some(complaint) = judge(&golden, &image, &tags) else { continue };
+        let bytes = encode(image.dimensions().into(), image.as_raw(), &tags);
+        if update {
+            assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
+            std::fs::write(&golden, bytes).expect("a golden");
+            eprintln!("{stem}: renewed ({complaint})");
+        } else {
+            let actual = failed.join(&stem).with_extension("png");
+            std::fs::write(&actual, bytes).expect("the picture of a failure");
+            complaints.push(format!(
+                "{stem}: {complaint}\n  expected {}\n  actual   {}",
+                golden.display(),
+                actual.display()
+            ));
+        }
+    }
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+}
+
+#[test]
+fn every_golden_has_a_scene_and_is_small() {
+    assert!(!stems("toml").is_empty());
+    let dead: Vec<_> = stems("png").difference(&stems("toml")).cloned().collect();
+    assert_eq!(dead, [""; 0], "goldens without a scene");
+    for stem in stems("png") {
+        let size = std::fs::metadata(folder().join(&stem).with_extension("png")).expect("a golden").len();
+        assert!(size <= LARGEST_FILE, "{stem}: {size} bytes");
+    }
+}
+
+/// The gate itself: a missing golden fails, a moved state and a changed picture are told apart.
+#[test]
+fn the_gate_tells_what_moved() {
+    let here = tempfile::tempdir().expect("a folder");
+    let golden = here.path().join("golden.png");
+    let mut image = RgbImage::from_pixel(32, 32, image::Rgb([90, 120, 150]));
+    let mut tags = Tags {
+        scene: "s".into(),
+        states: vec![("1234".into(), "run".into())],
+        frame: 3,
+        time: 0.05,
+        version: "0".into(),
+        adapter: "none".into(),
+    };
+    let verdict = |image: &RgbImage, tags: &Tags| judge(&golden, image, tags).unwrap_or_default();
+    assert!(verdict(&image, &tags).starts_with("the golden is missing; make it with UPDATE_GOLDENS=1"));
+    std::fs::write(&golden, encode([32, 32], image.as_raw(), &tags)).expect("a golden");
+    assert_eq!(verdict(&image, &tags), "");
+    let _ = image.pixels_mut().map(|pixel| pixel.0[0] += CHANNEL).count();
+    assert_eq!(verdict(&image, &tags), "", "rounding is no difference");
+    image.pixels_mut().take(AT_LEAST + 1).for_each(|pixel| pixel.0[1] += 9);
+    assert!(verdict(&image, &tags).starts_with("same state, drawn differently: 9 pixels, 8 allowed"));
+    tags.states[0].0 = "1235".into();
+    assert!(verdict(&image, &tags).starts_with("state moved"));
+}

@@ -1,0 +1,81 @@
+//! The digest follows the meaning of a scene and nothing else.
+
+use super::{WORLD, good, shipped};
+
+#[test]
+fn comments_layout_order_and_spelling_of_numbers_do_not_count() {
+    let plain = good(&shipped("fig4b.toml")).digest;
+    assert_eq!(plain.len(), 64);
+    let same = r#"
+        view = { clock = "after first contact", camera = { follow = true }, size = [1_280, 0x2D0] }
+        gravity = [0.0, -98e-1, 0]
+        title = "3×3×3 cubes dropped on a floor"
+        run = [
+            { model = { stiffness = 10000, damping_ratio = 1e-1, kind = "shape-based" }, name = "Local shape" },
+            { name = 'Mass-spring', model.kind = "mass-spring", model.stiffness = 10_000.0, model.damping_ratio = 0.10,
+              model.springs = "edges+one-diagonal" },
+        ]
+        [[obstacle]]
+        friction = 0.3
+        restitution = 0.5
+        kind = "floor"
+        [body]
+        velocity = [0, -9.899495, 0]
+        rotation = { angle = 0.028284, axis = [1.0, 0, 1] }
+        mass = 1
+        lowest = 0
+        [body.lattice]
+        side = 1e-1
+        cells = [3, 3, 3]
+        [time]
+        frames_per_second = 6e1
+        step = "T / 50.0"
+        duration = 3
+    "#;
+    assert_eq!(good(same).digest, plain);
+}
+
+#[test]
+fn a_default_may_be_typed_or_not() {
+    let short = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[[obstacle]]\nkind = 'floor'\n");
+    let long = short.replace("duration = 1", "duration = 1\nstep = 'T/50'\nintegrator = 'semi-implicit-euler'")
+        + "height = 0.0\nrestitution = -0.0\n[view]\nsize = [1280, 720]\ntheme = 'light'\n[view.camera]\nfollow = false\n";
+    assert_eq!(good(&short).digest, good(&long).digest);
+}
+
+#[test]
+fn whatever_changes_the_scene_changes_the_digest() {
+    let scene = shipped("fig4b.toml");
+    let mut digests = vec![good(&scene).digest];
+    for (from, to) in [
+        ("3×3×3 cubes", "Cubes"),
+        ("-9.8,", "-9.81,"),
+        ("3.0", "3.5"),
+        ("T/50", "T/51"),
+        ("cells = [3, 3, 3]", "cells = [3, 3, 4]"),
+        ("angle = 0.028284", "angle = 0.0282840001"),
+        ("mass = 1.0", "mass = 2.0"),
+        ("damping_ratio = 0.1 }", "damping_ratio = 0.2 }"),
+        ("damping_ratio = 0.1 }", "damping = 0.1 }"),
+        ("damping_ratio = 0.1 }", "damping_ratio = 0.1, passes = 3 }"),
+        ("one-diagonal", "face-diagonals"),
+        ("friction = 0.3", "friction = 0.4"),
+        ("friction = 0.3", ""),
+        ("1280", "1281"),
+        ("follow = true", "follow = false"),
+        ("\"Mass-spring\"", "\"mass-spring\""),
+    ] {
+        assert!(scene.contains(from), "{from}");
+        digests.push(good(&scene.replacen(from, to, 1)).digest);
+    }
+    let all = digests.len();
+    digests.sort();
+    digests.dedup();
+    assert_eq!(digests.len(), all);
+}
+
+/// Guards stored results: whoever changes this number disowns all frames made before.
+#[test]
+fn the_digest_of_the_shipped_scene_stays() {
+    assert_eq!(good(&shipped("fig4b.toml")).digest, "bec31a5b1d034f3ebe7424a483d69fa0fff969e7fac5e7935823dfcf452ecca1");
+}

@@ -1,0 +1,502 @@
+//! Every mistake that a scene can have: where it is said to be, and in which words.
+
+use super::bad;
+use localshape::scene::{Limits, Scene, SceneError};
+
+/// A good scene with an explicit body in the plane, line by line, in which each case changes something.
+const PLANE: &str = "\
+gravity = [0, -9.8]
+[time]
+duration = 3
+step = 'T/50'
+[body]
+nodes = [[0, 0], [1, 0], [1, 1], [0, 1]]
+elements = [[0, 1, 2], [0, 2, 3]]
+springs = [[0, 1]]
+mass = 1
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', stiffness = 1e4 }
+[[run]]
+name = 'Mass-spring'
+model = { kind = 'mass-spring', stiffness = 1e4 }
+[[obstacle]]
+kind = 'floor'
+restitution = 0.5
+[view]
+size = [640, 360]
+";
+
+/// The same with one cube in space.
+const SPACE: &str = "\
+gravity = [0, -9.8, 0]
+[time]
+duration = 3
+[body]
+lattice = { cells = [1, 1, 1], side = 0.1 }
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', stiffness = 1e4 }
+";
+
+/// Replaces `from` in a scene, and expects exactly the mistakes listed: line, column, words.
+#[track_caller]
+fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize, &str)]) {
+    assert!(scene.contains(from), "the scene has no {from:?}");
+    let text = scene.replacen(from, to, 1);
+    let error = bad(&text);
+    let found = error.mistakes();
+    let told = || format!("{from:?} → {to:?}\n{error}");
+    assert_eq!(found.len(), expected.len(), "{}", told());
+    for (mistake, &(line, column, words)) in found.iter().zip(expected) {
+        assert_eq!((mistake.line, mistake.column), (line, column), "{}", told());
+        let text = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        assert!(text.contains(words), "{words:?} is not in\n{}", told());
+    }
+}
+
+#[test]
+fn unknown_keys() {
+    // A misspelt key is not missing as well.
+    case(
+        PLANE,
+        "stiffness",
+        "stifness",
+        &[(12, 33, "unknown key `stifness` in `run[0].model` did you mean `stiffness`?")],
+    );
+    case(PLANE, "step", "Step", &[(4, 1, "unknown key `Step` in `time` did you mean `step`?")]);
+    case(PLANE, "nodes =", "node =", &[(6, 1, "did you mean `nodes`?")]);
+    case(PLANE, "[view]", "[viev]", &[(19, 2, "unknown key `viev` did you mean `view`?")]);
+    case(PLANE, "[time]", "[tiem]", &[(2, 2, "did you mean `time`?")]);
+    case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "unknown key `colour` in `body` known here: lattice, nodes,")]);
+    case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
+    case(PLANE, "mass = 1", "azimuth = 1", &[(9, 1, "`azimuth` belongs to `view.camera`")]);
+    case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", &[(5, 44, "`rotation` belongs to `body`")]);
+    case(PLANE, "mass = 1", "\"\" = 1", &[(9, 1, "unknown key `` in `body`")]);
+    case(PLANE, "mass = 1", "\"a\\u0007\" = 1", &[(9, 1, "unknown key `a\u{fffd}`")]);
+}
+
+#[test]
+fn missing_keys() {
+    case(PLANE, "duration = 3\n", "", &[(2, 1, "`time` has no `duration` `duration`: Simulated time (s)")]);
+    case(PLANE, "[time]\nduration = 3\nstep = 'T/50'\n", "", &[(1, 1, "there is no table [time]")]);
+    case(PLANE, "stiffness = 1e4", "damping = 1", &[(12, 9, "`run[0].model` has no `stiffness`")]);
+    case(PLANE, "name = 'Local shape'\n", "", &[(10, 1, "`run[0]` has no `name`")]);
+    case(
+        PLANE,
+        "kind = 'floor'\n",
+        "",
+        &[(16, 1, "`obstacle[0]` has no `kind`; expected \"floor\" such as kind = \"floor\"")],
+    );
+    case(PLANE, "kind = 'mass-spring', ", "", &[(15, 9, "has no `kind`; expected \"shape-based\" or \"mass-spring\"")]);
+    case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edge (m)")]);
+    case(
+        SPACE,
+        "lattice = { cells = [1, 1, 1], side = 0.1 }",
+        "mass = 1",
+        &[(4, 1, "`body` has neither `lattice` nor `nodes` and `elements`; one is needed")],
+    );
+    case(PLANE, "elements = [[0, 1, 2], [0, 2, 3]]\n", "", &[(5, 1, "`body` has `nodes` but no `elements`")]);
+    let nothing = bad("title = 'nothing'");
+    let words: Vec<_> = nothing.mistakes().iter().map(|mistake| mistake.message.as_str()).collect();
+    assert_eq!(words, ["there is no table [time]", "there is no table [body]", "there is no table [[run]]"]);
+}
+
+#[test]
+fn wrong_types() {
+    case(
+        PLANE,
+        "= 3",
+        "= '3'",
+        &[(3, 12, "`time.duration` is the string \"3\"; expected a number Simulated time (s)")],
+    );
+    case(PLANE, "= 3", "= [3]", &[(3, 12, "is an array of 1; expected a number")]);
+    case(PLANE, "= 3", "= 1979-05-27", &[(3, 12, "is the date 1979-05-27; expected a number")]);
+    case(PLANE, "'T/50'", "true", &[(4, 8, "`time.step` is true; expected a number or a string")]);
+    case(PLANE, "'floor'", "3", &[(17, 8, "`obstacle[0].kind` is the whole number 3; expected \"floor\"")]);
+    case(PLANE, "[0, -9.8]", "-9.8", &[(1, 11, "`gravity` is the number -9.8; expected an array")]);
+    case(PLANE, "[0, -9.8]", "[0, '-9.8']", &[(1, 15, "`gravity[1]` is the string \"-9.8\"; expected a number")]);
+    case(PLANE, "[0, 2, 3]", "[0, 2, 3.0]", &[(7, 31, "is the number 3.0; expected a whole number")]);
+    case(PLANE, "[0, 2, 3]", "3", &[(7, 24, "`body.elements[1]` is the whole number 3; expected an array")]);
+    case(
+        PLANE,
+        "model = { kind = 'shape-based', stiffness = 1e4 }",
+        "model = 'shape-based'",
+        &[(12, 9, "`run[0].model` is the string \"shape-based\"; expected a table")],
+    );
+    case(
+        PLANE,
+        "[640, 360]",
+        "[640, 360]\ncamera.follow = 1",
+        &[(21, 17, "is the whole number 1; expected true or false")],
+    );
+    case(
+        SPACE,
+        "[[run]]",
+        "[run]",
+        &[(6, 1, "`run` is a table; expected an array write [[run]], with double brackets")],
+    );
+    case(PLANE, "[view]", "[[view]]", &[(19, 1, "expected a table write [view], with single brackets")]);
+}
+
+#[test]
+fn numbers_out_of_range() {
+    case(PLANE, "= 3", "= -1", &[(3, 12, "`time.duration` is -1; expected a number of at least 0")]);
+    case(PLANE, "= 3", "= nan", &[(3, 12, "`time.duration` is nan; expected a finite number")]);
+    case(PLANE, "= 3", "= -inf", &[(3, 12, "`time.duration` is -inf; expected a finite number")]);
+    case(PLANE, "-9.8", "+inf", &[(1, 15, "`gravity[1]` is +inf; expected a finite number")]);
+    case(PLANE, "= 3", "= 1e400", &[(3, 12, "is 1e400; expected a magnitude up to 1e30")]);
+    case(PLANE, "-9.8", "-9e31", &[(1, 15, "`gravity[1]` is -9e31; expected a magnitude up to 1e30")]);
+    case(PLANE, "1e4", "0", &[(12, 45, "`run[0].model.stiffness` is 0; expected a number greater than 0")]);
+    case(PLANE, "0.5\n", "1.5\n", &[(18, 15, "`obstacle[0].restitution` is 1.5; expected a number from 0 to 1")]);
+    case(PLANE, "mass = 1", "mass = 0", &[(9, 8, "`body.mass` is 0; expected a number greater than 0")]);
+    case(
+        PLANE,
+        "mass = 1",
+        "masses = [1, 0, 1, -2]",
+        &[
+            (9, 14, "`body.masses[1]` is 0; expected a number greater than 0"),
+            (9, 20, "`body.masses[3]` is -2; expected a number greater than 0"),
+        ],
+    );
+    case(
+        PLANE,
+        "[0, 2, 3]",
+        "[0, 2, -3]",
+        &[(7, 31, "`body.elements[1][2]` is -3; expected a whole number of at least 0")],
+    );
+    case(PLANE, "[0, 2, 3]", "[0, 2, 5000000000]", &[(7, 31, "is 5000000000; expected a whole number")]);
+    case(
+        PLANE,
+        "[640, 360]",
+        "[640, 36000]",
+        &[(20, 14, "`view.size[1]` is 36000; expected a whole number from 16 to 16384")],
+    );
+    case(PLANE, "[640, 360]", "[8, 360]", &[(20, 9, "`view.size[0]` is 8; expected a whole number from 16 to 16384")]);
+    case(
+        SPACE,
+        "[1, 1, 1]",
+        "[1, 0, 1]",
+        &[(5, 25, "`body.lattice.cells[1]` is 0; expected a whole number of at least 1")],
+    );
+    case(SPACE, "[1, 1, 1]", "[1, 99999999999999999999999999, 1]", &[(5, 25, "expected a whole number")]);
+    case(SPACE, "[[run]]", "[view.camera]\nelevation = 1.6\n[[run]]", &[(7, 13, "expected a number between -1.57")]);
+    case(SPACE, "1e4 }", "1e4, passes = 0 }", &[(8, 59, "is 0; expected a whole number from 1 to 100")]);
+}
+
+#[test]
+fn wrong_choices() {
+    case(
+        PLANE,
+        "'mass-spring'",
+        "'mas-spring'",
+        &[(
+            15,
+            18,
+            "`run[1].model.kind` is \"mas-spring\"; expected \"shape-based\" or \"mass-spring\" did you mean \"mass-spring\"?",
+        )],
+    );
+    case(PLANE, "'floor'", "'wall'", &[(17, 8, "`obstacle[0].kind` is \"wall\"; expected \"floor\"")]);
+    case(
+        PLANE,
+        "[640, 360]",
+        "[640, 360]\ntheme = 'Dark'",
+        &[(21, 9, "expected \"light\" or \"dark\" did you mean \"dark\"?")],
+    );
+    case(
+        PLANE,
+        "1e4 }\n[[o",
+        "1e4, springs = 'edge' }\n[[o",
+        &[(15, 60, "is \"edge\"; expected \"edges\", \"edges+one-diagonal\",")],
+    );
+    case(PLANE, "step", "integrator = 'euler'\nstep", &[(4, 14, "`time.integrator` is \"euler\"")]);
+}
+
+#[test]
+fn wrong_lengths_and_texts() {
+    case(PLANE, "[640, 360]", "[640]", &[(20, 8, "`view.size` has 1 entry; expected 2")]);
+    case(SPACE, "[1, 1, 1]", "[1, 1, 1, 1]", &[(5, 21, "`body.lattice.cells` has 4 entries; expected 2 or 3")]);
+    case(PLANE, "[0, 2, 3]", "[0]", &[(7, 24, "`body.elements[1]` has 1 entry; expected at least 2")]);
+    case(PLANE, "[[0, 1, 2], [0, 2, 3]]", "[]", &[(7, 12, "`body.elements` is empty; expected at least 1")]);
+    case(PLANE, "[[0, 1]]", "[[0, 1, 2]]", &[(8, 12, "`body.springs[0]` has 3 entries; expected 2")]);
+    case(PLANE, "'Local shape'", "''", &[(11, 8, "`run[0].name` is empty; expected 1 to 80")]);
+    case(PLANE, "'Local shape'", "\"a\\tb\"", &[(11, 8, "holds the control character '\\t'")]);
+    case(
+        PLANE,
+        "'T/50'",
+        "'T/0'",
+        &[(4, 8, "`time.step` is \"T/0\"; expected a fraction of the cycle T such as \"T/50\"")],
+    );
+    case(
+        PLANE,
+        "Local shape'\n",
+        "Local shape'\nstep = '50'\n",
+        &[(12, 8, "`run[0].step` is \"50\"; expected a fraction")],
+    );
+    let empty = "[time]\nduration = 1\n[body]\nnodes = []\nelements = []\n[[run]]\n\
+                 name = 'a'\nmodel = { kind = 'shape-based', stiffness = 1 }\n";
+    case(empty, "[time]", "[time]", &[(4, 9, "`body.nodes` is empty"), (5, 12, "`body.elements` is empty")]);
+    case(
+        "run = []\n[time]\nduration = 1\n[body]\nlattice = { cells = [1, 1], side = 1 }",
+        "run",
+        "run",
+        &[(1, 7, "`run` is empty; expected 1 to 256")],
+    );
+}
+
+#[test]
+fn keys_that_exclude_or_need_each_other() {
+    case(
+        PLANE,
+        "mass = 1",
+        "lattice = { cells = [1, 1], side = 1 }",
+        &[(9, 1, "`body` has both `lattice` and `nodes`, which exclude each other keep one")],
+    );
+    case(PLANE, "mass = 1", "mass = 1\nmasses = [1, 1, 1, 1]", &[(10, 1, "both `mass` and `masses`")]);
+    case(SPACE, "1e4 }", "1e4, damping = 1, damping_ratio = 1 }", &[(8, 63, "both `damping` and `damping_ratio`")]);
+    case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", &[(6, 1, "`body.masses` needs `nodes`")]);
+    case(
+        PLANE,
+        "mass = 1",
+        "velocity = [0, 0]\nvelocities = [[0, 0], [0, 0], [0, 0], [0, 0]]",
+        &[(10, 1, "both `velocity` and `velocities`")],
+    );
+}
+
+#[test]
+fn elements_that_are_none() {
+    case(PLANE, "[0, 2, 3]", "[0, 2, 4]", &[(7, 31, "there is no node 4; the body has nodes 0 to 3")]);
+    case(PLANE, "[0, 2, 3]", "[0, 2, 2, 3]", &[(7, 31, "node 2 stands twice in `body.elements[1]`")]);
+    case(
+        PLANE,
+        "[0, 2, 3]",
+        "[0, 2, 3], [2, 3, 0]",
+        &[(7, 35, "`body.elements[2]` has the same nodes as `body.elements[1]`")],
+    );
+    case(
+        PLANE,
+        "[0, 2, 3]",
+        "[0, 3, 2]",
+        &[(7, 24, "`body.elements[1]` is clockwise; expected counter-clockwise write [2, 3, 0]")],
+    );
+    case(
+        PLANE,
+        "[1, 1], [0, 1]]",
+        "[1, 1], [2, 2]]",
+        &[(7, 24, "`body.elements[1]` has no area: its nodes are on a line")],
+    );
+    case(
+        PLANE,
+        "[[0, 0], [1, 0], [1, 1], [0, 1]]",
+        "[[5, 5], [5, 5], [5, 5], [5, 5]]",
+        &[
+            (7, 13, "`body.elements[0]` has no extent: all its nodes are at [5, 5]"),
+            (7, 24, "`body.elements[1]` has no extent: all its nodes are at [5, 5]"),
+        ],
+    );
+    case(PLANE, "[0, 2, 3]]", "[0, 2]]", &[(6, 34, "node 3 belongs to no element and no spring")]);
+    case(
+        PLANE,
+        "[[0, 1]]",
+        "[[0, 1], [1, 0], [2, 2], [3, 9]]",
+        &[
+            (8, 20, "`body.springs[1]` has the same nodes as `body.springs[0]`"),
+            (8, 32, "node 2 stands twice in `body.springs[2]`"),
+            (8, 40, "there is no node 9"),
+        ],
+    );
+    case(PLANE, "mass = 1", "faces = [[0, 1, 7]]", &[(9, 17, "there is no node 7")]);
+}
+
+#[test]
+fn solids_turned_inside_out_or_flat() {
+    let solid = |elements: &str| {
+        let nodes = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";
+        SPACE.replace(
+            "lattice = { cells = [1, 1, 1], side = 0.1 }",
+            &format!("nodes = {nodes}\nsprings = [[0, 1], [2, 3], [4, 5], [6, 7]]\nelements = {elements}"),
+        )
+    };
+    let case = |elements: &str, words: &str| {
+        let text = solid(elements);
+        case(&text, "[body]", "[body]", &[(7, 13, words)]);
+    };
+    case("[[4, 5, 6, 7, 0, 1, 2, 3]]", "turned inside out at rest write [0, 1, 2, 3, 4, 5, 6, 7]");
+    // The order of many mesh formats, around each square.
+    case(
+        "[[0, 1, 3, 2, 4, 5, 7, 6]]",
+        "has no volume: its nodes are in a plane, or not in their order list the corners in bit order",
+    );
+    case("[[0, 2, 1, 4]]", "turned inside out at rest write [0, 1, 2, 4]");
+    case("[[0, 1, 2, 3]]", "has no volume");
+    case("[[0, 2, 3, 1, 4]]", "turned inside out at rest write [0, 1, 3, 2, 4]");
+    case("[[0, 2, 1, 4, 6, 5]]", "turned inside out at rest write [4, 6, 5, 0, 2, 1]");
+}
+
+#[test]
+fn lists_and_vectors_that_do_not_fit_the_body() {
+    case(
+        PLANE,
+        "mass = 1",
+        "masses = [1, 2, 3]",
+        &[(9, 1, "`body.masses` has 3 entries, and the body has 4 nodes; expected one for each")],
+    );
+    case(
+        PLANE,
+        "mass = 1",
+        "positions = [[0, 0]]",
+        &[(9, 1, "`body.positions` has 1 entry, and the body has 4 nodes")],
+    );
+    case(
+        PLANE,
+        "mass = 1",
+        "velocities = [[0, 0], [0, 0, 0], [0, 0], [0, 0]]",
+        &[(9, 23, "`body.velocities[1]` has 3 coordinates; expected 2")],
+    );
+    case(
+        PLANE,
+        "[0, 1]]\ne",
+        "[0, 1, 2]]\ne",
+        &[(6, 34, "`body.nodes[3]` has 3 coordinates; expected 2, because the body is in the plane")],
+    );
+    case(PLANE, "[0, -9.8]", "[0, -9.8, 0]", &[(1, 11, "`gravity` has 3 coordinates; expected 2")]);
+    case(
+        SPACE,
+        "[0, -9.8, 0]",
+        "[0, -9.8]",
+        &[(1, 11, "`gravity` has 2 coordinates; expected 3, because the body is in space")],
+    );
+    case(
+        SPACE,
+        "[[run]]",
+        "velocity = [1, 2]\noffset = [1, 2]\n[[run]]",
+        &[(6, 12, "`body.velocity` has 2"), (7, 10, "`body.offset` has 2")],
+    );
+    case(
+        SPACE,
+        "[[run]]",
+        "rotation = { axis = [0, 0, 0], angle = 1 }\n[[run]]",
+        &[(6, 21, "`body.rotation.axis` is zero")],
+    );
+    case(SPACE, "[[run]]", "rotation = { angle = 1 }\n[[run]]", &[(6, 12, "`body.rotation` has no `axis`")]);
+    case(
+        PLANE,
+        "mass = 1",
+        "rotation = { axis = [0, 1], angle = 1 }",
+        &[(9, 14, "`body.rotation` has an `axis`, but the body is in the plane")],
+    );
+    case(PLANE, "'floor'", "'floor'\nnormal = [0, 0]", &[(18, 10, "`obstacle[0].normal` is zero")]);
+    case(PLANE, "'floor'", "'floor'\nnormal = [0, 1, 0]", &[(18, 10, "`obstacle[0].normal` has 3 coordinates")]);
+    case(
+        PLANE,
+        "[640, 360]",
+        "[640, 360]\ncamera = { azimuth = 1, target = [0, 0, 0] }",
+        &[
+            (21, 12, "`view.camera.azimuth` is given, but a body in the plane"),
+            (21, 34, "`view.camera.target` has 3 coordinates"),
+        ],
+    );
+}
+
+#[test]
+fn runs_and_times_that_cannot_be() {
+    case(
+        PLANE,
+        "'Mass-spring'",
+        "'Local shape'",
+        &[(14, 8, "two runs are called \"Local shape\": `run[0]` and `run[1]`")],
+    );
+    case(PLANE, "'Mass-spring'", "'a/b'", &[(14, 8, "the name \"a/b\" cannot be used in files")]);
+    case(PLANE, "'Mass-spring'", "' a'", &[(14, 8, "the name \" a\" cannot be used in files")]);
+    case(PLANE, "'T/50'", "1e-300", &[(4, 8, "the time step comes out as 1e-300 s")]);
+    case(PLANE, "= 3\n", "= 1e9\n", &[(3, 12, "make 6.000e10 frames; the most is 10 000 000")]);
+}
+
+#[test]
+fn all_mistakes_are_found_in_one_pass() {
+    let text = PLANE
+        .replace("[0, -9.8]", "[0, nan]")
+        .replace("duration", "durtion")
+        .replace("[0, 2, 3]", "[0, 2, 9]")
+        .replace("mass = 1", "mass = -1")
+        .replace("'Mass-spring'", "'Local shape'")
+        .replace("restitution = 0.5", "restitution = 2")
+        .replace("[640, 360]", "[640, 1]");
+    let error = bad(&text);
+    let lines: Vec<_> = error.mistakes().iter().map(|mistake| mistake.line).collect();
+    assert_eq!(lines, [1, 3, 7, 9, 14, 18, 20], "{error}");
+}
+
+#[test]
+fn a_mistake_in_one_key_of_the_body_does_not_hide_those_in_the_others() {
+    let text = PLANE
+        .replace("[0, 2, 3]", "[0, 2, 9]")
+        .replace("mass = 1", "mass = -1\nrotation = { axis = [0, 1], angle = nan }\nvelocity = [0, 0, 0]")
+        .replace("0.5\n", "0.5\nnormal = [0, 0]\n");
+    let error = bad(&text);
+    let lines: Vec<_> = error.mistakes().iter().map(|mistake| mistake.line).collect();
+    assert_eq!(lines, [7, 9, 10, 11, 21], "{error}");
+}
+
+#[test]
+fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
+    case(
+        SPACE,
+        "[1, 1, 1]",
+        "[1000, 1000, 1000]",
+        &[(5, 21, "this makes 1 003 003 001 nodes and 1 000 000 000 elements, about")],
+    );
+    let text = SPACE.replace("[1, 1, 1]", "[300, 300, 300]");
+    let error = bad(&text).to_string();
+    assert!(error.contains("27 270 901 nodes") && error.contains("GiB of memory"), "{error}");
+    assert!(error.contains("for the states of each frame; the limit is 8 200 000 nodes"), "{error}");
+    assert!(error.contains("--allow-large"), "{error}");
+    case(
+        SPACE,
+        "[1, 1, 1]",
+        "[4000000000, 4000000000, 4000000000]",
+        &[(5, 21, "more than 32-bit indices can count use fewer cells")],
+    );
+    let none = Limits { nodes: 7, ..Limits::default() };
+    assert!(matches!(Scene::parse(SPACE, "a", &none), Err(SceneError::Mistakes(_))));
+    assert!(Scene::parse(SPACE, "a", &Limits { nodes: 8, ..none }).is_ok());
+    assert!(Scene::parse(PLANE, "a", &Limits { nodes: 3, ..none }).is_err());
+    assert!(Scene::parse(SPACE, "a", &Limits { memory: 100, ..Limits::default() }).is_err());
+}
+
+#[test]
+fn syntax_errors_have_their_place() {
+    let error = bad(&PLANE.replace("duration = 3", "duration = = 3"));
+    assert!(matches!(error, SceneError::Syntax(_)));
+    case(PLANE, "duration = 3", "duration = = 3", &[(3, 12, "this is not TOML: extra `=`")]);
+    case(PLANE, "duration = 3", "duration = 3\nduration = 4", &[(4, 1, "`duration` is given a second time")]);
+    case(PLANE, "[0, -9.8]", "[0, -9.8", &[(2, 1, "is an array before this not closed with `]`?")]);
+    case(
+        PLANE,
+        "'T/50'",
+        "T/50",
+        &[(4, 8, "this is not TOML: invalid boolean, expected `true` a text needs quotation marks: \"T/50\"")],
+    );
+    case(PLANE, "'T/50'", "'T/50", &[(4, 13, "invalid literal string")]);
+    case(PLANE, "gravity", "é", &[(1, 1, "invalid unquoted key")]);
+    let deep = format!("a = {}", "[".repeat(100_000));
+    assert!(matches!(bad(&deep), SceneError::Syntax(_)));
+}
+
+#[test]
+fn a_mistake_is_shown_with_its_line_and_a_mark() {
+    let error = bad(&SPACE.replace("stiffness", "stifness"));
+    assert_eq!(
+        error.to_string(),
+        "test.toml:8:33: unknown key `stifness` in `run[0].model`\n  \
+           8 | model = { kind = 'shape-based', stifness = 1e4 }\n    \
+             |                                 ^^^^^^^^ did you mean `stiffness`?"
+    );
+    let many = format!("nodes = [{}]", "[nan, 0], ".repeat(51));
+    let error = bad(&SPACE.replace("lattice = { cells = [1, 1, 1], side = 0.1 }", &many));
+    let text = error.to_string();
+    assert_eq!(error.mistakes().len(), 52, "{text}");
+    assert_eq!(text.matches("expected a finite number").count() + text.matches("no `elements`").count(), 20);
+    assert!(text.ends_with("test.toml: and 32 more"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() < 130), "{text}");
+}

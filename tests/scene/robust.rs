@@ -1,0 +1,111 @@
+//! Whatever a file holds, reading it ends with a scene or with mistakes, never with a panic.
+
+use super::shipped;
+use localshape::scene::{Limits, Scene, SceneError};
+
+/// A small generator of numbers (xorshift), the same on every machine.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % bound as u64) as usize
+    }
+}
+
+/// Small enough that a mutated count does not make a case slow.
+const SMALL: Limits = Limits { nodes: 5000, memory: 1 << 24, file: 1 << 20 };
+
+const EXPLICIT: &str = include_str!("explicit.toml");
+
+/// Reads a text, and looks that what it says stands in the text.
+fn read(text: &str) {
+    match Scene::parse(text, "mutated.toml", &SMALL) {
+        Ok(scene) => {
+            assert!(scene.initial.is_finite() && scene.body.len() <= 5000);
+            assert!(scene.runs.iter().all(|run| run.step > 0.0 && run.step.is_finite()));
+            assert!(!scene.summary().to_string().is_empty());
+        }
+        Err(error) => {
+            let lines = text.split('\n').count();
+            assert!(error.mistakes().iter().all(|mistake| (1..=lines).contains(&mistake.line) && mistake.column > 0));
+            assert!(!error.to_string().is_empty());
+        }
+    }
+}
+
+#[test]
+fn mutated_bytes() {
+    let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
+    for scene in [shipped("fig4b.toml"), EXPLICIT.to_owned()] {
+        for _ in 0..3000 {
+            let mut bytes = scene.clone().into_bytes();
+            for _ in 0..=numbers.below(3) {
+                let at = numbers.below(bytes.len());
+                match numbers.below(4) {
+                    0 => bytes[at] = b"0123456789.-+e[]{}=\"'#,\n aT_"[numbers.below(28)],
+                    1 => bytes[at] ^= 1 << numbers.below(8),
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            read(&String::from_utf8_lossy(&bytes));
+        }
+    }
+}
+
+#[test]
+fn swapped_values() {
+    let values = [
+        "0",
+        "-1",
+        "1e300",
+        "-1e-320",
+        "1e30",
+        "1e-30",
+        "nan",
+        "inf",
+        "99999999999999999999",
+        "[]",
+        "[[]]",
+        "[1, 2]",
+        "[1, 2, 3]",
+        "{}",
+        "''",
+        "'T/50'",
+        "'T/1e308'",
+        "'1e-308 T'",
+        "true",
+        "1979-05-27",
+        "[{}]",
+        "[[0, 1], [1, 2]]",
+        "4294967295",
+        "\"\\u0000\"",
+    ];
+    for scene in [shipped("fig4b.toml"), EXPLICIT.to_owned()] {
+        for (at, _) in scene.match_indices(" = ") {
+            let (before, after) = scene.split_at(at + 3);
+            // Up to the end of the value, of its table or of its line, in this order.
+            let ends =
+                [after.find([',', '}', '\n', '#']), after.find([']', '\n']).map(|end| end + 1), after.find('\n')];
+            for (end, value) in ends.into_iter().flatten().flat_map(|end| values.map(|value| (end, value))) {
+                read(&format!("{before}{value}{}", after.get(end..).unwrap_or_default()));
+            }
+        }
+    }
+}
+
+#[test]
+fn any_bytes_in_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bytes.toml");
+    let mut numbers = Numbers(88_172_645_463_325_252);
+    for length in 0..200 {
+        let bytes: Vec<u8> = (0..length).map(|_| numbers.below(256) as u8).collect();
+        std::fs::write(&path, bytes).unwrap();
+        let error = Scene::load(&path, &SMALL).unwrap_err();
+        assert!(!matches!(error, SceneError::Missing { .. } | SceneError::Unreadable { .. }), "{error}");
+    }
+}
