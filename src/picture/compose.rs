@@ -11,10 +11,11 @@ use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
 use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
-use crate::sim::body::{Dimension, ElementKind};
+use crate::sim::body::{Body, Dimension, ElementKind};
 use crate::sim::contact::Shape;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
+use std::collections::HashMap;
 
 /// The key light comes from this far to the left of the viewer (rad).
 const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
@@ -44,9 +45,38 @@ pub struct Composer<'a> {
     descriptions: Vec<String>,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
+    skin: Skin,
     extent: f64,
     /// The unit of soft distances (sides).
     soft: f64,
+}
+
+/// The surface of a body, whichever elements have turned over.
+#[derive(Debug)]
+struct Skin {
+    /// The nodes on it.
+    nodes: Vec<u32>,
+    /// Its triangles, as places in `nodes`.
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Skin {
+    fn new(body: &Body) -> Self {
+        let mut places = HashMap::new();
+        let mut nodes = Vec::new();
+        let mut place = |node: u32| {
+            *places.entry(node).or_insert_with(|| {
+                nodes.push(node);
+                nodes.len() as u32 - 1
+            })
+        };
+        let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+        let mut triangles = Vec::new();
+        for (face, _) in outside {
+            triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place)));
+        }
+        Self { nodes, triangles }
+    }
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -69,6 +99,7 @@ impl<'a> Composer<'a> {
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
+            skin: Skin::new(body),
             extent,
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
@@ -192,12 +223,13 @@ impl<'a> Composer<'a> {
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
         let widening = (framing.distance / view.camera.distance).sqrt();
         let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * widening);
-        let points: Vec<_> = position.iter().map(|&at| (at - origin) / side).collect();
+        let on_skin = self.skin.nodes.iter().filter_map(|&node| position.get(node as usize));
+        let points: Vec<_> = on_skin.map(|&at| (at - origin) / side).collect();
+        let triangles = if points.is_empty() { &[][..] } else { &self.skin.triangles };
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
-        let triangles = self.skin();
         let shades = if key.dot(plane.normal) > 0.05 {
-            shadow::shades(&points, &triangles, &plane, key, middle, fade[1], self.soft)
+            shadow::shades(&points, triangles, &plane, key, middle, fade[1], self.soft)
         } else {
             std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
@@ -215,13 +247,6 @@ impl<'a> Composer<'a> {
             fade_above: narrow(FADE_ABOVE * scale.unit),
             shades,
         })
-    }
-
-    /// The surface of the whole body as triangles.
-    fn skin(&self) -> Vec<[u32; 3]> {
-        let faces = &self.scene.body.faces;
-        let outside = faces.nodes.iter().zip(&faces.outer).filter(|(_, outer)| outer.is_none());
-        outside.flat_map(|(nodes, _)| (2..nodes.len()).map(|at| [nodes[0], nodes[at - 1], nodes[at]])).collect()
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.

@@ -6,6 +6,7 @@
 
 use super::narrow::narrow;
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 
 /// Cells of a shadow in each direction.
 pub const CELLS: usize = 128;
@@ -47,10 +48,29 @@ impl Plane {
         Self { normal, axes: [first, first.cross(normal)], height }
     }
 
-    fn project(&self, point: DVec3, towards_light: DVec3) -> DVec2 {
+    /// Where a point stands over the plane, and how high. What is below throws its shadow where it is.
+    fn foot(&self, point: DVec3) -> Foot {
         let above = (self.normal.dot(point) - self.height).max(0.0);
-        let on_floor = point - towards_light * (above / self.normal.dot(towards_light));
-        DVec2::new(on_floor.dot(self.axes[0]), on_floor.dot(self.axes[1]))
+        Foot { at: DVec2::new(point.dot(self.axes[0]), point.dot(self.axes[1])), above }
+    }
+
+    /// How far light from a direction moves the shadow of what is one unit above the plane.
+    fn slant(&self, towards_light: DVec3) -> DVec2 {
+        let along = DVec2::new(towards_light.dot(self.axes[0]), towards_light.dot(self.axes[1]));
+        -along / self.normal.dot(towards_light)
+    }
+}
+
+/// A point by its place over a plane and its height above it.
+#[derive(Clone, Copy)]
+struct Foot {
+    at: DVec2,
+    above: f64,
+}
+
+impl Foot {
+    fn shadow(self, slant: DVec2) -> DVec2 {
+        self.at + self.above * slant
     }
 }
 
@@ -66,6 +86,7 @@ pub(super) fn shades(
     soft: f64,
 ) -> [Shade; 2] {
     let blur = BLUR.map(|blur| blur * soft);
+    let feet: Vec<_> = points.iter().map(|&point| plane.foot(point)).collect();
     let thinning = (triangles.len() / MANY_TRIANGLES + 1).min(6);
     let [of_key, of_sky] = DIRECTIONS.map(|count| count / thinning);
     let frame = Plane::new(key, 0.0);
@@ -87,9 +108,11 @@ pub(super) fn shades(
     let shade = |directions: &[DVec3], blur: f64, low: DVec2, length: f64| {
         let mut counts = Counts::new();
         let scale = CELLS as f64 / length;
+        let mut projected = Vec::with_capacity(feet.len());
         for &direction in directions {
-            let projected: Vec<_> =
-                points.iter().map(|&point| (plane.project(point, direction) - low) * scale).collect();
+            let slant = plane.slant(direction);
+            projected.clear();
+            projected.extend(feet.iter().map(|foot| (foot.shadow(slant) - low) * scale));
             let mut mask = Mask::new();
             for triangle in triangles {
                 mask.fill(triangle.map(|at| projected[at as usize]));
@@ -100,7 +123,7 @@ pub(super) fn shades(
         Shade { corner: [narrow(low.x), narrow(low.y)], length: narrow(length), cells }
     };
     // The key light's shadow has sharp ends: its grid holds the shadow and no more.
-    let (low, high) = bounds(points, &key_directions, plane, middle, reach);
+    let (low, high) = bounds(&feet, &key_directions, plane, middle, reach);
     let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * blur[0]);
     let (sky_low, sky_length) = (middle - reach, 2.0 * reach);
     [
@@ -109,13 +132,16 @@ pub(super) fn shades(
     ]
 }
 
-/// The box around all projections, within reach.
-fn bounds(points: &[DVec3], directions: &[DVec3], plane: &Plane, middle: DVec2, reach: f64) -> (DVec2, DVec2) {
+/// The box around all shadows, within reach.
+fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, reach: f64) -> (DVec2, DVec2) {
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     // The outermost directions come last.
-    let outer = directions.iter().rev().take(12);
-    let projected = outer.flat_map(|&direction| points.iter().map(move |&point| plane.project(point, direction)));
-    let (low, high) =
-        projected.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    for &direction in directions.iter().rev().take(12) {
+        let slant = plane.slant(direction);
+        for at in feet.iter().map(|foot| foot.shadow(slant)) {
+            (low, high) = (low.min(at), high.max(at));
+        }
+    }
     let within = |corner: DVec2| corner.clamp(middle - reach, middle + reach);
     (within(low), within(high))
 }
@@ -144,61 +170,87 @@ impl Mask {
         if (b - a).perp_dot(c - a) <= 0.0 {
             return;
         }
-        let lowest = a.y.min(b.y).min(c.y);
-        let highest = a.y.max(b.y).max(c.y);
-        let first = (lowest - 0.5).ceil().clamp(0.0, CELLS as f64) as usize;
-        let last = (highest + 0.5).floor().clamp(0.0, CELLS as f64) as usize;
-        for (row, word) in self.0.iter_mut().enumerate().take(last).skip(first) {
+        let by_height = |a: DVec2, b: DVec2| if b.y < a.y { (b, a) } else { (a, b) };
+        let (a, b) = by_height(a, b);
+        let (b, c) = by_height(b, c);
+        let (a, b) = by_height(a, b);
+        let rows = [a, b, c].map(|corner| first_middle(corner.y));
+        // The long side and one of the short ones bound each row.
+        self.fill_between([a, c], [a, b], rows[0]..rows[1]);
+        self.fill_between([a, c], [b, c], rows[1]..rows[2]);
+    }
+
+    fn fill_between(&mut self, one: [DVec2; 2], other: [DVec2; 2], rows: Range<usize>) {
+        if rows.is_empty() {
+            return;
+        }
+        let slope = |[from, to]: [DVec2; 2]| (to.x - from.x) / (to.y - from.y);
+        let slopes = [slope(one), slope(other)];
+        for row in rows {
             let y = row as f64 + 0.5;
-            let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                if (from.y <= y) != (to.y <= y) {
-                    let x = from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y);
-                    left = left.min(x);
-                    right = right.max(x);
-                }
-            }
-            *word |= below((right + 0.5).floor()) & !below((left - 0.5).ceil());
+            let x = one[0].x + (y - one[0].y) * slopes[0];
+            let end = other[0].x + (y - other[0].y) * slopes[1];
+            self.0[row] |= below(first_middle(x.max(end))) & !below(first_middle(x.min(end)));
         }
     }
+}
+
+/// The first cell whose middle is not below a coordinate: that rounded, and kept within the grid.
+fn first_middle(at: f64) -> usize {
+    // Truncation is many times quicker than `round` on processors of the oldest kind that we build for.
+    (at + 0.5).clamp(0.0, CELLS as f64) as usize
 }
 
 /// A word whose lowest `count` bits are set.
-fn below(count: f64) -> u128 {
-    let count = count.clamp(0.0, CELLS as f64) as u32;
-    u128::MAX.checked_shr(CELLS as u32 - count).unwrap_or(0)
+fn below(count: usize) -> u128 {
+    u128::MAX.checked_shr((CELLS - count) as u32).unwrap_or(0)
 }
 
-/// How often each cell was covered.
-struct Counts(Vec<u8>);
+/// How many bits count to the largest number of directions.
+const COUNTER_BITS: usize = 7;
+
+/// How often each cell was covered: binary digits, the lowest first, each for all cells of a row at once.
+struct Counts(Vec<[u128; COUNTER_BITS]>);
 
 impl Counts {
     fn new() -> Self {
-        Self(vec![0; CELLS * CELLS])
+        Self(vec![[0; COUNTER_BITS]; CELLS])
     }
 
+    /// Adds one wherever a mask is set.
     fn add(&mut self, mask: &Mask) {
-        for (counts, word) in self.0.chunks_exact_mut(CELLS).zip(mask.0) {
-            if word != 0 {
-                for (eight, byte) in counts.chunks_exact_mut(8).zip(word.to_le_bytes()) {
-                    for (bit, count) in eight.iter_mut().enumerate() {
-                        *count += byte >> bit & 1;
-                    }
+        for (digits, &word) in self.0.iter_mut().zip(&mask.0) {
+            let mut carry = word;
+            for digit in digits {
+                if carry == 0 {
+                    break;
                 }
+                (*digit, carry) = (*digit ^ carry, *digit & carry);
             }
         }
+    }
+
+    fn share(&self, directions: usize) -> Vec<f32> {
+        let mut share = Vec::with_capacity(CELLS * CELLS);
+        for digits in &self.0 {
+            for cell in 0..CELLS {
+                let count: u8 = (0..COUNTER_BITS).map(|bit| ((digits[bit] >> cell & 1) as u8) << bit).sum();
+                share.push(f32::from(count) / directions as f32);
+            }
+        }
+        share
     }
 
     /// The share of directions that are covered, 255 for all, blurred by a standard deviation (cells).
     fn blurred(&self, directions: usize, deviation: f64) -> Vec<u8> {
-        if self.0.iter().all(|&count| count == 0) {
+        if self.0.iter().flatten().all(|&digit| digit == 0) {
             return Vec::new();
         }
         let radius = ((2.5 * deviation).ceil() as usize).clamp(1, CELLS / 8);
         let weight = |at: usize| (-0.5 * (at as f64 / deviation.max(0.3)).powi(2)).exp();
         let total: f64 = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
         let kernel: Vec<f32> = (0..=radius).map(|at| narrow(weight(at) / total)).collect();
-        let share: Vec<f32> = self.0.iter().map(|&count| f32::from(count) / directions as f32).collect();
+        let share = self.share(directions);
         let across = blur_rows(&share, &kernel);
         let both = transposed(&blur_rows(&transposed(&across), &kernel));
         both.iter().map(|&share| (share * 255.0 + 0.5) as u8).collect()
