@@ -142,15 +142,15 @@ impl World {
 
 /// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
 ///
-/// A body's own speeds are at most a few extents per cycle. The factor leaves a wide margin above that, and keeps the
-/// last state within some tens of extents. What it already had at the start and what gravity adds comes on top.
+/// Swinging through its whole extent, a body moves at 2π extents per cycle. The factor leaves a wide margin above that,
+/// and keeps the last state within some extents. What it had at the start and what gravity adds comes on top.
 struct SpeedBounds {
     own: f64,
     gravity: f64,
 }
 
 impl SpeedBounds {
-    const EXTENTS_PER_CYCLE: f64 = 1e3;
+    const EXTENTS_PER_CYCLE: f64 = 50.0;
     const MARGIN: f64 = 10.0;
 
     fn new(body: &Body, initial: &State, stiffness: f64, gravity: DVec3) -> Self {
