@@ -1,6 +1,8 @@
 //! Scenes: what was typed becomes what it means. After that no field says "use the default", every number is in
 //! SI units and every index is in range.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 //!
 //! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
 //! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`.

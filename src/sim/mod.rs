@@ -1,5 +1,7 @@
 //! The simulation: double precision, no files, no clock, no device, and it cannot fail.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod body;
 pub mod contact;
 pub mod diagnose;

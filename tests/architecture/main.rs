@@ -49,6 +49,15 @@ fn only_gpu_and_render_name_wgpu() {
     }
 }
 
+/// Double precision becomes single precision in one file, so that it happens once and relative to the panel's origin.
+#[test]
+fn one_place_narrows() {
+    let narrowing = offenders("picture", &["as f32", "as_vec2(", "as_vec3(", "as_mat4(", "as_quat("]);
+    let elsewhere: Vec<_> = narrowing.iter().filter(|line| !line.contains("narrow.rs:")).collect();
+    assert_eq!(elsewhere, [""; 0]);
+    assert!(!narrowing.is_empty());
+}
+
 #[test]
 fn nothing_flows_back() {
     assert_eq!(

@@ -22,7 +22,8 @@ fn after_long(model: &dyn localshape::sim::model::ElasticModel, start: State) ->
 
 #[test]
 fn the_shape_model_recovers_from_a_point_a_line_a_plane_and_mirror_images() {
-    let starts: [(&str, fn(DVec3) -> DVec3); 6] = [
+    type Map = fn(DVec3) -> DVec3;
+    let starts: [(&str, Map); 6] = [
         ("a point", |_| DVec3::ZERO),
         ("a line", |r| DVec3::X * r.x),
         ("a plane", |r| r.with_z(0.0)),

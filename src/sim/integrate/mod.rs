@@ -41,8 +41,9 @@ pub fn semi_implicit_euler(
         *force = velocity + *force / mass * step;
     }
     let limit = speed_limit * speed_limit;
-    // Written so that NaN counts as too fast.
-    if let Some(node) = forces.iter().position(|velocity| !(velocity.length_squared() <= limit)) {
+    // NaN is within no bounds.
+    let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
+    if let Some(node) = forces.iter().position(|velocity| !within_bounds(velocity)) {
         return Err(Runaway { node });
     }
     state.velocity.copy_from_slice(forces);

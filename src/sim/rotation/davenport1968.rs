@@ -69,11 +69,9 @@ fn eigen(mut m: [[f64; 4]; 4]) -> ([f64; 4], [DVec4; 4]) {
                     row[p] = cosine * a - sine * b;
                     row[q] = sine * a + cosine * b;
                 }
-                for column in 0..4 {
-                    let (a, b) = (m[p][column], m[q][column]);
-                    m[p][column] = cosine * a - sine * b;
-                    m[q][column] = sine * a + cosine * b;
-                }
+                let (row_p, row_q) = (m[p], m[q]);
+                m[p] = std::array::from_fn(|column| cosine * row_p[column] - sine * row_q[column]);
+                m[q] = std::array::from_fn(|column| sine * row_p[column] + cosine * row_q[column]);
                 let (a, b) = (vectors[p], vectors[q]);
                 vectors[p] = a * cosine - b * sine;
                 vectors[q] = a * sine + b * cosine;
