@@ -112,10 +112,10 @@ pub enum InitError {
     #[error("the graphics adapter {adapter} cannot be used")]
     Device {
         /// Which adapter.
-        adapter: AdapterDescription,
+        adapter: Box<AdapterDescription>,
         /// What its driver says.
         #[source]
-        source: wgpu::RequestDeviceError,
+        source: Box<wgpu::RequestDeviceError>,
     },
 }
 
@@ -171,7 +171,7 @@ impl Gpu {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .map_err(|source| InitError::Device { adapter: description.clone(), source })?;
+            .map_err(|source| InitError::Device { adapter: Box::new(description.clone()), source: Box::new(source) })?;
         let trouble = Arc::new(Mutex::new(None));
         let keep = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&keep, translate(error))));

@@ -46,10 +46,10 @@ pub fn framing(camera: &Camera, highest: f64) -> Framing {
     }
     let above = above.min(HIGHEST_RISE * camera.distance);
     let rise = above * above / (above + GENTLE_RISE * camera.distance);
-    let height_per_distance = 2.0 * (camera.field_of_view / 2.0).tan() * USABLE_HEIGHT;
+    let height_per_distance = 2.0 * libm::tan(camera.field_of_view / 2.0) * USABLE_HEIGHT;
     Framing {
         target: camera.target + 0.5 * rise * DVec3::Y,
-        distance: camera.distance + rise * camera.elevation.cos() / height_per_distance,
+        distance: camera.distance + rise * libm::cos(camera.elevation) / height_per_distance,
         rise,
     }
 }
@@ -82,15 +82,16 @@ impl Lens {
         let camera = &view.camera;
         let room = (panel[3] - (TITLES + CAPTIONS) * unit).max(0.1 * panel[3]);
         let height = panel[3].min(panel[2] / FULL_ASPECT).min(room / REFERENCE_ROOM);
-        let slope = height / 2.0 / (camera.field_of_view / 2.0).tan();
+        let slope = height / 2.0 / libm::tan(camera.field_of_view / 2.0);
         let middle = (panel[3] + (TITLES - CAPTIONS) * unit) / 2.0 + LOWERED * room;
         let centre = [panel[0] + panel[2] / 2.0, panel[1] + middle];
         let (azimuth, elevation) = match dimension {
             Dimension::Space => (camera.azimuth, camera.elevation),
             Dimension::Plane => (0.0, 0.0),
         };
-        let towards = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
-        let right = DVec3::new(azimuth.cos(), 0.0, -azimuth.sin());
+        let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
+        let towards = DVec3::new(across * level, rise, along * level);
+        let right = DVec3::new(along, 0.0, -across);
         let orthographic = dimension == Dimension::Plane;
         Self {
             eye: framing.target + framing.distance * towards,
@@ -143,6 +144,7 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::narrow::narrow_point;
     use crate::scene::Theme;
 
     const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
@@ -190,7 +192,7 @@ mod tests {
         let (origin, unit) = (DVec3::new(0.1, 0.2, 0.3), 0.1);
         let clip = lens.clip(origin, unit, PANEL);
         for point in [DVec3::ZERO, DVec3::new(0.2, 0.4, -0.1), DVec3::new(-0.3, 1.0, 0.4)] {
-            let at = clip * ((point - origin) / unit).as_vec3().extend(1.0);
+            let at = clip * narrow_point((point - origin) / unit).extend(1.0);
             let (pixel, distance) = lens.project(point).unwrap();
             let x = PANEL[0] + PANEL[2] * f64::from(0.5 + 0.5 * at.x / at.w);
             let y = PANEL[1] + PANEL[3] * f64::from(0.5 - 0.5 * at.y / at.w);

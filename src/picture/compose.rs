@@ -216,8 +216,8 @@ impl<'a> Composer<'a> {
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (view.camera.target, view.side);
-        let (normal, height) = self.scene.obstacles.iter().find_map(|obstacle| match obstacle.shape {
-            Shape::Floor { normal, height } => Some((normal, height)),
+        let (normal, height) = self.scene.obstacles.first().map(|obstacle| match obstacle.shape {
+            Shape::Floor { normal, height } => (normal, height),
         })?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
@@ -263,9 +263,11 @@ impl<'a> Composer<'a> {
 /// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …
 fn cell(extent: f64) -> f64 {
     let mut cells = 1.0;
-    while extent / cells > MOST_CELLS && cells < 1e12 {
-        let leading = cells / 10_f64.powf((cells as f64).log10().floor());
-        cells *= if leading > 1.5 && leading < 3.0 { 2.5 } else { 2.0 };
+    for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {
+        if extent / cells <= MOST_CELLS {
+            break;
+        }
+        cells *= factor;
     }
     cells
 }
@@ -288,7 +290,8 @@ fn height_of_centre(snapshot: &Snapshot) -> Option<f64> {
 /// Unit vector towards the key light.
 fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
     let towards_viewer = lens.right.cross(DVec3::Y);
-    let level = KEY_AZIMUTH.cos() * towards_viewer - KEY_AZIMUTH.sin() * lens.right;
+    let (left, towards) = libm::sincos(KEY_AZIMUTH);
+    let level = towards * towards_viewer - left * lens.right;
     let slope = KEY_SLOPE + KEY_STEEPENING * framing.rise / framing.distance;
     (level + slope * DVec3::Y).normalize()
 }

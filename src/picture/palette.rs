@@ -119,7 +119,7 @@ mod tests {
     fn luminance(colour: Colour) -> f64 {
         let linear = colour.map(|byte| {
             let encoded = f64::from(byte) / 255.0;
-            if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+            if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
         });
         0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
     }

@@ -93,14 +93,14 @@ pub(super) fn shades(
     let key_directions: Vec<_> = (0..of_key)
         .map(|at| {
             let radius = KEY_CONE * ((at as f64 + 0.5) / of_key as f64).sqrt();
-            let (sine, cosine) = (at as f64 * GOLDEN_ANGLE).sin_cos();
+            let (sine, cosine) = libm::sincos(at as f64 * GOLDEN_ANGLE);
             (key + radius * (cosine * frame.axes[0] + sine * frame.axes[1])).normalize()
         })
         .collect();
     let sky_directions: Vec<_> = (0..of_sky)
         .map(|at| {
             let outward = ((at as f64 + 0.5) / of_sky as f64).sqrt();
-            let (sine, cosine) = (at as f64 * GOLDEN_ANGLE).sin_cos();
+            let (sine, cosine) = libm::sincos(at as f64 * GOLDEN_ANGLE);
             let [first, second] = plane.axes;
             outward * (cosine * first + sine * second) + (1.0 - outward * outward).sqrt() * plane.normal
         })
@@ -149,8 +149,8 @@ fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, rea
 /// A square around a box, with one of few cell sizes and its corner on the cells' own lattice, so that the cells do not
 /// creep under a body that moves.
 fn snapped(low: DVec2, length: f64) -> [[f64; 2]; 2] {
-    let length = ((length.max(1.0) * CELLS as f64 / (CELLS - 8) as f64).log2() * 4.0).ceil() / 4.0;
-    let length = length.exp2();
+    let steps = (libm::log2(length.max(1.0) * CELLS as f64 / (CELLS - 8) as f64) * 4.0).ceil();
+    let length = libm::exp2(steps / 4.0);
     let cell = length / CELLS as f64;
     let corner = (low / cell).floor() * cell - 4.0 * cell;
     [[corner.x, corner.y], [length, cell]]
@@ -247,7 +247,7 @@ impl Counts {
             return Vec::new();
         }
         let radius = ((2.5 * deviation).ceil() as usize).clamp(1, CELLS / 8);
-        let weight = |at: usize| (-0.5 * (at as f64 / deviation.max(0.3)).powi(2)).exp();
+        let weight = |at: usize| libm::exp(-0.5 * (at as f64 / deviation.max(0.3)).powi(2));
         let total: f64 = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
         let kernel: Vec<f32> = (0..=radius).map(|at| narrow(weight(at) / total)).collect();
         let share = self.share(directions);
