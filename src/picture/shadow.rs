@@ -235,7 +235,7 @@ impl Counts {
         for digits in &self.0 {
             for cell in 0..CELLS {
                 let count: u8 = (0..COUNTER_BITS).map(|bit| ((digits[bit] >> cell & 1) as u8) << bit).sum();
-                share.push(f32::from(count) / directions as f32);
+                share.push(narrow(f64::from(count) / directions as f64));
             }
         }
         share
