@@ -216,9 +216,12 @@ impl<'a> Composer<'a> {
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (view.camera.target, view.side);
-        let (normal, height) = self.scene.obstacles.first().map(|obstacle| match obstacle.shape {
+        // What a body can stand on, rather than a wall beside it.
+        let surfaces = self.scene.obstacles.iter().map(|obstacle| match obstacle.shape {
             Shape::Floor { normal, height } => (normal, height),
-        })?;
+        });
+        let (normal, height) =
+            surfaces.clone().find(|(normal, _)| normal.y > 0.5).or_else(|| surfaces.clone().next())?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
         let widening = (framing.distance / view.camera.distance).sqrt();

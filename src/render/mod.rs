@@ -1,11 +1,11 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
-//! 1. [`surface`]: turned-over elements by themselves, so that they can be seen through the body.
-//! 2. [`surface`]: all surfaces, with several samples a pixel, in textures no larger than the bodies.
-//! 3. [`line`]: edges and contours as opacities, one sample a pixel with smooth borders of their own.
-//! 4. [`ground`]: the floor, its grid and its shadows, into the picture.
-//! 5. [`composite`]: bodies and lines over the ground.
-//! 6. [`overlay`]: marks and words.
+//! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
+//! 2. `surface`: all surfaces, with several samples a pixel, in textures no larger than the bodies.
+//! 3. `line`: edges and contours as opacities, one sample a pixel with smooth borders of their own.
+//! 4. `ground`: the floor, its grid and its shadows, into the picture.
+//! 5. `composite`: bodies and lines over the ground.
+//! 6. `overlay`: marks and words.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
