@@ -115,7 +115,9 @@ impl Writer<'_> {
         }
         let fits = |text: &&String| width(text, Weight::Regular, caption) <= room.right - right_of_count;
         if let Some(text) = numbers.iter().find(fits) {
-            self.right(text, caption, self.palette.second_text, room.right, baseline);
+            let diverged = matches!(snapshot.status, Status::Diverged(_));
+            let colour = if diverged { self.palette.text } else { self.palette.second_text };
+            self.right(text, caption, colour, room.right, baseline);
         }
     }
 

@@ -168,6 +168,7 @@ impl<'a> Composer<'a> {
             self.add_segments(&position, origin, &mut lines);
         }
         let flat = body.dimension == Dimension::Plane;
+        let diverged = matches!(run.snapshot.status, Status::Diverged(_));
         if flat {
             let flat = Flat {
                 body,
@@ -179,11 +180,18 @@ impl<'a> Composer<'a> {
                 palette: &self.palette,
             };
             flat.floor(&self.scene.obstacles, under);
-            flat.signs(above);
+            if !diverged {
+                flat.signs(above);
+            }
+        }
+        let mut region = region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0);
+        if diverged {
+            // What blew up may lie across everything; the words that say so stay on clean ground.
+            region = overlap(region, layout::clear_of_words(viewport, scale));
         }
         Panel {
             viewport,
-            region: region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0),
+            region,
             sight: Sight {
                 clip: lens.clip(origin, side, edges),
                 eye: narrow_point((lens.eye - origin) / side),
@@ -304,6 +312,14 @@ fn finite(point: DVec3) -> DVec3 {
     const FARTHEST: f64 = 1e12;
     let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) };
     DVec3::new(one(point.x), one(point.y), one(point.z))
+}
+
+/// What two rectangles share.
+fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangle) -> Rectangle {
+    let [left, top] = [x.max(x2), y.max(y2)];
+    let right = (x + width).min(x2 + width2).max(left);
+    let bottom = (y + height).min(y2 + height2).max(top);
+    [left, top, right - left, bottom - top]
 }
 
 /// The part of a panel that a body may touch, with `room` (px) around it.

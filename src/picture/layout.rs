@@ -95,6 +95,17 @@ impl Baselines {
     }
 }
 
+/// The part of a panel between its lines of text, inside its margins.
+pub(super) fn clear_of_words(panel: Rectangle, scale: Scale) -> Rectangle {
+    let [left, top, width, height] = panel;
+    let lines = Baselines::new(scale, panel);
+    let inside = |at: f64, length: u32| at.clamp(0.0, f64::from(length)) as u32;
+    let side = inside(scale.margin(), width / 2);
+    let above = inside(lines.second + scale.gap(), height);
+    let below = inside(lines.count - scale.title() - scale.gap(), height).max(above);
+    [left + side, top + above, width - 2 * side, below - above]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +123,16 @@ mod tests {
             assert!(panels.iter().all(|p| p[2] > 0 && p[3] > 0 && p[0] + p[2] <= size[0] && p[1] + p[3] <= size[1]));
         }
         assert_eq!(panels([1280, 720], 2, 2), [[0, 0, 640, 720], [640, 0, 640, 720]]);
+    }
+
+    #[test]
+    fn the_ground_between_the_words_lies_inside_the_panel() {
+        assert_eq!(clear_of_words([640, 0, 640, 720], Scale { unit: 1.0 }), [680, 102, 560, 518]);
+        for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
+            let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel));
+            assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
+            assert!(y >= panel[1] && y + height <= panel[1] + panel[3]);
+        }
     }
 
     #[test]

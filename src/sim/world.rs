@@ -1,4 +1,4 @@
-//! The world of one run: [`World::step`] is section 2 of the paper.
+//! The world of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 use super::body::{Body, State, bounds};
 use super::contact::Obstacle;
