@@ -6,6 +6,7 @@ pub mod body;
 pub mod contact;
 pub mod diagnose;
 pub mod integrate;
+pub mod lists;
 pub mod model;
 pub mod rotation;
 pub mod snapshot;

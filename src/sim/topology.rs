@@ -1,7 +1,48 @@
-//! Faces and edges of each kind of element, and the springs made from them.
+//! The kinds of elements, their faces and edges, and the springs made from them.
 
-use super::body::{Dimension, ElementKind, Faces, IndexLists};
+use super::lists::IndexLists;
 use std::collections::HashMap;
+
+/// Whether a body lives in the plane or in space.
+///
+/// A body in the plane is stored with `z = 0`, moves in the xy-plane only and is drawn flat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Two coordinates; elements are polygons, listed counter-clockwise.
+    Plane,
+    /// Three coordinates.
+    Space,
+}
+
+/// What an element is, which decides its faces, its edges and how its volume is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ElementKind {
+    /// Two nodes.
+    Segment,
+    /// Three or more nodes in the plane, counter-clockwise.
+    Polygon,
+    /// Four nodes in space; node 3 lies on the side to which the triangle 0, 1, 2 turns counter-clockwise.
+    Tetrahedron,
+    /// Five nodes in space: a quadrilateral 0, 1, 2, 3 in order around, and the apex 4.
+    Pyramid,
+    /// Six nodes in space: a triangle 0, 1, 2 and the opposite one 3, 4, 5.
+    Wedge,
+    /// Eight nodes in space in bit order: x fastest, then y, then z.
+    Hexahedron,
+    /// Any other number of nodes in space. It has elasticity, but no faces and no edges of its own.
+    Other,
+}
+
+/// The faces of a body, each stored once, whether inside it or on its surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Faces {
+    /// The corners of each face, counter-clockwise seen from outside the element it is [`Self::inner`] of.
+    pub nodes: IndexLists,
+    /// The element that the face bounds and looks out of; `None` for a face given without one.
+    pub inner: Vec<Option<u32>>,
+    /// The element on the other side, into which the face looks; `None` on the surface of the body.
+    pub outer: Vec<Option<u32>>,
+}
 
 /// The kind of an element from the number of its nodes.
 pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {

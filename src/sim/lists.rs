@@ -1,0 +1,64 @@
+//! Many short lists of indices in one piece of memory.
+
+/// Lists of indices of varying length, stored one behind the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IndexLists {
+    offsets: Vec<u32>,
+    indices: Vec<u32>,
+}
+
+impl Default for IndexLists {
+    fn default() -> Self {
+        Self { offsets: vec![0], indices: Vec::new() }
+    }
+}
+
+impl IndexLists {
+    /// Appends one list.
+    pub fn push(&mut self, list: &[u32]) {
+        self.indices.extend_from_slice(list);
+        self.offsets.push(u32::try_from(self.indices.len()).expect("fewer than 2^32 indices"));
+    }
+
+    /// The number of lists.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Whether there is no list at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Where list `at` stands in [`Self::indices`].
+    pub fn range(&self, at: usize) -> std::ops::Range<usize> {
+        self.offsets[at] as usize..self.offsets[at + 1] as usize
+    }
+
+    /// All indices, list after list.
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    /// The lists in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
+        (0..self.len()).map(|at| &self[at])
+    }
+}
+
+impl std::ops::Index<usize> for IndexLists {
+    type Output = [u32];
+    fn index(&self, at: usize) -> &[u32] {
+        &self.indices[self.range(at)]
+    }
+}
+
+impl<'a> FromIterator<&'a [u32]> for IndexLists {
+    fn from_iter<I: IntoIterator<Item = &'a [u32]>>(lists: I) -> Self {
+        let mut all = Self::default();
+        for list in lists {
+            all.push(list);
+        }
+        all
+    }
+}
