@@ -12,7 +12,7 @@ use super::tally::Tally;
 use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, ElementKind};
-use crate::sim::contact::Shape;
+use crate::sim::contact;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -224,12 +224,7 @@ impl<'a> Composer<'a> {
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (view.camera.target, view.side);
-        // What a body can stand on, rather than a wall beside it.
-        let surfaces = self.scene.obstacles.iter().map(|obstacle| match obstacle.shape {
-            Shape::Floor { normal, height } => (normal, height),
-        });
-        let (normal, height) =
-            surfaces.clone().find(|(normal, _)| normal.y > 0.5).or_else(|| surfaces.clone().next())?;
+        let (normal, height) = contact::ground(&self.scene.obstacles)?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
         let widening = (framing.distance / view.camera.distance).sqrt();

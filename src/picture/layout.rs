@@ -116,11 +116,16 @@ mod tests {
         {
             let panels = panels(size, count, columns);
             assert_eq!(panels.len(), count);
-            let area: u32 = panels.iter().map(|panel| panel[2] * panel[3]).sum();
-            let rows = count.div_ceil(columns.min(count)) * columns.min(count);
-            let whole = size[0] * size[1];
-            assert!(area <= whole && u64::from(area) * rows as u64 >= u64::from(whole) * count as u64 * 9 / 10);
-            assert!(panels.iter().all(|p| p[2] > 0 && p[3] > 0 && p[0] + p[2] <= size[0] && p[1] + p[3] <= size[1]));
+            // Each begins where the one before it ends, and the last ones end at the picture's edges.
+            let columns = columns.min(count);
+            for (at, &[left, top, width, height]) in panels.iter().enumerate() {
+                assert!(width > 0 && height > 0);
+                let beside = if at % columns == 0 { 0 } else { panels[at - 1][0] + panels[at - 1][2] };
+                let above = if at < columns { 0 } else { panels[at - columns][1] + panels[at - columns][3] };
+                assert_eq!([left, top], [beside, above]);
+                assert!(at % columns != columns - 1 || left + width == size[0]);
+                assert!(at / columns < (count - 1) / columns || top + height == size[1]);
+            }
         }
         assert_eq!(panels([1280, 720], 2, 2), [[0, 0, 640, 720], [640, 0, 640, 720]]);
     }

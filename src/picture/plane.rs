@@ -7,7 +7,7 @@ use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::contact::{self, Obstacle};
 use glam::{DVec2, DVec3};
 
 /// Radius of a node (px in the reference picture).
@@ -38,11 +38,8 @@ impl Flat<'_> {
     /// The floor, below the body.
     pub(super) fn floor(&self, obstacles: &[Obstacle], marks: &mut Vec<Mark>) {
         // Slopes and walls have no marks of their own yet.
-        let level = obstacles.iter().find_map(|obstacle| match obstacle.shape {
-            Shape::Floor { normal, height } if normal.y > 1.0 - 1e-9 => Some(height),
-            Shape::Floor { .. } => None,
-        });
-        let Some(level) = level else { return };
+        let level = contact::ground(obstacles).filter(|(normal, _)| normal.y > 1.0 - 1e-9);
+        let Some((_, level)) = level else { return };
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (pixel[1].round(), self.scale.margin(), self.scale.unit);

@@ -88,6 +88,26 @@ impl Scene {
 
     /// The step of a run after which a frame shows it: `round(n / (frames_per_second · ΔT))`.
     pub fn frame_step(&self, run: usize, frame: u64) -> u64 {
-        (self.frame_time(frame) / self.runs[run].step).round() as u64
+        // As written: dividing twice would round ties to other steps.
+        (frame as f64 / (self.frames_per_second * self.runs[run].step)).round() as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Limits, Scene};
+
+    #[test]
+    fn a_frame_shows_the_step_that_its_formula_says() {
+        let text = r#"
+            time = { duration = 10, step = 0.004, frames_per_second = 60 }
+            body = { lattice = { cells = [1, 1, 1], side = 1 } }
+            run = [{ name = "one", model = { kind = "shape-based", stiffness = 1 } }]
+        "#;
+        let scene = Scene::parse(text, "steps", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        // Ties go up: 21 / (60 · 0.004) is 87.5, and 57 / (60 · 0.004) is 237.5.
+        let steps = [0, 1, 21, 57, 600].map(|frame| scene.frame_step(0, frame));
+        assert_eq!(steps, [0, 4, 88, 238, 2500]);
+        assert_eq!(scene.last_frame(), 600);
     }
 }

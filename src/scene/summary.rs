@@ -133,6 +133,7 @@ fn elements(kinds: &[ElementKind]) -> Vec<String> {
     let names = [
         (Segment, "segment", "segments"),
         (Polygon, "polygon", "polygons"),
+        (Triangle, "triangle", "triangles"),
         (Tetrahedron, "tetrahedron", "tetrahedra"),
         (Pyramid, "pyramid", "pyramids"),
         (Wedge, "wedge", "wedges"),

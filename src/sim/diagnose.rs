@@ -24,7 +24,7 @@ enum ElementSize {
     Faces { at_rest: f64 },
     /// By the affine map that fits it best: `det(Σ r R0ᵀ (Σ R0 R0ᵀ)⁻¹)` times the rest volume.
     Affine { at_rest: f64, inverse: DMat3, rest: Vec<DVec3> },
-    /// A segment, or corners without extent, has none and never turns over.
+    /// A segment, a triangle in space or anything else that is flat there has none and never turns over.
     None,
 }
 
@@ -101,22 +101,27 @@ impl Diagnose {
     }
 }
 
+/// Corners whose second moments have a determinant below this part of what it would be in a ball lie in a plane.
+///
+/// Round-off leaves 1e-16 of it for corners in a plane; a plate a thousand times wider than thick has 1e-6.
+const FLAT: f64 = 1e-12;
+
 fn element_size(body: &Body, element: usize) -> ElementSize {
     let (nodes, kind) = (&body.elements[element], body.kinds[element]);
     match kind {
-        ElementKind::Segment => ElementSize::None,
+        ElementKind::Segment | ElementKind::Triangle => ElementSize::None,
         ElementKind::Other => {
             let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
             let centre = mean(&corners);
             let rest: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
             let moments = moment(&rest, rest.iter().copied());
-            // The box whose corners have the same second moments stands for the volume of a shape without faces.
-            let at_rest = (moments * (4.0 / rest.len() as f64)).determinant().max(0.0).sqrt();
-            if at_rest == 0.0 {
-                ElementSize::None
-            } else {
-                ElementSize::Affine { at_rest, inverse: moments.inverse(), rest }
+            let mean_moment = (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z) / 3.0;
+            if moments.determinant() <= FLAT * mean_moment * mean_moment * mean_moment {
+                return ElementSize::None;
             }
+            // The box whose corners have the same second moments stands for the volume of a shape without faces.
+            let at_rest = (moments * (4.0 / rest.len() as f64)).determinant().sqrt();
+            ElementSize::Affine { at_rest, inverse: moments.inverse(), rest }
         }
         _ => ElementSize::Faces { at_rest: volume_by_faces(kind, nodes, &body.rest) },
     }
@@ -150,4 +155,46 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
 
 fn mean(points: &[DVec3]) -> DVec3 {
     points.iter().fold(DVec3::ZERO, |sum, &point| sum + point) / points.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::body::IndexLists;
+    use crate::sim::snapshot::Diagnostics;
+    use glam::DQuat;
+
+    fn at_rest(rest: Vec<DVec3>) -> Diagnostics {
+        let mut elements = IndexLists::default();
+        elements.push(&(0..rest.len() as u32).collect::<Vec<_>>());
+        let body = Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, None));
+        let nothing = Measure { energy: None, residual: None };
+        Diagnose::new(&body).state(&State::at_rest(rest), DVec3::ZERO, nothing).0
+    }
+
+    /// Seven corners have no faces of their own: the affine estimate stands in.
+    fn heptad(thickness: f64) -> Vec<DVec3> {
+        let tilt = DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize();
+        let corner = |at: u32| {
+            DVec3::new(f64::from(at % 3), f64::from(at / 3), thickness * f64::from(at * at % 5)) * 0.1 + DVec3::ONE
+        };
+        (0..7).map(|at| tilt * corner(at)).collect()
+    }
+
+    #[test]
+    fn what_is_flat_in_space_has_no_volume_and_cannot_turn_over() {
+        for flat in [heptad(0.0), heptad(0.0)[..3].to_vec(), heptad(0.0)[..2].to_vec()] {
+            let diagnostics = at_rest(flat);
+            assert!(diagnostics.volume_ratio.is_nan());
+            assert_eq!(diagnostics.turned_over, 0);
+            assert!(diagnostics.shape_error < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_thin_element_without_faces_has_a_volume() {
+        for thickness in [1.0, 1e-3] {
+            assert!((at_rest(heptad(thickness)).volume_ratio - 1.0).abs() < 1e-8);
+        }
+    }
 }

@@ -61,7 +61,7 @@ pub struct Diagnostics {
     /// How many elements have changed sign: signed area in the plane, signed volume in space, for elements of
     /// other kinds the determinant of `Σ r R0ᵀ`.
     pub turned_over: usize,
-    /// Total signed volume over the rest value.
+    /// Total signed volume over the rest value; NaN for a body without any volume, such as a cloth.
     pub volume_ratio: f64,
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
     pub shape_error: f64,

@@ -21,6 +21,8 @@ pub enum ElementKind {
     Segment,
     /// Three or more nodes in the plane, counter-clockwise.
     Polygon,
+    /// Three nodes in space: a face without a volume, with two equal sides.
+    Triangle,
     /// Four nodes in space; node 3 lies on the side to which the triangle 0, 1, 2 turns counter-clockwise.
     Tetrahedron,
     /// Five nodes in space: a quadrilateral 0, 1, 2, 3 in order around, and the apex 4.
@@ -49,6 +51,7 @@ pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
     match (dimension, nodes) {
         (_, 2) => ElementKind::Segment,
         (Dimension::Plane, _) => ElementKind::Polygon,
+        (Dimension::Space, 3) => ElementKind::Triangle,
         (Dimension::Space, 4) => ElementKind::Tetrahedron,
         (Dimension::Space, 5) => ElementKind::Pyramid,
         (Dimension::Space, 6) => ElementKind::Wedge,
@@ -63,6 +66,7 @@ pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
 fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     match kind {
         ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
+        ElementKind::Triangle => &[&[0, 1, 2]],
         ElementKind::Tetrahedron => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
         ElementKind::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
         ElementKind::Wedge => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
@@ -104,7 +108,8 @@ pub fn shared_faces(elements: &IndexLists, kinds: &[ElementKind]) -> Faces {
             owner.push(element);
         });
     }
-    let partner = partners(&all, |face| kinds[owner[face] as usize] == ElementKind::Polygon);
+    let is_flat = |face: usize| matches!(kinds[owner[face] as usize], ElementKind::Polygon | ElementKind::Triangle);
+    let partner = partners(&all, is_flat);
     let mut faces = Faces::default();
     for (at, face) in all.iter().enumerate() {
         // The second of two equal faces is only named by the first.
@@ -117,8 +122,8 @@ pub fn shared_faces(elements: &IndexLists, kinds: &[ElementKind]) -> Faces {
     faces
 }
 
-/// For each face the one other face with the same corners; polygons of the plane, and whatever is shared by more than
-/// two elements in file order, stay single.
+/// For each face the one other face with the same corners. Elements that are faces themselves stay single, and so does
+/// the last of an odd number.
 fn partners(faces: &IndexLists, is_single: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     // Sorting finds equal faces several times faster than hashing at a million elements.
     let mut keyed: Vec<([u32; 4], usize)> = Vec::with_capacity(faces.len());

@@ -142,3 +142,29 @@ fn the_highest_frequencies_are_those_of_an_independent_implementation() {
         assert!((ratio - expected).abs() < 1e-3, "{ratio} instead of {expected}");
     }
 }
+
+/// Halving the step halves the error: semi-implicit Euler is of order 1.
+#[test]
+fn the_error_of_semi_implicit_euler_falls_with_the_step() {
+    let body = lattice(2, 0.1);
+    let twisted = body.rest.iter().map(|&rest| {
+        let angle = 3.0 * rest.z;
+        let (x, y) = (rest.x - 0.1, rest.y - 0.1);
+        DVec3::new(x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos(), rest.z * 1.2)
+    });
+    let start = State::at_rest(twisted.collect());
+    // Enough passes for exact rotations, so that the step is the only error.
+    let model = localshape::sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
+    let end = |steps: u32| {
+        let mut world = free(&body, start.clone(), &model, 0.2 / f64::from(steps));
+        world.advance(steps.into());
+        world.state().position.clone()
+    };
+    let exact = end(64_000);
+    let error = |steps| {
+        let distance = |(a, b): (&DVec3, &DVec3)| a.distance(*b);
+        end(steps).iter().zip(&exact).map(distance).fold(0.0, f64::max)
+    };
+    let order = f64::log2(error(500) / error(1000));
+    assert!((order - 1.0).abs() < 0.1, "{order}");
+}

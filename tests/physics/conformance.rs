@@ -200,3 +200,13 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
         }
     }
 }
+
+/// A model that scenes can name but this suite does not know would be tested by nobody.
+#[test]
+fn every_model_of_the_scene_format_is_in_the_suite() {
+    let schema = localshape::scene::schema();
+    let variants = schema["properties"]["run"]["items"]["properties"]["model"]["oneOf"].as_array();
+    let named: Vec<_> =
+        variants.expect("models to choose from").iter().map(|model| &model["properties"]["kind"]["const"]).collect();
+    assert_eq!(named, ["shape-based", "mass-spring"], "add the model to `models`, then here");
+}

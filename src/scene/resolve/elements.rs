@@ -78,7 +78,7 @@ impl Listed<'_> {
         let kind = topology::kind(self.dimension, element.len());
         let (whole, flat) = match kind {
             // A length is not zero where the box is not, and other elements may be flat: they are no solids.
-            ElementKind::Segment | ElementKind::Other => return,
+            ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => return,
             ElementKind::Polygon => (size * size, "no area: its nodes are on a line, or its sides cross"),
             _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
         };

@@ -6,7 +6,7 @@ use crate::scene::file::ViewFile;
 use crate::scene::report::{Report, Way};
 use crate::scene::view::{Camera, View};
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::contact::{self, Obstacle};
 use glam::DVec3;
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
@@ -66,13 +66,7 @@ fn size(body: &ResolvedBody) -> f64 {
 fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     let (low, high) = bounds(start);
     let middle = (low + high) / 2.0;
-    for obstacle in obstacles {
-        let Shape::Floor { normal, height } = obstacle.shape;
-        // A wall is no place to stand on; a slope of some 60° still is.
-        if normal.y > 0.5 {
-            let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
-            return DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z);
-        }
-    }
-    middle
+    let Some((normal, height)) = contact::ground(obstacles) else { return middle };
+    let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
+    DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
 }

@@ -25,6 +25,15 @@ pub enum Shape {
     },
 }
 
+/// What a body can stand on: unit normal and distance from the origin (m) of the first floor that faces upwards.
+pub fn ground(obstacles: &[Obstacle]) -> Option<(DVec3, f64)> {
+    // A wall is no place to stand on; a slope of some 60° still is.
+    const LEAST_RISE: f64 = 0.5;
+    obstacles.iter().find_map(|obstacle| match obstacle.shape {
+        Shape::Floor { normal, height } => (normal.y > LEAST_RISE).then_some((normal, height)),
+    })
+}
+
 impl Obstacle {
     /// The rebound of one node: mirrored out with restitution, its slip braked by friction.
     ///

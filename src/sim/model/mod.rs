@@ -116,6 +116,7 @@ fn elements_in_words(body: &Body) -> String {
     let triangles = body.elements.iter().all(|nodes| nodes.len() == 3);
     let (one, many) = match kind {
         Some(ElementKind::Segment) => ("segment", "segments"),
+        Some(ElementKind::Triangle) => ("triangle", "triangles"),
         Some(ElementKind::Polygon) if triangles => ("triangle", "triangles"),
         Some(ElementKind::Polygon) => ("polygon", "polygons"),
         Some(ElementKind::Tetrahedron) => ("tetrahedron", "tetrahedra"),
