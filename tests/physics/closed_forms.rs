@@ -168,3 +168,22 @@ fn the_error_of_semi_implicit_euler_falls_with_the_step() {
     let order = f64::log2(error(500) / error(1000));
     assert!((order - 1.0).abs() < 0.1, "{order}");
 }
+
+/// Undamped, semi-implicit Euler is stable as long as `ω_max ΔT < 2`: 2.7585 ω for the free 3×3×3 lattice.
+#[test]
+fn a_step_is_stable_up_to_two_over_the_highest_frequency() {
+    let body = lattice(3, 0.1);
+    let stiffness = 1e4;
+    let model = localshape::sim::model::shape_based::ShapeBased { passes: 4, ..shape_based(stiffness, 0.0) };
+    let growth = |part_of_limit: f64| {
+        let step = part_of_limit * 2.0 / (2.7585 * f64::sqrt(stiffness));
+        let mut noise = Noise(4);
+        let position = body.rest.iter().map(|&rest| rest + noise.vector() * 1e-7).collect();
+        let mut world = free(&body, State::at_rest(position), &model, step);
+        let before = world.snapshot().diagnostics.shape_error;
+        world.advance(300);
+        world.snapshot().diagnostics.shape_error / before
+    };
+    assert!(growth(0.98) < 10.0, "{}", growth(0.98));
+    assert!(growth(1.02) > 1e3, "{}", growth(1.02));
+}

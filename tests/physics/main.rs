@@ -4,5 +4,6 @@ mod closed_forms;
 mod conformance;
 mod degenerate_starts;
 mod fig4b;
+mod figures;
 mod support;
 mod threads;

@@ -1,0 +1,72 @@
+//! The forces of Figs. 1 and 2, with `k = 1`, against an independent implementation's.
+
+use crate::support::{body, forces, shape_based};
+use glam::DVec3;
+use localshape::sim::body::{Dimension, State};
+use localshape::sim::model::ElasticModel;
+use localshape::sim::model::mass_spring::MassSpring;
+
+fn at(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+    points.iter().map(|&[x, y]| [x, y, 0.0]).collect()
+}
+
+/// The forces (N) on a polygon deformed from `rest` to `now`.
+fn on_polygon(rest: &[[f64; 2]], now: &[[f64; 2]], model: &dyn ElasticModel) -> Vec<DVec3> {
+    let nodes: Vec<_> = (0..rest.len() as u32).collect();
+    let body = body(Dimension::Plane, &at(rest), &[&nodes]);
+    let now = at(now).into_iter().map(DVec3::from_array).collect();
+    forces(&body, model, &State::at_rest(now))
+}
+
+fn agree(found: &[DVec3], expected: &[[f64; 2]]) {
+    for (found, expected) in found.iter().zip(expected) {
+        // The figures are known to four digits.
+        assert!((found.truncate() - glam::DVec2::from_array(*expected)).length() < 1e-4, "{found} {expected:?}");
+    }
+}
+
+fn springs(pairs: &[[u32; 2]]) -> MassSpring {
+    MassSpring { stiffness: 1.0, damping: 0.0, springs: pairs.to_vec() }
+}
+
+/// A regular triangle of side 1, its base on the x-axis around the origin.
+fn triangle() -> [[f64; 2]; 3] {
+    [[-0.5, 0.0], [0.5, 0.0], [0.0, 0.75f64.sqrt()]]
+}
+
+#[test]
+fn fig_1_a_triangle_whose_apex_is_pressed_down() {
+    let now = [[-0.5, 0.0], [0.5, 0.0], [0.1, 0.1]];
+    let three = springs(&[[0, 1], [1, 2], [0, 2]]);
+    agree(
+        &on_polygon(&triangle(), &now, &shape_based(1.0, 0.0)),
+        &[[0.0063, -0.2023], [0.0010, -0.3053], [-0.0072, 0.5076]],
+    );
+    agree(&on_polygon(&triangle(), &now, &three), &[[-0.3864, -0.0644], [0.5701, -0.1425], [-0.1837, 0.2069]]);
+}
+
+#[test]
+fn fig_1_with_the_apex_turned_over_springs_push_the_wrong_way() {
+    let now = [[-0.5, 0.0], [0.5, 0.0], [0.0, -0.2]];
+    let shape = on_polygon(&triangle(), &now, &shape_based(1.0, 0.0));
+    assert!((shape[2].y - 0.711).abs() < 1e-3, "{}", shape[2]);
+    let spring = on_polygon(&triangle(), &now, &springs(&[[0, 1], [1, 2], [0, 2]]));
+    assert!((spring[2].y + 0.343).abs() < 1e-3, "{}", spring[2]);
+}
+
+#[test]
+fn fig_2_a_square_pressed_flat() {
+    let half = 0.5f64.sqrt();
+    let rest = [[half, 0.0], [0.0, half], [-half, 0.0], [0.0, -half]];
+    let now = rest.map(|[x, y]| [1.2 * x, 0.3 * y]);
+    agree(
+        &on_polygon(&rest, &now, &shape_based(1.0, 0.0)),
+        &[[-0.1414, 0.0], [0.0, 0.4950], [0.1414, 0.0], [0.0, -0.4950]],
+    );
+    let sides = [[0, 1], [1, 2], [2, 3], [0, 3]];
+    let with = |diagonal| springs(&[&sides[..], &[diagonal]].concat());
+    let vertical = on_polygon(&rest, &now, &with([1, 3]));
+    assert!((vertical[0].x - 0.243).abs() < 1e-3 && (vertical[1].y - 1.051).abs() < 1e-3, "{vertical:?}");
+    let horizontal = on_polygon(&rest, &now, &with([0, 2]));
+    assert!((horizontal[0].x + 0.040).abs() < 1e-3 && (horizontal[1].y - 0.061).abs() < 1e-3, "{horizontal:?}");
+}
