@@ -22,11 +22,10 @@ pub fn solve(a: DMat3) -> DVec3 {
 /// The rotation with axis `u = w/|w|` and angle `θ = atan |w|`, which is Eq. (9) about that axis.
 ///
 /// `tan(θ/2) = |w| / (1 + √(1 + w²))` makes it a quaternion without any trigonometric function. `θ = |w|`, the other
-/// reading of the paper, overshoots and can spin a free body up.
+/// reading of the paper, overshoots and can spin a free body up. The quaternion is not normalised.
 #[doc(alias = "Eq. 10")]
 pub fn turn(w: DVec3) -> DQuat {
-    let cosine_part = 1.0 + (1.0 + w.length_squared()).sqrt();
-    DQuat::from_xyzw(w.x, w.y, w.z, cosine_part).normalize()
+    DQuat::from_xyzw(w.x, w.y, w.z, 1.0 + (1.0 + w.length_squared()).sqrt())
 }
 
 /// How far above zero, in units of the size of `A`, the leading minors of the Hessian must lie.
