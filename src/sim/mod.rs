@@ -3,6 +3,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod body;
+pub mod census;
 pub mod contact;
 pub mod diagnose;
 pub mod integrate;

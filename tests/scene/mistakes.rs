@@ -464,6 +464,34 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
     assert!(Scene::parse(SPACE, "a", &Limits { memory: 100, ..Limits::default() }).is_err());
 }
 
+/// One polygon of very many corners, whose diagonals are too many although its file is small.
+#[test]
+fn springs_beyond_the_limits_are_refused_before_they_are_made() {
+    let corner = |at: u32| {
+        let (sine, cosine) = (f64::from(at) * std::f64::consts::TAU / 60_000.0).sin_cos();
+        format!("[{cosine:.9}, {sine:.9}]")
+    };
+    let nodes: Vec<_> = (0..60_000).map(corner).collect();
+    let element: Vec<_> = (0..60_000).map(|at| at.to_string()).collect();
+    let scene = |model: &str| {
+        let (nodes, element) = (nodes.join(","), element.join(","));
+        let soft = "[[run]]\nname = 'soft'\nmodel = { kind = 'shape-based', stiffness = 1 }";
+        let body = format!("[body]\nnodes = [{nodes}]\nelements = [[{element}]]");
+        format!("time = {{ duration = 1 }}\n{soft}\n[[run]]\nname = 'springs'\n{model}\n{body}\n")
+    };
+    for (model, column) in [
+        ("model = { kind = 'mass-spring', stiffness = 1, springs = 'all' }", 58),
+        ("model = { kind = 'mass-spring', stiffness = 1 }", 9),
+    ] {
+        let error = bad(&scene(model));
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        assert_eq!((mistake.line, mistake.column), (7, column), "{error}");
+        assert!(mistake.message.starts_with("this makes 60 000 nodes, 1 element and up to 1 7"), "{error}");
+        assert!(mistake.help.as_ref().unwrap().contains("fewer springs on each element"), "{error}");
+    }
+    super::good(&scene("model = { kind = 'mass-spring', stiffness = 1, springs = 'edges' }"));
+}
+
 #[test]
 fn syntax_errors_have_their_place() {
     let error = bad(&PLANE.replace("duration = 3", "duration = = 3"));

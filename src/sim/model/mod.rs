@@ -8,6 +8,7 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::{Body, ElementKind, State};
+use super::census::Census;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,27 @@ impl ModelParameters {
             Self::MassSpring(parameters) => Arc::new(parameters.resolve(body, springs)?),
         })
     }
+
+    /// What the model will need on a body, at most; asked before the body is made.
+    pub fn needs(&self, census: &Census) -> Needs {
+        match self {
+            Self::ShapeBased(parameters) => parameters.needs(census),
+            Self::MassSpring(parameters) => parameters.needs(census),
+        }
+    }
+}
+
+/// What one run needs of memory besides the state of its nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Springs, at most.
+    pub springs: u128,
+    /// While the model is resolved (bytes).
+    pub making: u128,
+    /// As long as the run lasts (bytes).
+    pub working: u128,
+    /// The longest list of 32-bit indices.
+    pub indices: u128,
 }
 
 /// A parameter that does not fit, said about one key of the model's table.
