@@ -37,7 +37,8 @@ pub(super) struct RunOptions {
     #[arg(long, value_name = "RUN")]
     pub(super) only: Vec<String>,
 
-    /// Also write positions and velocities of every frame to states.npz, for numpy.load
+    /// Also write positions and velocities of every frame to states.npz, for numpy.load: `time`, `RUN.position` and
+    /// `RUN.velocity` for each run, and `RUN.time` for a run with a time step of its own
     #[arg(long)]
     pub(super) states: bool,
 
