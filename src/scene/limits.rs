@@ -87,7 +87,8 @@ impl Demand {
     /// Why this is too much, if it is, and what to do.
     pub(super) fn beyond(&self, limits: &Limits) -> Option<Excess> {
         let springs = self.runs.iter().fold(0, |sum: u128, run| sum.saturating_add(run.springs));
-        let several = |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
+        let several =
+            |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
         let (nodes, elements) = (several(self.body.nodes, "node"), several(self.body.count(), "element"));
         let parts = match springs {
             0 => format!("{nodes} and {elements}"),
