@@ -151,6 +151,18 @@ fn files_that_are_no_scenes_are_told_apart() {
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
+    // The ending that all have makes no two alike.
+    put("e.toml", b"");
+    assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));
+    assert!(matches!(load(&folder.path().join("e.tml")), SceneError::Missing { nearest: Some(_), .. }));
+    std::fs::remove_file(folder.path().join("e.toml")).unwrap();
+    // Results would go to `output/..`.
+    for name in ["...toml", "..toml", " .toml"] {
+        let error = load(&put(name, shipped("fig4b.toml").as_bytes()));
+        assert!(matches!(error, SceneError::Nameless { .. }), "{name}: {error}");
+        assert!(error.to_string().ends_with("rename the file"), "{error}");
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
     assert!(matches!(load(Path::new("no/such/folder/a.toml")), SceneError::Missing { nearest: None, .. }));
     assert!(matches!(load(folder.path()), SceneError::Folder { scenes, .. } if scenes.len() == 1));
     assert!(matches!(load(&put("empty.toml", b"")), SceneError::Empty { .. }));
