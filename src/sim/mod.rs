@@ -12,6 +12,7 @@ pub mod model;
 pub mod rotation;
 pub mod snapshot;
 pub mod topology;
+pub mod words;
 pub mod world;
 
 pub use body::{Body, State};

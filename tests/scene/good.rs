@@ -205,7 +205,7 @@ fn a_summary_says_what_a_scene_holds() {
         summary.to_string(),
         format!(
             "  scene     3×3×3 cubes dropped on a floor (test)
-  body      64 nodes, 27 hexahedra, 0.3 × 0.3 × 0.3 m, 64 kg
+  body      64 nodes, 27 cubes, 0.3 × 0.3 × 0.3 m, 64 kg
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s
@@ -220,7 +220,7 @@ fn a_summary_says_what_a_scene_holds() {
         )
     );
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
-    assert_eq!(json["elements"], serde_json::json!(["6 polygons"]));
+    assert_eq!(json["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");
     assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }
