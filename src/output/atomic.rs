@@ -56,8 +56,8 @@ impl AtomicFile {
     /// Gives the file its own name, in place of what had that name before, once the disk has its contents: so a name
     /// never stands for less than the whole, even when the power fails.
     ///
-    /// Waiting for the disk took 0.3 ms for a frame of 120 kB (median of 100, on a solid-state disk), on threads that
-    /// need some 10 ms to compress it.
+    /// Waiting for the disk took 4 ms for a file of 300 kB (median of 100). For frames it is done by the threads that
+    /// compress them, while others are drawn: rendering took as long as without.
     ///
     /// # Errors
     /// If it cannot be written or renamed; then it is removed.

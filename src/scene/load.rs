@@ -181,5 +181,5 @@ fn similar(path: &Path) -> Option<PathBuf> {
     let stems: Vec<Option<&str>> = scenes.iter().map(|scene| scene.file_stem()?.to_str()).collect();
     let near = nearest(&wanted, &stems.iter().copied().flatten().collect::<Vec<_>>())?;
     let scene = &scenes[stems.iter().position(|&stem| stem == Some(near))?];
-    Some(folder.map_or_else(|| scene.file_name().map(PathBuf::from), |_| Some(scene.clone()))?)
+    folder.map_or_else(|| scene.file_name().map(PathBuf::from), |_| Some(scene.clone()))
 }
