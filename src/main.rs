@@ -3,5 +3,8 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    localshape::cli::run(std::env::args_os())
+    let words: Vec<_> = std::env::args_os().collect();
+    #[cfg(feature = "render")]
+    localshape::cli::settle(&words);
+    localshape::cli::run(words)
 }

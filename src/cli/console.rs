@@ -21,11 +21,12 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&(text + "\n"))
 }
 
-/// A bar that counts frames and estimates the time left. Invisible when `quiet` or when nobody sits at a terminal.
-pub(super) fn progress(title: &str, frames: usize, quiet: bool) -> ProgressBar {
+/// A bar that counts steps, estimates the time left, and shows frames in its message. Invisible when `quiet` or when
+/// nobody sits at a terminal.
+pub(super) fn progress(title: &str, steps: u64, quiet: bool) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let style = ProgressStyle::with_template("{prefix}  {wide_bar}  frame {pos} of {len}, {eta} left");
-    let bar = ProgressBar::with_draw_target(Some(frames as u64), target);
+    let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {msg}, {eta} left");
+    let bar = ProgressBar::with_draw_target(Some(steps), target);
     bar.set_style(style.expect("a template of known keys"));
     bar.set_prefix(title.to_owned());
     bar

@@ -1,4 +1,5 @@
-//! Ctrl-C and requests to terminate: the present frame is finished, then the command ends.
+//! Ctrl-C and requests to terminate: a frame on its way is given up, what was made before is finished, and the command
+//! ends.
 
 use super::failure::Status;
 use std::sync::atomic::{AtomicBool, Ordering};

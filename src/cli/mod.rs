@@ -22,6 +22,9 @@ mod scenes;
 mod schema;
 mod simulate;
 
+#[cfg(feature = "render")]
+pub use driver::settle;
+
 use clap::{Parser, Subcommand};
 use failure::{Failure, Status};
 use std::ffi::OsString;

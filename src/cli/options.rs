@@ -11,7 +11,8 @@ pub(super) struct SceneOptions {
     #[arg(value_name = "SCENE", required = true, value_hint = ValueHint::FilePath)]
     pub(super) scenes: Vec<PathBuf>,
 
-    /// Accept scenes beyond the limits that guard against slips of the keyboard
+    /// Accept scenes beyond the limits that guard against slips of the keyboard; that of 32-bit indices, some 178
+    /// million hexahedra, remains
     #[arg(long)]
     pub(super) allow_large: bool,
 }
@@ -36,7 +37,8 @@ pub(super) struct RunOptions {
     #[arg(long, value_name = "RUN")]
     pub(super) only: Vec<String>,
 
-    /// Also write positions and velocities of every frame to states.npz, for numpy.load
+    /// Also write positions and velocities of every frame to states.npz, for numpy.load: `time`, `RUN.position` and
+    /// `RUN.velocity` for each run, and `RUN.time` for a run with a time step of its own
     #[arg(long)]
     pub(super) states: bool,
 

@@ -6,9 +6,13 @@ use super::interrupt;
 use super::options::RunOptions;
 use super::report;
 use super::scenes::Job;
-use crate::output::{Clock, DiagnosticsWriter, Outcome, Spent, StatesWriter, Summary, Timings, thread_time};
+use crate::output::{
+    Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, STATES_FILE, Spent, StatesWriter, Summary,
+    Timings, thread_time,
+};
 use crate::scene::Scene;
 use crate::sequence::Sequence;
+use crate::sim::body::Body;
 use crate::sim::snapshot::Frame;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
@@ -45,39 +49,56 @@ pub(super) fn run_all(
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut documents: Vec<Value> = Vec::new();
     let mut interrupted = false;
+    let mut result = Ok(());
     for (number, job) in jobs.into_iter().enumerate() {
         if interrupt::requested() {
             interrupted = true;
             break;
         }
-        let Job { scene, runs, frames, folder } = job;
-        let folder = folder.prepare()?;
-        let mut recording = Recording {
-            summary: Summary::new(&scene, &runs, frames.len(), &command),
-            folder,
-            scene: &scene,
-            runs,
-            frames,
-            last: None,
-            times: Timings::default(),
-        };
-        let pictures = studio.map(|studio| studio.begin(&scene, &recording.folder)).transpose()?;
-        recording.run(&pool, options, pictures)?;
-        let (summary, folder) = (&recording.summary, &recording.folder);
+        let path = job.folder.path().to_owned();
+        let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
+        result = record(job, &mut summary, &pool, options, studio);
         if options.json {
-            let mut document = json!({ "folder": folder.to_string_lossy() });
-            merge(&mut document, serde_json::to_value(summary).expect("plain data"));
+            let mut document = json!({ "folder": path.to_string_lossy() });
+            merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
             documents.push(document);
-        } else if !options.quiet {
+        } else if !options.quiet && result.is_ok() {
             let blank = if number > 0 { "\n" } else { "" };
-            console::print(&format!("{blank}{}", report::report(summary, folder, timings)))?;
+            console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
+        }
+        if result.is_err() {
+            break;
         }
         interrupted = summary.outcome == Outcome::Interrupted;
     }
-    if options.json {
-        console::print_json(&json!({ "scenes": documents }))?;
-    }
+    // What was finished is told before the failure.
+    let printed = if options.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
+    result.and(printed)?;
     Ok(if interrupted { Status::Interrupted } else { Status::Done })
+}
+
+/// Runs one scene. However it ends, the summary says so.
+fn record(
+    job: Job,
+    summary: &mut Summary,
+    pool: &ThreadPool,
+    options: &RunOptions,
+    studio: Option<&dyn Studio>,
+) -> Result<(), Failure> {
+    let Job { scene, runs, frames, folder } = job;
+    let begin = || -> Result<_, Failure> {
+        let folder = folder.prepare(options.states)?;
+        let pictures = studio.map(|studio| studio.begin(&scene, &folder)).transpose()?;
+        Ok((folder, pictures))
+    };
+    let result = begin().and_then(|(folder, pictures)| {
+        let times = Timings::default();
+        Recording { scene: &scene, runs, frames, folder, summary, last: None, times }.run(pool, options, pictures)
+    });
+    if result.is_err() {
+        summary.outcome = Outcome::Failed;
+    }
+    result
 }
 
 fn merge(document: &mut Value, more: Value) {
@@ -98,7 +119,7 @@ struct Recording<'a> {
     runs: Vec<usize>,
     frames: Vec<u64>,
     folder: PathBuf,
-    summary: Summary,
+    summary: &'a mut Summary,
     last: Option<Frame>,
     times: Timings,
 }
@@ -113,7 +134,7 @@ impl Recording<'_> {
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         if let Some(pictures) = &pictures {
-            pictures.describe(&mut self.summary);
+            pictures.describe(self.summary);
         }
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(&self.folder)?;
@@ -121,8 +142,7 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
 
-        let bar = console::progress(&self.scene.title, self.frames.len(), options.quiet);
-        let made = self.frames(pool, |frame| {
+        let made = self.frames(pool, options.quiet, |frame| {
             diagnostics.write(frame)?;
             if let Some(states) = &mut states {
                 states.write(frame)?;
@@ -130,19 +150,26 @@ impl Recording<'_> {
             if let Some(pictures) = &mut pictures {
                 pictures.draw(frame)?;
             }
-            bar.inc(1);
             Ok(())
         });
-        bar.finish_and_clear();
 
-        let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(&mut self.summary, &mut self.times));
+        let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
         let recorded = diagnostics.finish();
-        let kept = states.map_or(Ok(()), StatesWriter::finish);
-        let result = made.and(drawn).and(recorded.map_err(Failure::from)).and(kept.map_err(Failure::from));
+        let kept = states.map(StatesWriter::finish);
+        self.summary.files = [
+            (DIAGNOSTICS_FILE, recorded.is_ok()),
+            (STATES_FILE, matches!(kept, Some(Ok(())))),
+            (FRAME_FILES, self.summary.frames.written > Some(0)),
+        ]
+        .into_iter()
+        .filter_map(|(name, written)| written.then_some(name))
+        .collect();
+        let result =
+            made.and(drawn).and(recorded.map_err(Failure::from)).and(kept.unwrap_or(Ok(())).map_err(Failure::from));
 
         self.times.simulate.cpu = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
         self.times.total = total.spent();
-        let summary = &mut self.summary;
+        let summary = &mut *self.summary;
         summary.outcome = match &result {
             Err(_) => Outcome::Failed,
             Ok(()) if summary.frames.recorded < summary.frames.asked => Outcome::Interrupted,
@@ -164,23 +191,38 @@ impl Recording<'_> {
     fn frames(
         &mut self,
         pool: &ThreadPool,
+        quiet: bool,
         mut take: impl FnMut(&Frame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         // In the pool from the beginning, so that no other threads are ever started.
         let mut sequence = pool.install(|| Sequence::new(self.scene, &self.runs));
-        for &index in &self.frames {
-            if interrupt::requested() {
-                break;
+        let steps = sequence.steps_at(self.frames.last().copied().unwrap_or(0));
+        let bar = console::progress(&self.scene.title, steps, quiet);
+        let slice = slice(&self.scene.body);
+        for (number, &index) in self.frames.iter().enumerate() {
+            bar.set_message(format!("frame {number} of {}", self.frames.len()));
+            let mut frame = None;
+            while frame.is_none() && !interrupt::requested() {
+                let clock = Clock::thread();
+                frame = pool.install(|| sequence.advance_towards(index, slice).then(|| sequence.frame(index)));
+                self.times.simulate += Spent { cpu: None, ..clock.spent() };
+                bar.set_position(sequence.steps());
             }
-            let clock = Clock::thread();
-            let frame = pool.install(|| sequence.frame(index));
-            self.times.simulate += Spent { cpu: None, ..clock.spent() };
+            let Some(frame) = frame else { break };
             take(&frame)?;
             self.summary.frames.recorded += 1;
             self.last = Some(frame);
         }
+        bar.finish_and_clear();
         Ok(())
     }
+}
+
+/// Steps of each run after which the user is listened to: some milliseconds' worth, at some 20 ns for each corner of an
+/// element. A frame seldom takes more.
+fn slice(body: &Body) -> u64 {
+    const CORNERS: usize = 250_000;
+    (CORNERS / body.elements.indices().len().max(1)).max(1) as u64
 }
 
 /// Processor time of all threads of the pool so far.

@@ -23,7 +23,8 @@ Examples:
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
 
 The folder then holds frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, \
-for each run and frame) and run.json (what was run and how it went). Frames of another scene are never mixed with them.
+for each run and frame) and run.json (what was run, how it went, and which files it wrote). Frames of another scene \
+are never mixed with them; other frames of the same scene stay, also those of another --size or --only.
 
 Without a GPU, pictures are drawn on the processor; `localshape info` tells with what.";
 

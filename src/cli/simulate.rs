@@ -13,7 +13,7 @@ Examples:
   localshape simulate scenes/*.toml --json > results.json
 
 The folder then holds diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), \
-run.json (what was run and how it went) and, with --states, states.npz. A run that diverges is a result, not an error.";
+run.json (what was run, how it went, and which files it wrote) and, with --states, states.npz. A run that diverges is a result, not an error.";
 
 /// Simulate scenes without drawing them; touches no graphics device
 #[derive(Args, Debug)]

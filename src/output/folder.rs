@@ -12,6 +12,9 @@ pub fn frame_file_name(index: u64) -> String {
     format!("frame_{index:05}.png")
 }
 
+/// The names of all frames as a pattern, for `run.json`.
+pub const FRAME_FILES: &str = "frame_*.png";
+
 /// Whether a file has the name of a frame.
 fn names_frame(name: &str) -> bool {
     let digits = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".png"));
@@ -24,13 +27,16 @@ pub struct Folder {
     path: PathBuf,
     /// Files of ours that belong to another scene.
     stale: Vec<PathBuf>,
+    /// States of this scene.
+    states: Option<PathBuf>,
 }
 
 impl Folder {
     /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
     ///
     /// A folder with files of another scene, or with files of others under the names of ours, is refused unless
-    /// `overwrite`. Files of the same scene are fine: they are replaced one by one.
+    /// `overwrite`. Files of the same scene are fine: they are replaced one by one. Its other frames stay, whatever
+    /// their size and the runs they show, so that a scene can be drawn in parts.
     ///
     /// # Errors
     /// If the folder cannot be read or is refused.
@@ -38,18 +44,28 @@ impl Folder {
         let found = Found::in_folder(path, &scene.digest)?;
         match found.describe() {
             Some(what) if !overwrite => Err(OutputError::Occupied { path: path.to_owned(), what }),
-            _ => Ok(Self { path: path.to_owned(), stale: found.frames.into_iter().chain(found.records).collect() }),
+            _ => Ok(Self {
+                path: path.to_owned(),
+                stale: found.frames.into_iter().chain(found.records).collect(),
+                states: found.states,
+            }),
         }
     }
 
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Makes the folder if there is none, and removes leftovers of killed programs and the files of another scene.
+    /// Unless `states` are written anew, earlier ones go, too: they would not be those of the diagnostics beside them.
     ///
     /// # Errors
     /// If the folder cannot be made or written to.
-    pub fn prepare(self) -> Result<PathBuf, OutputError> {
+    pub fn prepare(self, states: bool) -> Result<PathBuf, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         remove_leftovers(&self.path)?;
-        for path in &self.stale {
+        for path in self.stale.iter().chain(self.states.iter().filter(|_| !states)) {
             remove(path)?;
         }
         Ok(self.path)
@@ -63,6 +79,8 @@ struct Found {
     frames: Vec<PathBuf>,
     /// Diagnostics, states and summary of another scene.
     records: Vec<PathBuf>,
+    /// States of this scene.
+    states: Option<PathBuf>,
     /// Title of that scene, if its summary is there.
     title: Option<String>,
     /// Files of others under the names of ours.
@@ -89,7 +107,11 @@ impl Found {
                 }
             } else if [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name) {
                 match &owner {
-                    Some(owner) if owner.digest == digest => {}
+                    Some(owner) if owner.digest == digest => {
+                        if name == STATES_FILE {
+                            found.states = Some(entry.path());
+                        }
+                    }
                     Some(_) => found.records.push(entry.path()),
                     None => found.foreign.push(name.to_owned()),
                 }

@@ -19,7 +19,7 @@ pub use atomic::{AtomicFile, remove_leftovers, write_whole};
 pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub use digest::state_digest;
 pub use error::OutputError;
-pub use folder::{Folder, frame_file_name};
+pub use folder::{FRAME_FILES, Folder, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
 pub use png::{Tags, encode, read_tags};
 pub use states::{STATES_FILE, StatesWriter};

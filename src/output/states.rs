@@ -17,8 +17,9 @@ pub const STATES_FILE: &str = "states.npz";
 /// Writes the states of frames as they come, in memory that does not grow with their number.
 ///
 /// The archive holds `time` (F), the moment of each frame (s), and for each run `NAME.position` (m) and
-/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. A scene lets no run have a name that
-/// does not fit into an archive.
+/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. Each run shows the step nearest to a
+/// frame: `time` is that of the first run, and a run whose time step is another one has its own `NAME.time` (F).
+/// A scene lets no run have a name that does not fit into an archive.
 ///
 /// Arrays lie one behind the other in the archive but grow all at once, and how many frames come is known only
 /// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
@@ -30,6 +31,8 @@ pub struct StatesWriter {
     arrays: Vec<Array>,
     /// Length of one frame in the spool (bytes).
     record: u64,
+    /// For each run whether it has times of its own.
+    own_time: Vec<bool>,
     frames: u64,
 }
 
@@ -56,7 +59,14 @@ impl StatesWriter {
         let nodes = scene.body.len();
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
-        for &run in runs {
+        let step = |run: usize| scene.runs[run].step;
+        let own_time: Vec<bool> = runs.iter().map(|&run| step(run) != step(runs[0])).collect();
+        for (&run, &own_time) in runs.iter().zip(&own_time) {
+            if own_time {
+                let name = format!("{}.time", scene.runs[run].name);
+                arrays.push(Array { name, shape: String::new(), offset: record, length: 8 });
+                record += 8;
+            }
             for quantity in ["position", "velocity"] {
                 let length = 24 * nodes;
                 let name = format!("{}.{quantity}", scene.runs[run].name);
@@ -64,7 +74,7 @@ impl StatesWriter {
                 record += length as u64;
             }
         }
-        Ok(Self { path, spool, arrays, record, frames: 0 })
+        Ok(Self { path, spool, arrays, record, own_time, frames: 0 })
     }
 
     /// Appends one frame.
@@ -74,7 +84,10 @@ impl StatesWriter {
     pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
         record.extend(frame.time.to_le_bytes());
-        for run in &frame.runs {
+        for (run, &own_time) in frame.runs.iter().zip(&self.own_time) {
+            if own_time {
+                record.extend(run.snapshot.time.to_le_bytes());
+            }
             for vector in run.snapshot.position.iter().chain(&run.snapshot.velocity) {
                 record.extend(vector_bytes(vector));
             }

@@ -22,6 +22,8 @@ pub struct Summary {
     pub outcome: Outcome,
     /// The frames asked for and made.
     pub frames: FrameSummary,
+    /// What was written beside this file; frames as a pattern, their number stands in `frames.written`.
+    pub files: Vec<&'static str>,
     /// The graphics adapter; `null` without pictures.
     pub adapter: Option<String>,
     /// The runs asked for, in the scene's order.
@@ -124,6 +126,7 @@ impl Summary {
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
             frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },
+            files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
             times: None,

@@ -65,10 +65,6 @@ pub enum RenderError {
     Gpu(#[from] GpuError),
 }
 
-/// A picture that the device is drawing; [`Renderer::collect`] waits for it.
-#[derive(Debug)]
-pub struct Drawing(Pending);
-
 /// Draws pictures of one size. The same picture gives the same bytes, whatever was drawn before.
 #[derive(Debug)]
 pub struct Renderer {
@@ -124,15 +120,16 @@ impl Renderer {
     /// # Errors
     /// A picture of another size, or a device that fails.
     pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
-        let drawing = self.submit(picture)?;
-        self.collect(drawing)
+        let pending = self.submit(picture)?;
+        let pixels = self.read_back.collect(&self.gpu, pending)?;
+        let [width, height] = self.size;
+        // The read-back gives exactly three bytes for each pixel.
+        Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
     }
 
-    /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted.
-    ///
-    /// # Errors
-    /// A picture of another size, or a device that fails.
-    pub fn submit(&mut self, picture: &Picture) -> Result<Drawing, RenderError> {
+    /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted, for
+    /// there is one buffer for the way back.
+    fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
         if picture.size != self.size {
             return Err(RenderError::OtherSize { found: picture.size, expected: self.size });
         }
@@ -186,18 +183,7 @@ impl Renderer {
             self.overlay.draw(&mut pass);
         }
         self.bodies = Some(bodies);
-        Ok(Drawing(self.read_back.submit(&gpu, commands, &self.canvas.texture)))
-    }
-
-    /// Waits for a picture and returns it as sRGB bytes.
-    ///
-    /// # Errors
-    /// A device that failed since the picture was submitted.
-    pub fn collect(&mut self, drawing: Drawing) -> Result<RgbImage, RenderError> {
-        let [width, height] = self.size;
-        let pixels = self.read_back.collect(&self.gpu, drawing.0)?;
-        // The read-back gives exactly three bytes for each pixel.
-        Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
+        Ok(self.read_back.submit(&gpu, commands, &self.canvas.texture))
     }
 }
 

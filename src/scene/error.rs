@@ -20,6 +20,12 @@ pub enum SceneError {
         /// The most similar name of a file in the same folder.
         nearest: Option<PathBuf>,
     },
+    /// Its name has nothing before the ending that a folder of results could be called.
+    #[error("{}: a scene has the name of its file without the ending, and this leaves none; rename the file", path.display())]
+    Nameless {
+        /// The path asked for.
+        path: PathBuf,
+    },
     /// The path is a folder.
     #[error("{}: this is a folder, not a scene file{}", path.display(), inside(scenes))]
     Folder {

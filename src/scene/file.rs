@@ -139,7 +139,7 @@ pub(super) struct BodyFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct LatticeFile {
     /// How many cells along x, y and z; two numbers make squares in the plane.
-    #[schemars(length(min = 2, max = 3), inner(range(min = 1)))]
+    #[schemars(length(min = 2, max = 3), inner(range(min = 1, max = 4_000_000_000_u32)))]
     pub(super) cells: Vec<u32>,
     /// Length of a cell's edge (m).
     #[schemars(extend("exclusiveMinimum" = 0))]

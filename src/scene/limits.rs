@@ -1,6 +1,8 @@
 //! How large a scene may be, asked before anything is allocated.
 
 use super::words::count;
+use crate::sim::census::Census;
+use crate::sim::model::{ModelParameters, Needs};
 
 /// What a scene may ask for. A scene that asks for more is refused before anything is allocated for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,8 +19,8 @@ pub struct Limits {
 const GIB: u64 = 1 << 30;
 
 impl Default for Limits {
-    /// Eight million nodes, a block of 200 × 200 × 200: it takes some 14 GiB with two runs, which a workstation has,
-    /// and its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three
+    /// Eight million nodes, a block of 200 × 200 × 200: it takes some 15 GiB with a run of each model, which a
+    /// workstation has, and its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three
     /// counts is beyond it. A scene file may have 256 MiB, some four million listed nodes.
     fn default() -> Self {
         Self { nodes: 8_200_000, memory: 16 * GIB, file: GIB / 4 }
@@ -30,66 +32,92 @@ impl Limits {
     pub const NONE: Self = Self { nodes: u64::MAX, memory: u64::MAX, file: u64::MAX };
 }
 
-/// What a body asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a body and its runs ask for.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Demand {
-    /// Nodes.
-    pub(super) nodes: u128,
-    /// Elements.
-    pub(super) elements: u128,
-    /// Entries in all element lists together.
-    pub(super) corners: u128,
-    /// Runs on this body.
-    pub(super) runs: u128,
+    /// The body.
+    pub(super) body: Census,
+    /// What the model of each run needs.
+    pub(super) runs: Vec<Needs>,
+}
+
+/// More than is allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Excess {
+    /// What is asked for and what is allowed.
+    pub(super) message: String,
+    /// What to do.
+    pub(super) help: String,
+    /// The run that has the most springs, if without springs all would be well.
+    pub(super) run: Option<usize>,
 }
 
 impl Demand {
-    /// A block of cells, of any size.
-    pub(super) fn of_lattice(cells: &[u32], runs: usize) -> Self {
-        let product = |extra: u128| cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
-        let elements = product(0);
-        let corners = elements.saturating_mul(1 << cells.len().min(3));
-        Self { nodes: product(1), elements, corners, runs: runs as u128 }
+    /// What models ask for on a body.
+    pub(super) fn new<'m>(body: Census, models: impl Iterator<Item = &'m ModelParameters>) -> Self {
+        Self { runs: models.map(|model| model.needs(&body)).collect(), body }
     }
 
     /// Memory (bytes), a rough estimate, some tenths above what was measured on a million cubes: the body with its
-    /// faces while they are matched, and for each run its state, its forces and what its model keeps.
+    /// faces while they are matched; then for a while one model that is being made, or for each run its state and
+    /// what its model keeps.
     pub(super) fn bytes(&self) -> u128 {
         const NODE: u128 = 80;
         const CORNER: u128 = 60;
         const NODE_IN_RUN: u128 = 120;
-        const CORNER_IN_RUN: u128 = 70;
-        let body = self.nodes.saturating_mul(NODE).saturating_add(self.corners.saturating_mul(CORNER));
-        let run = self.nodes.saturating_mul(NODE_IN_RUN).saturating_add(self.corners.saturating_mul(CORNER_IN_RUN));
-        body.saturating_add(run.saturating_mul(self.runs.max(1)))
+        let body = self.body.nodes.saturating_mul(NODE).saturating_add(self.body.corners().saturating_mul(CORNER));
+        let state = self.body.nodes.saturating_mul(NODE_IN_RUN);
+        let making = self.runs.iter().map(|run| run.making).max().unwrap_or(0);
+        let working = self.runs.iter().fold(0, |sum: u128, run| sum.saturating_add(run.working.saturating_add(state)));
+        body.saturating_add(making.max(working))
     }
 
     /// Positions and velocities of all runs at one frame (bytes).
     pub(super) fn bytes_per_frame(&self) -> u128 {
-        self.nodes.saturating_mul(48).saturating_mul(self.runs.max(1))
+        self.body.nodes.saturating_mul(48).saturating_mul(self.runs.len() as u128)
+    }
+
+    /// The longest list that 32-bit indices must count: of nodes, of the corners of all faces before they are matched,
+    /// or of what a model keeps.
+    fn longest_list(&self) -> u128 {
+        let body = self.body.nodes.max(self.body.corners()).max(self.body.face_corners());
+        self.runs.iter().fold(body, |longest, run| longest.max(run.indices))
     }
 
     /// Why this is too much, if it is, and what to do.
-    pub(super) fn beyond(&self, limits: &Limits) -> Option<(String, String)> {
-        let asked = format!(
-            "this makes {} nodes and {} elements, about {} of memory and {} for the states of each frame",
-            count(self.nodes),
-            count(self.elements),
-            size(self.bytes()),
-            size(self.bytes_per_frame()),
-        );
-        // Indices have 32 bits, and so has the length of all element lists and that of all faces together.
-        if self.nodes > u128::from(u32::MAX) || self.corners.saturating_mul(2) > u128::from(u32::MAX) {
-            return Some((format!("{asked}: more than 32-bit indices can count"), "use fewer cells".into()));
-        }
-        let allowed = if self.nodes > u128::from(limits.nodes) {
-            format!("{} nodes", count(limits.nodes.into()))
+    pub(super) fn beyond(&self, limits: &Limits) -> Option<Excess> {
+        let springs = self.runs.iter().fold(0, |sum: u128, run| sum.saturating_add(run.springs));
+        let several =
+            |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
+        let (nodes, elements) = (several(self.body.nodes, "node"), several(self.body.count(), "element"));
+        let parts = match springs {
+            0 => format!("{nodes} and {elements}"),
+            _ => format!("{nodes}, {elements} and up to {}", several(springs, "spring")),
+        };
+        let (memory, frame) = (size(self.bytes()), size(self.bytes_per_frame()));
+        let asked = format!("this makes {parts}, about {memory} of memory and {frame} for the states of each frame");
+        let indices = self.longest_list() > u128::from(u32::MAX);
+        let message = if indices {
+            format!("{asked}: more than 32-bit indices can count")
+        } else if self.body.nodes > u128::from(limits.nodes) {
+            format!("{asked}; the limit is {} nodes", count(limits.nodes.into()))
         } else if self.bytes() > u128::from(limits.memory) {
-            size(limits.memory.into())
+            format!("{asked}; the limit is {}", size(limits.memory.into()))
         } else {
             return None;
         };
-        Some((format!("{asked}; the limit is {allowed}"), "use fewer cells, or allow it with --allow-large".into()))
+        let mut other = self.clone();
+        other.runs.iter_mut().filter(|run| run.springs > 0).for_each(|run| *run = Needs::default());
+        let run = (springs > 0 && other.beyond(limits).is_none())
+            .then(|| (0..self.runs.len()).max_by_key(|&run| self.runs[run].springs))
+            .flatten();
+        let less = match (run, self.body.lattice) {
+            (Some(_), _) => "put fewer springs on each element, such as springs = \"edges\"",
+            (None, true) => "use fewer cells",
+            (None, false) => "use fewer nodes",
+        };
+        let help = if indices { less.to_owned() } else { format!("{less}, or allow it with --allow-large") };
+        Some(Excess { message, help, run })
     }
 }
 
@@ -106,19 +134,68 @@ pub(super) fn size(bytes: u128) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::body::Dimension;
+    use std::collections::BTreeMap;
+
+    fn model(text: &str) -> ModelParameters {
+        toml::from_str(&format!("kind = {text}\nstiffness = 1e4")).unwrap()
+    }
+
+    fn block(cells: &[u32], models: &[ModelParameters]) -> Demand {
+        Demand::new(Census::of_lattice(cells), models.iter())
+    }
+
+    /// Listed elements, each with this many nodes.
+    fn listed(dimension: Dimension, corners: usize, count: u128, model: ModelParameters) -> Demand {
+        let elements = BTreeMap::from([(corners, count)]);
+        let body = Census { dimension, nodes: corners as u128, elements, lattice: false, springs: None };
+        Demand::new(body, [model].iter())
+    }
 
     #[test]
     fn the_default_allows_a_block_of_two_hundred_cells_a_side_and_not_of_a_thousand() {
-        assert_eq!(Demand::of_lattice(&[200, 200, 200], 2).beyond(&Limits::default()), None);
-        let (message, help) = Demand::of_lattice(&[1000, 1000, 1000], 2).beyond(&Limits::default()).unwrap();
+        let models = [model("'shape-based'"), model("'mass-spring'")];
+        assert_eq!(block(&[200, 200, 200], &models).beyond(&Limits::default()), None);
+        let excess = block(&[1000, 1000, 1000], &models[..1]).beyond(&Limits::default()).unwrap();
+        let message = excess.message;
         assert!(message.starts_with("this makes 1 003 003 001 nodes and 1 000 000 000 elements"), "{message}");
-        assert!(help.contains("fewer cells"), "{help}");
+        assert!(excess.help.contains("fewer cells") && excess.run.is_none(), "{}", excess.help);
+    }
+
+    #[test]
+    fn springs_are_counted_by_the_topology_asked_for() {
+        let polygon = |model| listed(Dimension::Plane, 60_000, 1, model).beyond(&Limits::default());
+        let excess = polygon(model("'mass-spring'\nsprings = 'all'")).unwrap();
+        assert!(excess.message.contains("up to 1 799 970 000 springs, about 1"), "{}", excess.message);
+        assert!(excess.help.contains("springs = \"edges\""), "{}", excess.help);
+        assert_eq!(excess.run, Some(0));
+        // The default has the diagonals of the polygon, which is its own face.
+        assert!(polygon(model("'mass-spring'")).is_some());
+        assert_eq!(polygon(model("'mass-spring'\nsprings = 'edges'")), None);
+        assert_eq!(polygon(model("'shape-based'")), None);
+        let other = listed(Dimension::Space, 60_000, 1, model("'mass-spring'\nsprings = 'edges+body-diagonals'"));
+        assert!(other.beyond(&Limits::default()).is_some());
+    }
+
+    #[test]
+    fn lists_of_faces_and_of_springs_must_be_counted_by_32_bits() {
+        let beyond = |dimension, corners, count, model| {
+            listed(dimension, corners, count, model).beyond(&Limits::NONE).map(|excess| excess.message)
+        };
+        // Six faces of four corners each.
+        let hexahedra = |count| beyond(Dimension::Space, 8, count, model("'shape-based'"));
+        assert_eq!(hexahedra((1 << 32) / 24), None);
+        assert!(hexahedra((1 << 32) / 24 + 1).unwrap().contains("32-bit"));
+        let springs = |corners| beyond(Dimension::Plane, corners, 1, model("'mass-spring'\nsprings = 'all'"));
+        assert_eq!(springs(65_000), None);
+        assert!(springs(66_000).unwrap().contains("32-bit"));
     }
 
     #[test]
     fn no_size_overflows() {
-        let demand = Demand::of_lattice(&[u32::MAX; 3], usize::MAX);
-        assert!(demand.beyond(&Limits::NONE).is_some());
-        assert!(Demand::of_lattice(&[100, 100, 100], 1).beyond(&Limits::NONE).is_none());
+        let models = [model("'shape-based'"), model("'mass-spring'\nsprings = 'all'")];
+        assert!(block(&[u32::MAX; 3], &models).beyond(&Limits::NONE).is_some());
+        assert!(listed(Dimension::Plane, usize::MAX, u128::MAX, models[1].clone()).beyond(&Limits::NONE).is_some());
+        assert!(block(&[100, 100, 100], &models).beyond(&Limits::NONE).is_none());
     }
 }

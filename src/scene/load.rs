@@ -22,6 +22,9 @@ impl Scene {
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let bytes = read(path, limits)?;
+        if path.file_name().is_some_and(|name| stem(Path::new(name)).is_none()) {
+            return Err(SceneError::Nameless { path: path.into() });
+        }
         let file = path.display().to_string();
         let text = as_text(&bytes, &file)?;
         Self::parse(text, &file, limits)
@@ -69,7 +72,8 @@ impl Scene {
                 .unwrap_or_default(),
             _ => String::new(),
         };
-        let scene = resolve::resolve(&parts, &stem(name), &digest, limits, &mut report);
+        let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
+        let scene = resolve::resolve(&parts, &name_of_scene, &digest, limits, &mut report);
         match (scene, report) {
             (Some(scene), report) if report.total() == 0 => Ok(scene),
             (_, report) => Err(SceneError::Mistakes(report.finish(name))),
@@ -77,10 +81,10 @@ impl Scene {
     }
 }
 
-/// The name of a scene from that of its file.
-fn stem(name: &str) -> String {
-    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "scene".into())
+/// The name of a scene from that of its file; none if a folder could not have it.
+fn stem(file: &Path) -> Option<String> {
+    let stem = file.file_stem()?.to_string_lossy().into_owned();
+    (!["", ".", ".."].contains(&stem.trim())).then_some(stem)
 }
 
 /// What may help with a value where an array's comma or end was expected.
@@ -162,22 +166,20 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
 
 /// The scene files in a folder, in order.
 fn scenes_in(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    // Folders of results may hold very many files; a scene lies among few.
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().take(10_000).map(|entry| entry.path());
     let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();
     scenes
 }
 
-/// The file in the same folder whose name is most like that of a missing one.
+/// The scene file in the same folder whose name is most like that of a missing one, not counting the endings.
 fn similar(path: &Path) -> Option<PathBuf> {
-    let wanted = path.file_name()?.to_str()?;
+    let wanted = stem(Path::new(path.file_name()?))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?.flatten();
-    // Folders of results may hold very many files; a scene lies among few.
-    let mut names: Vec<String> =
-        entries.take(10_000).filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    names.sort();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let near = nearest(wanted, &names).or_else(|| nearest(&format!("{wanted}.toml"), &names))?;
-    Some(folder.map_or_else(|| PathBuf::from(near), |folder| folder.join(near)))
+    let scenes = scenes_in(folder.unwrap_or(Path::new(".")));
+    let stems: Vec<Option<&str>> = scenes.iter().map(|scene| scene.file_stem()?.to_str()).collect();
+    let near = nearest(&wanted, &stems.iter().copied().flatten().collect::<Vec<_>>())?;
+    let scene = &scenes[stems.iter().position(|&stem| stem == Some(near))?];
+    folder.map_or_else(|| scene.file_name().map(PathBuf::from), |_| Some(scene.clone()))
 }

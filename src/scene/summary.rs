@@ -2,8 +2,9 @@
 
 use super::Scene;
 use super::words::{count, list};
-use crate::sim::body::{Dimension, ElementKind, bounds};
+use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::words;
 use crate::sim::world::cycle;
 use glam::DVec3;
 use serde::Serialize;
@@ -20,7 +21,7 @@ pub struct Summary {
     pub digest: String,
     /// Number of nodes.
     pub nodes: usize,
-    /// Number of elements of each kind that there is, such as `27 hexahedra`.
+    /// Number of elements of each kind that there is, such as `27 cubes`.
     pub elements: Vec<String>,
     /// Sides of the box around the body at rest (m): three in space, two in the plane.
     pub extent: Vec<f64>,
@@ -68,6 +69,7 @@ impl Scene {
             Dimension::Space => vector.to_array().to_vec(),
         };
         let (low, high) = bounds(&body.rest);
+        let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         let last = self.last_frame();
         let run = |(at, run): (usize, &super::Run)| RunSummary {
             name: run.name.clone(),
@@ -81,7 +83,7 @@ impl Scene {
             name: self.name.clone(),
             digest: self.digest.clone(),
             nodes: body.len(),
-            elements: elements(&body.kinds),
+            elements: words::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low),
             mass: body.mass.iter().sum(),
             gravity: coordinates(self.gravity),
@@ -127,27 +129,6 @@ fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
-/// How many elements there are of each kind.
-fn elements(kinds: &[ElementKind]) -> Vec<String> {
-    use ElementKind::*;
-    let names = [
-        (Segment, "segment", "segments"),
-        (Polygon, "polygon", "polygons"),
-        (Triangle, "triangle", "triangles"),
-        (Tetrahedron, "tetrahedron", "tetrahedra"),
-        (Pyramid, "pyramid", "pyramids"),
-        (Wedge, "wedge", "wedges"),
-        (Hexahedron, "hexahedron", "hexahedra"),
-        (Other, "other element", "other elements"),
-    ];
-    let of_kind = |(kind, one, many)| match kinds.iter().filter(|&&other| other == kind).count() {
-        0 => None,
-        1 => Some(format!("1 {one}")),
-        several => Some(format!("{} {many}", count(several as u128))),
-    };
-    names.into_iter().filter_map(of_kind).collect()
-}
-
 fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
     let Obstacle { shape: Shape::Floor { normal, height }, restitution, friction } = obstacle;
     let normal = vector(&coordinates(*normal));
@@ -161,9 +142,8 @@ fn vector(coordinates: &[f64]) -> String {
 
 /// A number with up to four significant digits.
 fn short(number: f64) -> String {
-    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     // Adding zero takes the sign off a negative one.
-    let rounded = rounded + 0.0;
+    let rounded = words::rounded(number, 4) + 0.0;
     if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 

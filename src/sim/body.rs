@@ -85,9 +85,4 @@ impl State {
         let velocity = vec![DVec3::ZERO; position.len()];
         Self { position, velocity }
     }
-
-    /// Whether every coordinate of every position and velocity is a finite number.
-    pub fn is_finite(&self) -> bool {
-        self.position.iter().chain(&self.velocity).all(|v| v.is_finite())
-    }
 }

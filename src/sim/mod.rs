@@ -3,6 +3,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod body;
+pub mod census;
 pub mod contact;
 pub mod diagnose;
 pub mod integrate;
@@ -11,6 +12,7 @@ pub mod model;
 pub mod rotation;
 pub mod snapshot;
 pub mod topology;
+pub mod words;
 pub mod world;
 
 pub use body::{Body, State};

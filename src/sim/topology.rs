@@ -208,6 +208,19 @@ pub enum Springs {
     All,
 }
 
+impl Springs {
+    /// The name that scenes use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Edges => "edges",
+            Self::EdgesOneDiagonal => "edges+one-diagonal",
+            Self::EdgesFaceDiagonals => "edges+face-diagonals",
+            Self::EdgesBodyDiagonals => "edges+body-diagonals",
+            Self::All => "all",
+        }
+    }
+}
+
 /// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
 pub fn springs(topology: Springs, elements: &IndexLists, kinds: &[ElementKind]) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
@@ -243,6 +256,8 @@ fn add_springs(topology: Springs, kind: ElementKind, nodes: &[u32], pairs: &mut 
                 }),
             );
         }
+        // All corners of a polygon share its one face.
+        Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
         Springs::EdgesBodyDiagonals => {
             let share_a_face = |pair: &[u32; 2]| faces.iter().any(|face| pair.iter().all(|node| face.contains(node)));
             pairs.extend(every().filter(|pair| !share_a_face(pair)));
@@ -275,6 +290,19 @@ mod tests {
         assert_eq!(count(Springs::EdgesFaceDiagonals), 12 + 12);
         assert_eq!(count(Springs::EdgesBodyDiagonals), 12 + 4);
         assert_eq!(count(Springs::All), 28);
+    }
+
+    #[test]
+    fn names_are_those_of_the_scene_format() {
+        for topology in [
+            Springs::Edges,
+            Springs::EdgesOneDiagonal,
+            Springs::EdgesFaceDiagonals,
+            Springs::EdgesBodyDiagonals,
+            Springs::All,
+        ] {
+            assert_eq!(serde_json::to_value(topology).expect("a name"), topology.name());
+        }
     }
 
     #[test]

@@ -12,6 +12,20 @@ fn the_same_scene_replaces_its_files() {
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
 }
 
+/// States that are not those of the diagnostics beside them would mislead.
+#[test]
+fn states_of_an_earlier_run_do_not_stay() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --states").good();
+    let files = |place: &Place| place.json("output/small/run.json")["files"].clone();
+    assert_eq!(files(&place), serde_json::json!(["diagnostics.csv", "states.npz"]));
+    place.run("simulate small.toml --states --frames 3").good();
+    assert_eq!(place.names("output/small"), ["diagnostics.csv", "run.json", "states.npz"]);
+    place.run("simulate small.toml --frames 2").good();
+    assert_eq!(place.names("output/small"), ["diagnostics.csv", "run.json"]);
+    assert_eq!(files(&place), serde_json::json!(["diagnostics.csv"]));
+}
+
 #[test]
 fn another_scene_is_refused_unless_told() {
     let place = Place::with_small();

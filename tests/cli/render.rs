@@ -134,6 +134,7 @@ fn json_with_pictures() {
     let document = Place::with_small().run("render small.toml --frames 0 --json").good().json();
     assert_eq!(document["scenes"][0]["frames"]["written"], 1);
     assert_eq!(document["scenes"][0]["outcome"], "done");
+    assert_eq!(document["scenes"][0]["files"], serde_json::json!(["diagnostics.csv", "frame_*.png"]));
 }
 
 #[test]

@@ -93,6 +93,23 @@ fn json_is_one_document() {
     assert_eq!(place.names("both/other"), ["diagnostics.csv", "run.json"]);
 }
 
+/// What was finished before a failure is told, and the failure after it.
+#[test]
+fn json_is_one_document_also_when_a_later_scene_fails() {
+    let place = Place::with_small();
+    place.write("other.toml", SMALL);
+    place.write("third.toml", SMALL);
+    // No file can take the place of a folder.
+    place.write("out/other/diagnostics.csv/notes.txt", "mine");
+    let ran = place.run("simulate small.toml other.toml third.toml -o out --json --overwrite");
+    let ran = ran.bad(4, &["cannot write", "diagnostics.csv"]);
+    let document = ran.json();
+    let outcomes: Vec<_> = document["scenes"].as_array().unwrap().iter().map(|scene| &scene["outcome"]).collect();
+    assert_eq!(outcomes, ["done", "failed"]);
+    assert_eq!(document["scenes"][1]["files"], serde_json::json!([]));
+    assert!(!place.path("out/third").exists());
+}
+
 #[test]
 fn quiet_says_nothing() {
     let place = Place::with_small();
@@ -153,4 +170,27 @@ fn states_of_runs_with_odd_names() {
         place.write("odd.toml", &SMALL.replace("Local shape", name));
         place.run("simulate odd.toml --states").bad(2, &["odd.toml:14:8"]);
     }
+}
+
+/// A run with a step of its own is shown at moments of its own.
+#[test]
+fn states_of_runs_with_steps_of_their_own() {
+    let place = Place::new();
+    let own = "springs = \"edges+one-diagonal\" }\nstep = \"T/7\"";
+    place.write("own.toml", &SMALL.replace("springs = \"edges+one-diagonal\" }", own));
+    place.run("simulate own.toml --states").good();
+    let file = "output/own/states.npz";
+    let (head, times) = array(&place, file, "Mass-spring.time");
+    assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (7,), }");
+    let table = place.read("output/own/diagnostics.csv");
+    let recorded: Vec<f64> = rows(&table).iter().skip(1).step_by(2).map(|row| row[2].parse().unwrap()).collect();
+    assert_eq!(times, recorded);
+    assert_ne!(times, array(&place, file, "time").1);
+    assert_eq!(array(&place, file, "Mass-spring.position").1.len(), 7 * 12 * 3);
+
+    // Alone, it is the first run shown.
+    place.run("simulate own.toml --states --only Mass-spring").good();
+    assert_eq!(array(&place, file, "time").1, recorded);
+    let archive = zip::ZipArchive::new(std::fs::File::open(place.path(file)).unwrap()).unwrap();
+    assert_eq!(archive.len(), 3, "it has no second time");
 }

@@ -151,6 +151,18 @@ fn files_that_are_no_scenes_are_told_apart() {
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
+    // The ending that all have makes no two alike.
+    put("e.toml", b"");
+    assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));
+    assert!(matches!(load(&folder.path().join("e.tml")), SceneError::Missing { nearest: Some(_), .. }));
+    std::fs::remove_file(folder.path().join("e.toml")).unwrap();
+    // Results would go to `output/..`.
+    for name in ["...toml", "..toml", " .toml"] {
+        let error = load(&put(name, shipped("fig4b.toml").as_bytes()));
+        assert!(matches!(error, SceneError::Nameless { .. }), "{name}: {error}");
+        assert!(error.to_string().ends_with("rename the file"), "{error}");
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
     assert!(matches!(load(Path::new("no/such/folder/a.toml")), SceneError::Missing { nearest: None, .. }));
     assert!(matches!(load(folder.path()), SceneError::Folder { scenes, .. } if scenes.len() == 1));
     assert!(matches!(load(&put("empty.toml", b"")), SceneError::Empty { .. }));
@@ -193,7 +205,7 @@ fn a_summary_says_what_a_scene_holds() {
         summary.to_string(),
         format!(
             "  scene     3×3×3 cubes dropped on a floor (test)
-  body      64 nodes, 27 hexahedra, 0.3 × 0.3 × 0.3 m, 64 kg
+  body      64 nodes, 27 cubes, 0.3 × 0.3 × 0.3 m, 64 kg
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s
@@ -208,7 +220,7 @@ fn a_summary_says_what_a_scene_holds() {
         )
     );
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
-    assert_eq!(json["elements"], serde_json::json!(["6 polygons"]));
+    assert_eq!(json["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");
     assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }

@@ -177,7 +177,7 @@ fn numbers_out_of_range() {
         SPACE,
         "[1, 1, 1]",
         "[1, 0, 1]",
-        &[(5, 25, "`body.lattice.cells[1]` is 0; expected a whole number of at least 1")],
+        &[(5, 25, "`body.lattice.cells[1]` is 0; expected a whole number from 1 to 4000000000")],
     );
     case(SPACE, "[1, 1, 1]", "[1, 99999999999999999999999999, 1]", &[(5, 25, "expected a whole number")]);
     case(SPACE, "[[run]]", "[view.camera]\nelevation = 1.6\n[[run]]", &[(7, 13, "expected a number between -1.57")]);
@@ -408,6 +408,12 @@ fn runs_and_times_that_cannot_be() {
     );
     case(PLANE, "'Mass-spring'", "'a/b'", &[(14, 8, "the name \"a/b\" cannot be used in files")]);
     case(PLANE, "'Mass-spring'", "' a'", &[(14, 8, "the name \" a\" cannot be used in files")]);
+    case(
+        PLANE,
+        "'T/50'",
+        "10",
+        &[(4, 8, "the time step of \"Local shape\" is 10.0000 s, longer than the whole scene of 3 s")],
+    );
     case(PLANE, "'T/50'", "1e-300", &[(4, 8, "the time step comes out as 1e-300 s")]);
     case(PLANE, "= 3\n", "= 1e9\n", &[(3, 12, "make 6.000e10 frames; the most is 10 000 000")]);
 }
@@ -462,6 +468,34 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
     assert!(Scene::parse(SPACE, "a", &Limits { nodes: 8, ..none }).is_ok());
     assert!(Scene::parse(PLANE, "a", &Limits { nodes: 3, ..none }).is_err());
     assert!(Scene::parse(SPACE, "a", &Limits { memory: 100, ..Limits::default() }).is_err());
+}
+
+/// One polygon of very many corners, whose diagonals are too many although its file is small.
+#[test]
+fn springs_beyond_the_limits_are_refused_before_they_are_made() {
+    let corner = |at: u32| {
+        let (sine, cosine) = (f64::from(at) * std::f64::consts::TAU / 60_000.0).sin_cos();
+        format!("[{cosine:.9}, {sine:.9}]")
+    };
+    let nodes: Vec<_> = (0..60_000).map(corner).collect();
+    let element: Vec<_> = (0..60_000).map(|at| at.to_string()).collect();
+    let scene = |model: &str| {
+        let (nodes, element) = (nodes.join(","), element.join(","));
+        let soft = "[[run]]\nname = 'soft'\nmodel = { kind = 'shape-based', stiffness = 1 }";
+        let body = format!("[body]\nnodes = [{nodes}]\nelements = [[{element}]]");
+        format!("time = {{ duration = 1 }}\n{soft}\n[[run]]\nname = 'springs'\n{model}\n{body}\n")
+    };
+    for (model, column) in [
+        ("model = { kind = 'mass-spring', stiffness = 1, springs = 'all' }", 58),
+        ("model = { kind = 'mass-spring', stiffness = 1 }", 9),
+    ] {
+        let error = bad(&scene(model));
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        assert_eq!((mistake.line, mistake.column), (7, column), "{error}");
+        assert!(mistake.message.starts_with("this makes 60 000 nodes, 1 element and up to 1 7"), "{error}");
+        assert!(mistake.help.as_ref().unwrap().contains("fewer springs on each element"), "{error}");
+    }
+    super::good(&scene("model = { kind = 'mass-spring', stiffness = 1, springs = 'edges' }"));
 }
 
 #[test]

@@ -24,7 +24,8 @@ const EXPLICIT: &str = include_str!("explicit.toml");
 fn read(text: &str) {
     match Scene::parse(text, "mutated.toml", &SMALL) {
         Ok(scene) => {
-            assert!(scene.initial.is_finite() && scene.body.len() <= 5000);
+            let mut coordinates = scene.initial.position.iter().chain(&scene.initial.velocity);
+            assert!(coordinates.all(|vector| vector.is_finite()) && scene.body.len() <= 5000);
             assert!(scene.runs.iter().all(|run| run.step > 0.0 && run.step.is_finite()));
             assert!(!scene.summary().to_string().is_empty());
         }

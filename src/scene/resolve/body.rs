@@ -1,11 +1,13 @@
 //! The body and how it starts.
 
 use super::{direction, elements, lattice, vector};
-use crate::scene::file::{BodyFile, Coordinates, Positive, RotationFile};
-use crate::scene::limits::{Demand, Limits};
+use crate::scene::file::{BodyFile, Coordinates, Positive, RotationFile, RunFile};
+use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
 use crate::sim::body::{Body, Dimension, IndexLists, State};
+use crate::sim::census::Census;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// A body, how it starts, and what else was said of it.
 #[derive(Debug)]
@@ -33,7 +35,7 @@ pub(super) fn dimension(file: &BodyFile) -> Option<Dimension> {
 pub(super) fn resolve(
     file: &BodyFile,
     flawed: bool,
-    runs: usize,
+    runs: &[Option<RunFile>],
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<ResolvedBody> {
@@ -42,9 +44,12 @@ pub(super) fn resolve(
     let at = |key| [Way::Key("body"), Way::Key(key)];
     let (rest, elements) = match (&file.lattice, &file.nodes) {
         (Some(typed), _) => {
-            let demand = Demand::of_lattice(&typed.cells, runs);
-            if let Some((message, help)) = demand.beyond(limits) {
-                report.at(&[at("lattice")[0], at("lattice")[1], Way::Key("cells")], message, help);
+            if let Some(excess) = beyond(Census::of_lattice(&typed.cells), runs, limits) {
+                let Excess { message, help, run } = excess;
+                match run {
+                    Some(run) => report.at(&springs_of(run), message, help),
+                    None => report.at(&[at("lattice")[0], at("lattice")[1], Way::Key("cells")], message, help),
+                }
                 check_start(file, dimension, report);
                 return None;
             }
@@ -52,11 +57,16 @@ pub(super) fn resolve(
         }
         (None, Some(typed)) => {
             let lists = file.elements.as_deref().unwrap_or_default();
-            let corners = lists.iter().map(|list| list.len() as u128).sum();
-            let demand =
-                Demand { nodes: typed.len() as u128, elements: lists.len() as u128, corners, runs: runs as u128 };
-            if let Some((message, help)) = demand.beyond(limits) {
-                report.at_key(&at("nodes"), message, help);
+            let mut elements = BTreeMap::new();
+            lists.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
+            let springs = file.springs.as_ref().map(|springs| springs.len() as u128);
+            let census = Census { dimension, nodes: typed.len() as u128, elements, lattice: false, springs };
+            if let Some(excess) = beyond(census, runs, limits) {
+                let Excess { message, help, run } = excess;
+                match run {
+                    Some(run) => report.at(&springs_of(run), message, help),
+                    None => report.at_key(&at("nodes"), message, help),
+                }
                 return None;
             }
             let nodes = points(typed, "nodes", dimension, report);
@@ -75,6 +85,21 @@ pub(super) fn resolve(
     let body = Body::new(dimension, rest, mass, elements, faces.as_ref());
     let side = file.lattice.as_ref().map_or_else(|| elements::mean_edge(&body), |lattice| lattice.side);
     Some(ResolvedBody { body, initial, springs: file.springs.clone(), side })
+}
+
+/// Whether a body and its runs are too large. A run with a mistake counts as none.
+fn beyond(body: Census, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
+    let mut models: Vec<usize> = Vec::new();
+    let known = runs.iter().enumerate().filter_map(|(at, run)| Some((at, &run.as_ref()?.model)));
+    let demand = Demand::new(body, known.map(|(at, model)| (models.push(at), model).1));
+    let mut excess = demand.beyond(limits)?;
+    excess.run = excess.run.map(|run| models[run]);
+    Some(excess)
+}
+
+/// The place of a run's springs.
+fn springs_of(run: usize) -> [Way<'static>; 4] {
+    [Way::Key("run"), Way::Index(run), Way::Key("model"), Way::Key("springs")]
 }
 
 /// Listed points as vectors, after reporting those with another number of coordinates.

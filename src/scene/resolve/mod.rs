@@ -94,7 +94,7 @@ pub(super) fn resolve(
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<Scene> {
-    let read_body = |file| body::resolve(file, parts.flawed.contains("body"), parts.runs.len(), limits, report);
+    let read_body = |file| body::resolve(file, parts.flawed.contains("body"), &parts.runs, limits, report);
     let body = parts.body.as_ref().and_then(read_body);
     let dimension = match &body {
         Some(body) => Some(body.body.dimension),

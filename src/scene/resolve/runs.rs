@@ -47,6 +47,15 @@ pub(super) fn resolve(
             report.at(path, message, "make it larger".to_owned());
             return None;
         }
+        if step > time.duration && time.duration > 0.0 {
+            let message = format!(
+                "the time step of {} is {step:.4} s, longer than the whole scene of {} s: nothing would move",
+                words::quoted(&run.name),
+                time.duration
+            );
+            report.at(path, message, format!("T = {cycle:.4} s; make the step smaller or the duration longer"));
+            return None;
+        }
         let integrator = run.integrator.unwrap_or(time.integrator);
         runs.push(Run { name: run.name.clone(), model, integrator, step });
     }

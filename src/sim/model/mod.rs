@@ -7,7 +7,9 @@ mod blocks;
 pub mod mass_spring;
 pub mod shape_based;
 
-use super::body::{Body, ElementKind, State};
+use super::body::{Body, State};
+use super::census::Census;
+use super::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,27 @@ impl ModelParameters {
             Self::MassSpring(parameters) => Arc::new(parameters.resolve(body, springs)?),
         })
     }
+
+    /// What the model will need on a body, at most; asked before the body is made.
+    pub fn needs(&self, census: &Census) -> Needs {
+        match self {
+            Self::ShapeBased(parameters) => parameters.needs(census),
+            Self::MassSpring(parameters) => parameters.needs(census),
+        }
+    }
+}
+
+/// What one run needs of memory besides the state of its nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Springs, at most.
+    pub springs: u128,
+    /// While the model is resolved (bytes).
+    pub making: u128,
+    /// As long as the run lasts (bytes).
+    pub working: u128,
+    /// The longest list of 32-bit indices.
+    pub indices: u128,
 }
 
 /// A parameter that does not fit, said about one key of the model's table.
@@ -97,46 +120,26 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
 
 /// The second line of a picture: what the model is made of, its stiffness and, if it has any, its damping.
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
-    let mut words = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
+    let mut text = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
     if damping > 0.0 {
         let mean_mass = body.mass.iter().sum::<f64>() / body.len() as f64;
         let ratio = damping / (2.0 * (stiffness * mean_mass).sqrt());
-        words.push_str(&format!(", ζ = {}", short(ratio)));
+        text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
     }
-    words
+    text
 }
 
-/// The elements of a body in words: `27 cubes` is what a reader calls hexahedra in a lattice.
+/// The elements of a body in a few words, such as `27 cubes`.
 fn elements_in_words(body: &Body) -> String {
-    let count = body.elements.len();
-    let kind = match body.kinds.as_slice() {
-        [first, rest @ ..] if rest.iter().all(|kind| kind == first) => Some(*first),
-        _ => None,
-    };
-    let triangles = body.elements.iter().all(|nodes| nodes.len() == 3);
-    let (one, many) = match kind {
-        Some(ElementKind::Segment) => ("segment", "segments"),
-        Some(ElementKind::Triangle) => ("triangle", "triangles"),
-        Some(ElementKind::Polygon) if triangles => ("triangle", "triangles"),
-        Some(ElementKind::Polygon) => ("polygon", "polygons"),
-        Some(ElementKind::Tetrahedron) => ("tetrahedron", "tetrahedra"),
-        Some(ElementKind::Pyramid) => ("pyramid", "pyramids"),
-        Some(ElementKind::Wedge) => ("wedge", "wedges"),
-        Some(ElementKind::Hexahedron) => ("cube", "cubes"),
-        Some(ElementKind::Other) | None => ("element", "elements"),
-    };
-    format!("{count} {}", if count == 1 { one } else { many })
+    match words::elements(body).as_slice() {
+        [(count, name)] => format!("{count} {name}"),
+        _ => format!("{} elements", body.elements.len()),
+    }
 }
 
 /// A number of a unit with the prefix that leaves one to three digits before the point, such as `10 kN/m`.
 fn with_prefix(value: f64, unit: &str) -> String {
     const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
     let (scale, prefix) = PREFIXES.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-3, "m"));
-    format!("{} {prefix}{unit}", short(value / scale))
-}
-
-/// A number with up to three significant digits and no trailing zeros.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    format!("{rounded}")
+    format!("{} {prefix}{unit}", words::rounded(value / scale, 3))
 }

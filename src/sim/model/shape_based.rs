@@ -9,8 +9,9 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Measure, Misfit, blocks};
+use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, blocks};
 use crate::sim::body::{Body, Dimension, State};
+use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linearised, planar};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
@@ -60,6 +61,14 @@ impl Parameters {
             damping: super::damping(self.damping, self.damping_ratio, self.stiffness, body)?,
             passes: self.passes.unwrap_or(2),
         })
+    }
+
+    /// What the model will need on a body.
+    pub(super) fn needs(&self, census: &Census) -> Needs {
+        /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
+        const CORNER: u128 = 70;
+        let corners = census.corners();
+        Needs { working: corners.saturating_mul(CORNER), indices: corners, ..Needs::default() }
     }
 }
 

@@ -1,0 +1,76 @@
+//! How large a body will be, counted before anything is allocated for it.
+
+use super::topology::{self, Dimension, ElementKind};
+use std::collections::BTreeMap;
+
+/// The sizes of a body that is not made yet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Census {
+    /// In the plane or in space.
+    pub dimension: Dimension,
+    /// Nodes.
+    pub nodes: u128,
+    /// How many elements there are of each number of nodes.
+    pub elements: BTreeMap<usize, u128>,
+    /// Whether the elements are the cells of one block, so that each node has few neighbours.
+    pub lattice: bool,
+    /// Springs listed by hand.
+    pub springs: Option<u128>,
+}
+
+impl Census {
+    /// A block of cells, of any size: cubes along three axes, squares along two.
+    pub fn of_lattice(cells: &[u32]) -> Self {
+        let product = |extra: u128| cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
+        let (dimension, corners) = if cells.len() == 2 { (Dimension::Plane, 4) } else { (Dimension::Space, 8) };
+        let elements = BTreeMap::from([(corners, product(0))]);
+        Self { dimension, nodes: product(1), elements, lattice: true, springs: None }
+    }
+
+    /// The number of elements.
+    pub fn count(&self) -> u128 {
+        self.elements.values().fold(0, |sum, &count| sum.saturating_add(count))
+    }
+
+    /// Entries in all element lists together.
+    pub fn corners(&self) -> u128 {
+        self.sum(|_, nodes| nodes as u128)
+    }
+
+    /// Entries in the lists of all elements' faces together, before faces shared by two are made one.
+    pub fn face_corners(&self) -> u128 {
+        self.sum(|kind, nodes| match kind {
+            ElementKind::Segment | ElementKind::Other => 0,
+            ElementKind::Polygon | ElementKind::Triangle => nodes as u128,
+            ElementKind::Tetrahedron => 12,
+            ElementKind::Pyramid => 16,
+            ElementKind::Wedge => 18,
+            ElementKind::Hexahedron => 24,
+        })
+    }
+
+    /// The sum over all elements of something that follows from an element's kind and its number of nodes.
+    pub fn sum(&self, of_one: impl Fn(ElementKind, usize) -> u128) -> u128 {
+        self.elements.iter().fold(0, |sum: u128, (&nodes, &count)| {
+            sum.saturating_add(of_one(topology::kind(self.dimension, nodes), nodes).saturating_mul(count))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn face_corners_are_those_of_the_faces() {
+        for (dimension, nodes) in [(Dimension::Plane, 2..9), (Dimension::Space, 2..10)] {
+            for nodes in nodes {
+                let elements = BTreeMap::from([(nodes, 1)]);
+                let census = Census { dimension, nodes: nodes as u128, elements, lattice: false, springs: None };
+                let own: Vec<u32> = (0..nodes as u32).collect();
+                let faces = topology::faces_of(topology::kind(dimension, nodes), &own);
+                assert_eq!(census.face_corners(), faces.iter().map(|face| face.len() as u128).sum::<u128>(), "{nodes}");
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What a reader calls the parts of a body, and how many digits of a number are shown.
+
+use super::body::{Body, ElementKind};
+use glam::DVec3;
+
+/// How many elements of each kind a body has, and what a reader calls that many: triangles when all polygons are
+/// ones, cubes when all hexahedra are.
+pub fn elements(body: &Body) -> Vec<(usize, &'static str)> {
+    use ElementKind::*;
+    let of = |kind| body.elements.iter().zip(&body.kinds).filter(move |&(_, &other)| other == kind);
+    let names = |kind| match kind {
+        Segment => ["segment", "segments"],
+        Polygon if of(kind).all(|(nodes, _)| nodes.len() == 3) => ["triangle", "triangles"],
+        Polygon => ["polygon", "polygons"],
+        Triangle => ["triangle", "triangles"],
+        Tetrahedron => ["tetrahedron", "tetrahedra"],
+        Pyramid => ["pyramid", "pyramids"],
+        Wedge => ["wedge", "wedges"],
+        Hexahedron if of(kind).all(|(nodes, _)| is_cube(nodes, &body.rest)) => ["cube", "cubes"],
+        Hexahedron => ["hexahedron", "hexahedra"],
+        Other if of(kind).count() == body.elements.len() => ["element", "elements"],
+        Other => ["other element", "other elements"],
+    };
+    let kinds = [Segment, Polygon, Triangle, Tetrahedron, Pyramid, Wedge, Hexahedron, Other];
+    let counted = kinds.into_iter().map(|kind| (of(kind).count(), kind)).filter(|(count, _)| *count > 0);
+    counted.map(|(count, kind)| (count, names(kind)[usize::from(count > 1)])).collect()
+}
+
+/// Whether a hexahedron has equal edges and right angles at rest, up to rounding.
+fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
+    let corner = |at: usize| rest[nodes[at] as usize] - rest[nodes[0] as usize];
+    let axes = [corner(1), corner(2), corner(4)];
+    let size = axes[0].length();
+    let equal = |a: f64, b: f64| (a - b).abs() <= 1e-9 * size.max(rest[nodes[0] as usize].length());
+    let square = (0..3).all(|a| equal(axes[a].length(), size) && equal(axes[a].dot(axes[(a + 1) % 3]) / size, 0.0));
+    let part = |at: usize, axis: usize| if at >> axis & 1 == 1 { axes[axis] } else { DVec3::ZERO };
+    square && (1..8).all(|at| equal(corner(at).distance((0..3).map(|axis| part(at, axis)).sum()), 0.0))
+}
+
+/// A number with so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::body::Dimension;
+
+    fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Body {
+        let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
+        let mass = vec![1.0; rest.len()];
+        Body::new(dimension, rest, mass, elements.iter().copied().collect(), None)
+    }
+
+    /// The corners of a box far from the origin, with one more node above it.
+    fn block(height: f64) -> Vec<[f64; 3]> {
+        let corner =
+            |at: u32| [7.3 + 0.1 * f64::from(at & 1), height * f64::from(at >> 1 & 1), 0.1 * f64::from(at >> 2)];
+        (0..8).map(corner).chain([[7.35, 1.0, 0.05]]).collect()
+    }
+
+    #[test]
+    fn a_cube_is_a_hexahedron_with_equal_sides_and_right_angles() {
+        let one: &[u32] = &[0, 1, 2, 3, 4, 5, 6, 7];
+        let words = |rest: &[[f64; 3]]| elements(&body(Dimension::Space, rest, &[one]));
+        assert_eq!(words(&block(0.1)), [(1, "cube")]);
+        assert_eq!(words(&block(0.11)), [(1, "hexahedron")]);
+        let mut bent = block(0.1);
+        bent[7][0] += 0.01;
+        assert_eq!(words(&bent), [(1, "hexahedron")]);
+    }
+
+    #[test]
+    fn each_kind_has_its_count() {
+        let (cube, top): (&[u32], &[u32]) = (&[0, 1, 2, 3, 4, 5, 6, 7], &[2, 3, 7, 6, 8]);
+        let mixed = elements(&body(Dimension::Space, &block(0.1), &[cube, top, &[0, 1, 2], &[0, 1, 2, 3, 4, 5, 8]]));
+        assert_eq!(mixed, [(1, "triangle"), (1, "pyramid"), (1, "cube"), (1, "other element")]);
+        let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let words = |lists: &[&[u32]]| elements(&body(Dimension::Plane, &plane, lists));
+        assert_eq!(words(&[&[0, 1, 2], &[0, 2, 3]]), [(2, "triangles")]);
+        assert_eq!(words(&[&[0, 1, 2, 3], &[0, 1, 2]]), [(2, "polygons")]);
+    }
+
+    #[test]
+    fn numbers_keep_their_first_digits() {
+        assert_eq!([1234.5, 0.000_123_45, 99.96].map(|value| rounded(value, 3)), [1230.0, 0.000_123, 100.0]);
+        assert!(rounded(f64::NAN, 3).is_nan());
+    }
+}
