@@ -25,7 +25,7 @@ pub(super) struct RunOptions {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(super) out: Option<PathBuf>,
 
-    /// Replace what the output folder holds of another scene
+    /// Replace what the output folder holds of another scene, or of another size or choice of runs
     #[arg(long)]
     pub(super) overwrite: bool,
 

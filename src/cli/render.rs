@@ -24,7 +24,7 @@ Examples:
 
 The folder then holds frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, \
 for each run and frame) and run.json (what was run, how it went, and which files it wrote). Frames of another scene \
-are never mixed with them; other frames of the same scene stay, also those of another --size or --only.
+are never mixed with them, nor frames of another --size or --only; other frames of the same sequence stay.
 
 Without a GPU, pictures are drawn on the processor; `localshape info` tells with what.";
 
@@ -63,7 +63,7 @@ impl Render {
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }
-        let jobs = self.options.jobs(scenes)?;
+        let jobs = self.options.jobs(scenes, true)?;
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
         for job in &jobs {

@@ -3,7 +3,7 @@
 use super::failure::{Failure, Status, complain, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::output::Folder;
+use crate::output::{Folder, Look};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -57,8 +57,8 @@ pub(super) struct Job {
 }
 
 impl RunOptions {
-    /// What is to be done for each scene.
-    pub(super) fn jobs(&self, scenes: Vec<Scene>) -> Result<Vec<Job>, Failure> {
+    /// What is to be done for each scene, with or without `pictures`.
+    pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool) -> Result<Vec<Job>, Failure> {
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -74,8 +74,12 @@ impl RunOptions {
                     format!("“{first}” and “{second}” would both go to {path}; run them one at a time with -o");
                 return Err(Failure::usage(message));
             }
-            let folder = Folder::inspect(&path, &scene, self.overwrite)?;
-            jobs.push(Job { runs: self.runs(&scene)?, frames: self.frames(&scene)?, folder, scene });
+            let runs = self.runs(&scene)?;
+            let frames = self.frames(&scene)?;
+            let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
+            let look = pictures.then_some(Look { size: scene.view.size, runs: names });
+            let folder = Folder::inspect(&path, &scene, look.as_ref(), self.overwrite)?;
+            jobs.push(Job { runs, frames, folder, scene });
         }
         Ok(jobs)
     }

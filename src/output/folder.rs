@@ -1,7 +1,7 @@
 //! Whose folder it is: frames of different scenes never mix, and files of others are never removed.
 
 use super::atomic::{remove, remove_leftovers};
-use super::{DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE, read_tags};
+use super::{DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE, read_frame};
 use crate::scene::Scene;
 use std::fs;
 use std::io;
@@ -21,11 +21,20 @@ fn names_frame(name: &str) -> bool {
     digits.is_some_and(|digits| digits.parse().is_ok_and(|index| frame_file_name(index) == name))
 }
 
+/// What frames must have in common to be one sequence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// Width and height (px).
+    pub size: [u32; 2],
+    /// Names of the runs drawn, in the scene's order.
+    pub runs: Vec<String>,
+}
+
 /// A folder for the output of one scene, looked at but not yet touched.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// Files of ours that belong to another scene.
+    /// Files of ours that belong to another scene or another sequence.
     stale: Vec<PathBuf>,
     /// States of this scene.
     states: Option<PathBuf>,
@@ -35,18 +44,19 @@ impl Folder {
     /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
     ///
     /// A folder with files of another scene, or with files of others under the names of ours, is refused unless
-    /// `overwrite`. Files of the same scene are fine: they are replaced one by one. Its other frames stay, whatever
-    /// their size and the runs they show, so that a scene can be drawn in parts.
+    /// `overwrite`. Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
+    /// a scene can be drawn in parts. But if frames are to be drawn, those that are there must have the same `look`,
+    /// or the folder would hold no sequence.
     ///
     /// # Errors
     /// If the folder cannot be read or is refused.
-    pub fn inspect(path: &Path, scene: &Scene, overwrite: bool) -> Result<Self, OutputError> {
-        let found = Found::in_folder(path, &scene.digest)?;
+    pub fn inspect(path: &Path, scene: &Scene, look: Option<&Look>, overwrite: bool) -> Result<Self, OutputError> {
+        let found = Found::in_folder(path, &scene.digest, look)?;
         match found.describe() {
             Some(what) if !overwrite => Err(OutputError::Occupied { path: path.to_owned(), what }),
             _ => Ok(Self {
                 path: path.to_owned(),
-                stale: found.frames.into_iter().chain(found.records).collect(),
+                stale: [found.frames, found.unlike, found.records].concat(),
                 states: found.states,
             }),
         }
@@ -72,11 +82,23 @@ impl Folder {
     }
 }
 
+impl Look {
+    fn describe(&self) -> String {
+        let [width, height] = self.size;
+        let runs: Vec<_> = self.runs.iter().map(|run| format!("“{run}”")).collect();
+        format!("{width}×{height} pixels with {}", runs.join(", "))
+    }
+}
+
 /// What is in the way in a folder.
 #[derive(Debug, Default)]
 struct Found {
     /// Frames of another scene.
     frames: Vec<PathBuf>,
+    /// Frames of this scene that cannot stand beside new ones.
+    unlike: Vec<PathBuf>,
+    /// What one of these is, in words.
+    unlike_look: String,
     /// Diagnostics, states and summary of another scene.
     records: Vec<PathBuf>,
     /// States of this scene.
@@ -88,7 +110,7 @@ struct Found {
 }
 
 impl Found {
-    fn in_folder(path: &Path, digest: &str) -> Result<Self, OutputError> {
+    fn in_folder(path: &Path, digest: &str, look: Option<&Look>) -> Result<Self, OutputError> {
         let mut found = Self::default();
         let entries = match fs::read_dir(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(found),
@@ -100,8 +122,15 @@ impl Found {
             let name = entry.file_name();
             let Some(name) = name.to_str() else { continue };
             if names_frame(name) {
-                match read_tags(&entry.path())? {
-                    Some(tags) if tags.scene == digest => {}
+                match read_frame(&entry.path())? {
+                    Some((size, tags)) if tags.scene == digest => {
+                        let runs = tags.states.into_iter().map(|(_, run)| run).collect();
+                        let own = Look { size, runs };
+                        if look.is_some_and(|look| *look != own) {
+                            found.unlike.push(entry.path());
+                            found.unlike_look = own.describe();
+                        }
+                    }
                     Some(_) => found.frames.push(entry.path()),
                     None => found.foreign.push(name.to_owned()),
                 }
@@ -125,8 +154,13 @@ impl Found {
     /// What is in the way, in words; `None` if nothing is.
     fn describe(&self) -> Option<String> {
         let title = self.title.as_ref().map(|title| format!(" (“{title}”)")).unwrap_or_default();
+        let unlike = match self.unlike.len() {
+            0 => None,
+            1 => Some(format!("a frame of this scene of {}", self.unlike_look)),
+            count => Some(format!("{count} frames of this scene of {}", self.unlike_look)),
+        };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
-            (0, true, []) => None,
+            (0, true, []) => unlike,
             (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
             (0, true, [name, others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))

@@ -99,6 +99,14 @@ pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
 /// # Errors
 /// If the file cannot be read.
 pub fn read_tags(path: &Path) -> Result<Option<Tags>, OutputError> {
+    Ok(read_frame(path)?.map(|(_, tags)| tags))
+}
+
+/// Reads width and height of a frame (px) and what it says about itself, without its pixels; see [`read_tags`].
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
     let file = File::open(path).map_err(OutputError::reading(path))?;
     let reader = match png::Decoder::new(BufReader::new(file)).read_info() {
         Ok(reader) => reader,
@@ -108,12 +116,13 @@ pub fn read_tags(path: &Path) -> Result<Option<Tags>, OutputError> {
         Err(_) => return Ok(None),
     };
     let info = reader.info();
-    Ok(Tags::parse(|name| {
+    let tags = Tags::parse(|name| {
         let keyword = format!("localshape:{name}");
         let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
         let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
         plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
-    }))
+    });
+    Ok(tags.map(|tags| ([info.width, info.height], tags)))
 }
 
 #[cfg(test)]
