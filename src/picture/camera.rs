@@ -1,9 +1,9 @@
 //! From where a panel is seen: pure numbers, in double precision.
 
-use super::narrow::narrow;
+use super::narrow::narrow_row;
 use crate::scene::{Camera, View};
 use crate::sim::body::Dimension;
-use glam::{DVec3, Mat4, Vec4};
+use glam::{DVec3, DVec4, Mat4};
 
 /// Room for titles and for captions, which bodies do not share (px at type of the reference size).
 const TITLES: f64 = 95.0;
@@ -121,23 +121,25 @@ impl Lens {
         normal.dot(view) < 0.0
     }
 
-    /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Depth is 1 at
-    /// the near plane and 0 infinitely far; in the plane it is ½ throughout.
+    /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Its fourth
+    /// coordinate is the distance along the view in that unit, so that nothing in it depends on how small or large a
+    /// body is. Depth is 1 at the near plane and 0 infinitely far; in the plane it is ½ throughout, at a distance of 1.
     pub fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
         let [left, top, width, height] = panel;
         let shift = [2.0 * (self.centre[0] - left) / width - 1.0, 1.0 - 2.0 * (self.centre[1] - top) / height];
-        let row = |axis: DVec3, factor: f64| (axis * unit * factor).extend((origin - self.eye).dot(axis) * factor);
-        let away = row(self.forward, 1.0);
-        let x = row(self.right, 2.0 * self.focal / width);
-        let y = row(self.up, 2.0 * self.focal / height);
-        let rows = if self.orthographic {
-            let one = glam::DVec4::W;
-            [x + shift[0] * one, y + shift[1] * one, 0.5 * one, one]
-        } else {
-            [x + shift[0] * away, y + shift[1] * away, self.near * glam::DVec4::W, away]
-        };
-        let [x, y, z, w] = rows.map(|row| Vec4::new(narrow(row.x), narrow(row.y), narrow(row.z), narrow(row.w)));
-        Mat4::from_cols(x, y, z, w).transpose()
+        let row = |axis: DVec3, factor: f64| (axis * factor).extend((origin - self.eye).dot(axis) / unit * factor);
+        let focal = if self.orthographic { self.focal * unit } else { self.focal };
+        let x = row(self.right, 2.0 * focal / width);
+        let y = row(self.up, 2.0 * focal / height);
+        let away = if self.orthographic { DVec4::W } else { row(self.forward, 1.0) };
+        let near = self.near_in(unit) * DVec4::W;
+        let rows = [x + shift[0] * away, y + shift[1] * away, near, away].map(narrow_row);
+        Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
+    }
+
+    /// Distance of the nearest thing drawn, in the terms of [`Self::clip`].
+    pub fn near_in(&self, unit: f64) -> f64 {
+        if self.orthographic { 0.5 } else { self.near / unit }
     }
 }
 
@@ -198,6 +200,7 @@ mod tests {
             let y = PANEL[1] + PANEL[3] * f64::from(0.5 - 0.5 * at.y / at.w);
             assert!((x - pixel[0]).abs() < 1e-3 && (y - pixel[1]).abs() < 1e-3, "{x} {y} {pixel:?}");
             assert!((f64::from(at.z / at.w) - lens.near / distance).abs() < 1e-6);
+            assert!((f64::from(at.w) - distance / unit).abs() < 1e-5, "{at}");
         }
     }
 

@@ -32,6 +32,8 @@ const FADE_ABOVE: f64 = 94.0;
 const SOFT_SHARE: f64 = 4.5;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
 const MOST_CELLS: f64 = 10.0;
+/// Coordinates of what blew up are kept within this (sides).
+const FARTHEST: f64 = 1e12;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
@@ -154,7 +156,7 @@ impl<'a> Composer<'a> {
         let key = key_light(&lens, framing);
         // A body of which no node is known is drawn as nothing.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let position: Vec<_> = position.iter().map(|&at| finite(at)).collect();
+        let position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * side)).collect();
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if !position.is_empty() {
@@ -195,7 +197,7 @@ impl<'a> Composer<'a> {
             sight: Sight {
                 clip: lens.clip(origin, side, edges),
                 eye: narrow_point((lens.eye - origin) / side),
-                near: narrow(lens.near / side),
+                near: narrow(lens.near_in(side)),
                 focal: narrow(if flat { lens.focal * side } else { lens.focal }),
                 key: narrow_point(key),
                 flat,
@@ -303,9 +305,8 @@ fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
 }
 
 /// Coordinates beyond all bounds are brought to where arithmetic still works.
-fn finite(point: DVec3) -> DVec3 {
-    const FARTHEST: f64 = 1e12;
-    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) };
+fn finite(point: DVec3, farthest: f64) -> DVec3 {
+    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
     DVec3::new(one(point.x), one(point.y), one(point.z))
 }
 

@@ -192,3 +192,58 @@ fn few_elements_are_counted_in_squares() {
     let picture = compose(&scene, &frame);
     assert_eq!(picture.marks.len(), 1 + 2 * 27);
 }
+
+/// The scene of Fig. 4(b) with all lengths and speeds times a factor.
+fn scaled(factor: f64) -> (Scene, Frame) {
+    let (mut scene, mut frame) = fig4b(4);
+    let mut body = (*scene.body).clone();
+    body.rest.iter_mut().for_each(|at| *at *= factor);
+    scene.body = std::sync::Arc::new(body);
+    scene.initial.position.iter_mut().chain(&mut scene.initial.velocity).for_each(|at| *at *= factor);
+    scene.view.side *= factor;
+    scene.view.camera.target *= factor;
+    scene.view.camera.distance *= factor;
+    for run in &mut frame.runs {
+        run.snapshot.position.iter_mut().chain(&mut run.snapshot.velocity).for_each(|at| *at *= factor);
+    }
+    (scene, frame)
+}
+
+#[test]
+fn a_picture_is_the_same_in_any_unit_of_length() {
+    let (scene, frame) = fig4b(4);
+    let expected = compose(&scene, &frame);
+    for factor in [1e-6, 1e-5, 0.1, 1.0, 1e3, 1e6] {
+        let (scene, frame) = scaled(factor);
+        let picture = compose(&scene, &frame);
+        for (panel, expected) in picture.panels.iter().zip(&expected.panels) {
+            let rows = |panel: &localshape::picture::Panel| panel.sight.clip.to_cols_array();
+            for (a, b) in rows(panel).into_iter().zip(rows(expected)) {
+                assert!((a - b).abs() <= 1e-5 * b.abs().max(1.0), "{factor}: {a} for {b}");
+            }
+            let near = [panel.sight.near, expected.sight.near];
+            assert!((near[0] / near[1] - 1.0).abs() < 1e-5, "{factor}: {near:?}");
+            assert_eq!(panel.region, expected.region, "{factor}");
+            assert_eq!(panel.lines.len(), expected.lines.len(), "{factor}");
+            for (a, b) in panel.lines.iter().zip(&expected.lines) {
+                let apart = |a: [f32; 3], b: [f32; 3]| glam::Vec3::from(a).distance(glam::Vec3::from(b));
+                assert!(a.kind == b.kind && apart(a.from, b.from).max(apart(a.to, b.to)) < 1e-4, "{factor}: {a:?}");
+                // What is compared with the near plane is in front of it.
+                let distance = |point: [f32; 3]| (panel.sight.clip * glam::Vec3::from(point).extend(1.0)).w;
+                assert!(distance(a.from) > panel.sight.near && distance(a.to) > panel.sight.near, "{factor}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lines_of_large_bodies_in_the_plane_are_before_the_near_plane() {
+    let text = "time = { duration = 1, step = 'T/50', frames_per_second = 60 }
+        body = { lattice = { cells = [60, 4], side = 0.01 } }
+        [[run]]
+        name = 'a'
+        model = { kind = 'shape-based', stiffness = 1e3 }";
+    let scene = Scene::parse(text, "plane.toml", &Limits::default()).expect("sound");
+    let sight = compose(&scene, &Sequence::new(&scene, &[0]).frame(0)).panels[0].sight;
+    assert!(sight.near < sight.clip.w_axis.w, "{sight:?}");
+}
