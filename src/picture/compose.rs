@@ -25,6 +25,10 @@ const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Distance of the camera above which the floor is drawn wider (sizes of the body).
+const USUAL_DISTANCE: f64 = 12.0;
+/// Floors whose normal rises more than this are level.
+pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 /// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
 /// on clean ground.
 const FADE_ABOVE: f64 = 94.0;
@@ -113,7 +117,9 @@ impl<'a> Composer<'a> {
         let size = view.size.map(|length| length.max(1));
         let panels = layout::panels(size, frame.runs.len(), view.columns);
         let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
-        let framing = framing(&view.camera, centres.fold(f64::NEG_INFINITY, f64::max));
+        let heights = centres.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        let level = contact::ground(&self.scene.obstacles).is_some_and(|(normal, _)| normal.y > LEVEL);
+        let framing = framing(&view.camera, heights, !level);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
         let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&panels);
@@ -150,7 +156,7 @@ impl<'a> Composer<'a> {
     ) -> Panel {
         let view = &self.scene.view;
         let body = &*self.scene.body;
-        let (origin, side) = (view.camera.target, view.side);
+        let (origin, side) = (framing.base, view.side);
         let edges = viewport.map(f64::from);
         let lens = Lens::new(view, framing, body.dimension, edges, scale.unit);
         let key = key_light(&lens, framing);
@@ -225,11 +231,12 @@ impl<'a> Composer<'a> {
 
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
-        let (origin, side) = (view.camera.target, view.side);
+        let (origin, side) = (framing.base, view.side);
         let (normal, height) = contact::ground(&self.scene.obstacles)?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
-        let widening = (framing.distance / view.camera.distance).sqrt();
+        let usual = view.camera.distance.min(USUAL_DISTANCE * self.extent);
+        let widening = (framing.distance / usual).sqrt();
         let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * widening);
         let on_skin = self.skin.nodes.iter().filter_map(|&node| position.get(node as usize));
         let points: Vec<_> = on_skin.map(|&at| (at - origin) / side).collect();
