@@ -260,7 +260,8 @@ mod tests {
         let camera = view().camera;
         assert_eq!(framing(&camera, [0.1; 2], false).distance, camera.distance);
         assert!(framing(&camera, [0.17; 2], false).distance < 1.03 * camera.distance);
-        let distances: Vec<_> = (0..3000).map(|step| framing(&camera, [f64::from(step) * 0.001; 2], false).distance).collect();
+        let distances: Vec<_> =
+            (0..3000).map(|step| framing(&camera, [f64::from(step) * 0.001; 2], false).distance).collect();
         for three in distances.windows(3) {
             let (first, second) = (three[1] - three[0], three[2] - three[1]);
             assert!(first >= 0.0 && (second - first).abs() < 1e-3 * camera.distance, "{three:?}");

@@ -2,6 +2,7 @@
 
 use super::camera::{Lens, framing};
 use super::caption::{Writer, numbers};
+use super::ears::{Ears, bare_elements};
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::{narrow, narrow_point};
 use super::palette::Palette;
@@ -11,9 +12,10 @@ use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
 use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
-use crate::sim::body::{Body, Dimension, ElementKind};
+use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
+use crate::sim::topology::edges_of;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -52,6 +54,9 @@ pub struct Composer<'a> {
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
     skin: Skin,
+    ears: Ears,
+    /// Elements without faces.
+    bare: Vec<usize>,
     extent: f64,
     /// The unit of soft distances (sides).
     soft: f64,
@@ -67,7 +72,7 @@ struct Skin {
 }
 
 impl Skin {
-    fn new(body: &Body) -> Self {
+    fn new(body: &Body, ears: &Ears) -> Self {
         let mut places = HashMap::new();
         let mut nodes = Vec::new();
         let mut place = |node: u32| {
@@ -79,7 +84,10 @@ impl Skin {
         let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
         let mut triangles = Vec::new();
         for (face, _) in outside {
-            triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place)));
+            match ears.of(face) {
+                Some(ears) => triangles.extend(ears.iter().map(|ear| ear.map(|at| place(face[at as usize])))),
+                None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
+            }
         }
         Self { nodes, triangles }
     }
@@ -99,13 +107,16 @@ impl<'a> Composer<'a> {
             Dimension::Space => Vec::new(),
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
+        let ears = Ears::new(body);
         Self {
             scene,
             palette: Palette::of(scene.view.theme),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
-            skin: Skin::new(body),
+            skin: Skin::new(body, &ears),
+            ears,
+            bare: bare_elements(body),
             extent,
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
@@ -166,20 +177,28 @@ impl<'a> Composer<'a> {
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if !position.is_empty() {
-            let surroundings =
-                Surroundings { body, position: &position, lens: &lens, origin, side, soft: self.soft * side };
+            let surroundings = Surroundings {
+                body,
+                ears: &self.ears,
+                position: &position,
+                lens: &lens,
+                origin,
+                side,
+                soft: self.soft * side,
+            };
             let over = &run.snapshot.turned_over;
             let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
             surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
             let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
             surroundings.add(&boundary(body, over, true), kinds, &mut turned_over, &mut lines);
-            self.add_segments(&position, origin, &mut lines);
+            self.add_bare(&position, over, origin, &mut lines);
         }
         let flat = body.dimension == Dimension::Plane;
         let diverged = matches!(run.snapshot.status, Status::Diverged(_));
         if flat {
             let flat = Flat {
                 body,
+                ears: &self.ears,
                 position: &position,
                 turned_over: &run.snapshot.turned_over,
                 lens: &lens,
@@ -187,7 +206,7 @@ impl<'a> Composer<'a> {
                 scale,
                 palette: &self.palette,
             };
-            flat.floor(&self.scene.obstacles, under);
+            flat.floors(&self.scene.obstacles, under);
             if !diverged {
                 flat.signs(above);
             }
@@ -218,15 +237,25 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Elements that are mere segments have no faces, but can be seen.
-    fn add_segments(&self, position: &[DVec3], origin: DVec3, lines: &mut Vec<Line>) {
+    /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
+    fn add_bare(&self, position: &[DVec3], over: &[bool], origin: DVec3, lines: &mut Vec<Line>) {
         let body = &*self.scene.body;
-        let segments = body.elements.iter().zip(&body.kinds).filter(|(_, kind)| **kind == ElementKind::Segment);
-        lines.extend(segments.map(|(nodes, _)| {
-            let [from, to] = [nodes[0], nodes[1]]
-                .map(|node| narrow_point((position[node as usize] - origin) / self.scene.view.side).to_array());
-            Line { from, to, kind: LineKind::Edge }
-        }));
+        let relative = |point: DVec3| narrow_point((point - origin) / self.scene.view.side).to_array();
+        for &element in &self.bare {
+            let nodes = &body.elements[element];
+            let over = over.get(element).copied().unwrap_or(false);
+            let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
+            let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind });
+            let at = |node: u32| position[node as usize];
+            let edges = edges_of(body.kinds[element], nodes);
+            for &[a, b] in &edges {
+                line(at(a), at(b));
+            }
+            if edges.is_empty() {
+                let middle = nodes.iter().map(|&node| at(node)).sum::<DVec3>() / nodes.len() as f64;
+                nodes.iter().for_each(|&node| line(middle, at(node)));
+            }
+        }
     }
 
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {

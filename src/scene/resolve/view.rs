@@ -61,7 +61,14 @@ pub(super) fn resolve(
         None => show_start(&mut chosen, start, dimension, typed.camera.distance.is_some()),
     }
     let columns = typed.columns.map_or(COLUMNS, |columns| columns as usize).clamp(1, runs.max(1));
-    Some(View { size: typed.size, theme: typed.theme, camera: chosen, clock: typed.clock.clone(), columns, side: body.side })
+    Some(View {
+        size: typed.size,
+        theme: typed.theme,
+        camera: chosen,
+        clock: typed.clock.clone(),
+        columns,
+        side: body.side,
+    })
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
