@@ -3,12 +3,14 @@
 struct Mark {
     // Left, top, width and height (px).
     @location(0) rectangle: vec4<f32>,
+    // Unit vector along its width.
+    @location(1) along: vec2<f32>,
     // sRGB.
-    @location(1) colour: vec4<f32>,
-    @location(2) second: vec4<f32>,
+    @location(2) colour: vec4<f32>,
+    @location(3) second: vec4<f32>,
     // Left and top in the atlas of glyphs.
-    @location(3) glyph: vec2<u32>,
-    @location(4) shape: u32,
+    @location(4) glyph: vec2<u32>,
+    @location(5) shape: u32,
 }
 
 struct Corner {
@@ -18,6 +20,7 @@ struct Corner {
     @location(2) @interpolate(flat) second: vec4<f32>,
     @location(3) @interpolate(flat) glyph: vec2<u32>,
     @location(4) @interpolate(flat) shape: u32,
+    @location(5) @interpolate(flat) along: vec2<f32>,
 }
 
 struct Canvas {
@@ -36,6 +39,7 @@ const COUNTER_CLOCKWISE = 4u;
 const CLOCKWISE = 5u;
 const FADING = 6u;
 const SHADOW = 7u;
+const SMOOTH = 8u;
 
 // The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
 // the right), length and half width of its head.
@@ -64,14 +68,16 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32, mark: Mark) -> Corner {
-    let at = mark.rectangle.xy + mark.rectangle.zw * vec2(f32(index & 1u), f32(index >> 1u));
+    let corner = mark.rectangle.zw * vec2(f32(index & 1u), f32(index >> 1u));
+    let at = mark.rectangle.xy + corner.x * mark.along + corner.y * vec2(-mark.along.y, mark.along.x);
     let place = vec4(at / canvas.size * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.5, 1.0);
-    return Corner(place, mark.rectangle, mark.colour, mark.second, mark.glyph, mark.shape);
+    return Corner(place, mark.rectangle, mark.colour, mark.second, mark.glyph, mark.shape, mark.along);
 }
 
 @fragment
 fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
-    let at = corner.place.xy - corner.rectangle.xy;
+    let from_corner = corner.place.xy - corner.rectangle.xy;
+    let at = vec2(dot(from_corner, corner.along), dot(from_corner, vec2(-corner.along.y, corner.along.x)));
     if corner.shape == GLYPH {
         let texel = vec2<i32>(corner.glyph) + vec2<i32>(floor(at));
         return vec4(corner.colour.rgb, textureLoad(glyphs, texel, 0).r);
@@ -104,6 +110,10 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             let down = at.y / corner.rectangle.w;
             let across = smoothstep(1.0, 0.55, abs(middle.x));
             return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
+        }
+        case SMOOTH: {
+            let inside = min(at, corner.rectangle.zw - at);
+            return vec4(corner.colour.rgb, saturate(inside.x) * saturate(inside.y));
         }
         default: {
             return vec4(corner.colour.rgb, 1.0);

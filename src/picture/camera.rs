@@ -1,9 +1,9 @@
 //! From where a panel is seen: pure numbers, in double precision.
 
-use super::narrow::narrow;
+use super::narrow::narrow_row;
 use crate::scene::{Camera, View};
 use crate::sim::body::Dimension;
-use glam::{DVec3, Mat4, Vec4};
+use glam::{DVec3, DVec4, Mat4};
 
 /// Room for titles and for captions, which bodies do not share (px at type of the reference size).
 const TITLES: f64 = 95.0;
@@ -21,6 +21,10 @@ const USABLE_HEIGHT: f64 = 0.70;
 const GENTLE_RISE: f64 = 0.045;
 /// The highest rise that is followed, in distances of the camera. What flies farther leaves the picture.
 const HIGHEST_RISE: f64 = 40.0;
+/// So far does the camera lag behind a fall, in its own distances.
+const GENTLE_FALL: f64 = 0.025;
+/// The deepest fall that is followed, in distances of the camera.
+const DEEPEST_FALL: f64 = 1e9;
 /// Distance of the nearest thing drawn, as a part of the camera's distance.
 const NEAR: f64 = 0.02;
 
@@ -29,28 +33,38 @@ const NEAR: f64 = 0.02;
 pub struct Framing {
     /// The point looked at (m).
     pub target: DVec3,
-    /// Distance from it (m).
+    /// Where the target is, or how deep it has sunk, before it rises with a body (m): the origin of all panels.
+    pub base: DVec3,
+    /// Distance from the target (m).
     pub distance: f64,
-    /// How far the camera has risen above where the scene puts it, twice (m): the height that the picture shows more.
+    /// How far the camera has risen above where a body stands, twice (m): the height that the picture shows more.
     pub rise: f64,
 }
 
-/// Where the camera looks when the highest of the shown bodies has its centre at `highest` (m).
+/// Where the camera looks when the lowest and the highest of the shown bodies have their centres at `heights` (m).
 ///
-/// With `follow`, the camera shows as much more height as that body has risen above the point looked at: half of it by
-/// looking higher and all of it by drawing back. Both begin gently, so that small bounces do not move the camera.
-pub fn framing(camera: &Camera, highest: f64) -> Framing {
-    let above = highest - camera.target.y;
-    if !camera.follow || above.is_nan() || above <= 0.0 {
-        return Framing { target: camera.target, distance: camera.distance, rise: 0.0 };
+/// With `follow`, the camera shows as much more height as the highest body has risen above the point looked at: half of
+/// it by looking higher and all of it by drawing back. Where there is nothing that ends a fall (`bottomless`), it first
+/// sinks with the lowest body. All of it begins gently, so that small bounces do not move the camera.
+pub fn framing(camera: &Camera, heights: [f64; 2], bottomless: bool) -> Framing {
+    let Camera { target, distance, rise, .. } = *camera;
+    let still = Framing { target, base: target, distance, rise };
+    let pull = |length: f64, gentle: f64, most: f64| {
+        let length = length.min(most * distance);
+        if length > 0.0 { length * length / (length + gentle * distance) } else { 0.0 }
+    };
+    if !camera.follow {
+        return still;
     }
-    let above = above.min(HIGHEST_RISE * camera.distance);
-    let rise = above * above / (above + GENTLE_RISE * camera.distance);
+    let sink = if bottomless { pull(target.y - heights[0], GENTLE_FALL, DEEPEST_FALL) } else { 0.0 };
+    let base = target - sink * DVec3::Y;
+    let risen = pull(heights[1] - base.y, GENTLE_RISE, HIGHEST_RISE);
     let height_per_distance = 2.0 * libm::tan(camera.field_of_view / 2.0) * USABLE_HEIGHT;
     Framing {
-        target: camera.target + 0.5 * rise * DVec3::Y,
-        distance: camera.distance + rise * libm::cos(camera.elevation) / height_per_distance,
-        rise,
+        target: base + 0.5 * risen * DVec3::Y,
+        base,
+        distance: distance + risen * libm::cos(camera.elevation) / height_per_distance,
+        rise: rise + risen,
     }
 }
 
@@ -121,23 +135,25 @@ impl Lens {
         normal.dot(view) < 0.0
     }
 
-    /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Depth is 1 at
-    /// the near plane and 0 infinitely far; in the plane it is ½ throughout.
+    /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Its fourth
+    /// coordinate is the distance along the view in that unit, so that nothing in it depends on how small or large a
+    /// body is. Depth is 1 at the near plane and 0 infinitely far; in the plane it is ½ throughout, at a distance of 1.
     pub fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
         let [left, top, width, height] = panel;
         let shift = [2.0 * (self.centre[0] - left) / width - 1.0, 1.0 - 2.0 * (self.centre[1] - top) / height];
-        let row = |axis: DVec3, factor: f64| (axis * unit * factor).extend((origin - self.eye).dot(axis) * factor);
-        let away = row(self.forward, 1.0);
-        let x = row(self.right, 2.0 * self.focal / width);
-        let y = row(self.up, 2.0 * self.focal / height);
-        let rows = if self.orthographic {
-            let one = glam::DVec4::W;
-            [x + shift[0] * one, y + shift[1] * one, 0.5 * one, one]
-        } else {
-            [x + shift[0] * away, y + shift[1] * away, self.near * glam::DVec4::W, away]
-        };
-        let [x, y, z, w] = rows.map(|row| Vec4::new(narrow(row.x), narrow(row.y), narrow(row.z), narrow(row.w)));
-        Mat4::from_cols(x, y, z, w).transpose()
+        let row = |axis: DVec3, factor: f64| (axis * factor).extend((origin - self.eye).dot(axis) / unit * factor);
+        let focal = if self.orthographic { self.focal * unit } else { self.focal };
+        let x = row(self.right, 2.0 * focal / width);
+        let y = row(self.up, 2.0 * focal / height);
+        let away = if self.orthographic { DVec4::W } else { row(self.forward, 1.0) };
+        let near = self.near_in(unit) * DVec4::W;
+        let rows = [x + shift[0] * away, y + shift[1] * away, near, away].map(narrow_row);
+        Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
+    }
+
+    /// Distance of the nearest thing drawn, in the terms of [`Self::clip`].
+    pub fn near_in(&self, unit: f64) -> f64 {
+        if self.orthographic { 0.5 } else { self.near / unit }
     }
 }
 
@@ -159,6 +175,7 @@ mod tests {
                 field_of_view: 20_f64.to_radians(),
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
+                rise: 0.0,
                 follow: true,
             },
             clock: String::new(),
@@ -169,7 +186,7 @@ mod tests {
 
     fn lens(highest: f64) -> Lens {
         let view = view();
-        Lens::new(&view, &framing(&view.camera, highest), Dimension::Space, PANEL, 1.0)
+        Lens::new(&view, &framing(&view.camera, [highest; 2], false), Dimension::Space, PANEL, 1.0)
     }
 
     #[test]
@@ -198,6 +215,7 @@ mod tests {
             let y = PANEL[1] + PANEL[3] * f64::from(0.5 - 0.5 * at.y / at.w);
             assert!((x - pixel[0]).abs() < 1e-3 && (y - pixel[1]).abs() < 1e-3, "{x} {y} {pixel:?}");
             assert!((f64::from(at.z / at.w) - lens.near / distance).abs() < 1e-6);
+            assert!((f64::from(at.w) - distance / unit).abs() < 1e-5, "{at}");
         }
     }
 
@@ -219,17 +237,39 @@ mod tests {
     }
 
     #[test]
+    fn following_keeps_a_falling_body_in_the_picture() {
+        let view = view();
+        for step in 0..400 {
+            let fallen = f64::from(step * step) * 0.01;
+            for apart in [0.0, 0.5] {
+                let heights = [0.15 - fallen, 0.15 - fallen + apart];
+                let framing = framing(&view.camera, heights, true);
+                let lens = Lens::new(&view, &framing, Dimension::Space, PANEL, 1.0);
+                for corner in 0..16 {
+                    let sign = |bit: usize| if corner >> bit & 1 == 1 { 0.15 } else { -0.15 };
+                    let point = DVec3::new(sign(0), heights[corner >> 3] + sign(1), sign(2));
+                    let (pixel, _) = lens.project(point).unwrap();
+                    assert!((100.0..640.0).contains(&pixel[1]), "{fallen} {apart}: {pixel:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn following_is_smooth_and_rests_near_the_floor() {
         let camera = view().camera;
-        assert_eq!(framing(&camera, 0.1).distance, camera.distance);
-        assert!(framing(&camera, 0.17).distance < 1.03 * camera.distance);
-        let distances: Vec<_> = (0..3000).map(|step| framing(&camera, f64::from(step) * 0.001).distance).collect();
+        assert_eq!(framing(&camera, [0.1; 2], false).distance, camera.distance);
+        assert!(framing(&camera, [0.17; 2], false).distance < 1.03 * camera.distance);
+        let distances: Vec<_> =
+            (0..3000).map(|step| framing(&camera, [f64::from(step) * 0.001; 2], false).distance).collect();
         for three in distances.windows(3) {
             let (first, second) = (three[1] - three[0], three[2] - three[1]);
             assert!(first >= 0.0 && (second - first).abs() < 1e-3 * camera.distance, "{three:?}");
         }
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
-            let framing = framing(&camera, odd);
+            let framing = framing(&camera, [odd; 2], false);
+            assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
+            let framing = super::framing(&camera, [odd; 2], true);
             assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
         }
     }
@@ -237,7 +277,7 @@ mod tests {
     #[test]
     fn narrow_panels_show_the_body_smaller_not_cut() {
         let view = view();
-        let framing = framing(&view.camera, 0.0);
+        let framing = framing(&view.camera, [0.0; 2], false);
         let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0], 0.37);
         let [left, right] = [-0.2, 0.2].map(|x| lens.project(DVec3::new(x, 0.15, 0.0)).unwrap().0[0]);
         assert!(20.0 < left && right < 180.0, "{left} {right}");

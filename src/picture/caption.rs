@@ -72,9 +72,9 @@ impl Writer<'_> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let time = shortened(&number::time(time), Weight::Regular, title, room.width());
-        self.right(&time, title, self.palette.text, room.right, room.top + lines.title);
+        self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
         let label = self.clock_label(panel, label);
-        self.right(&label, caption, self.palette.second_text, room.right, room.top + lines.second);
+        self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
     }
 
     /// Tally and count, lower left, and one number, lower right.
@@ -113,11 +113,15 @@ impl Writer<'_> {
                     caption,
                 )) + self.scale.gap();
         }
-        let fits = |text: &&String| width(text, Weight::Regular, caption) <= room.right - right_of_count;
-        if let Some(text) = numbers.iter().find(fits) {
-            let diverged = matches!(snapshot.status, Status::Diverged(_));
-            let colour = if diverged { self.palette.text } else { self.palette.second_text };
-            self.right(text, caption, colour, room.right, baseline);
+        // That a run blew up is said as loudly as there is room for.
+        let (weight, colour, sizes) = match snapshot.status {
+            Status::Diverged(_) => (Weight::SemiBold, self.palette.text, [title, caption]),
+            Status::Ok => (Weight::Regular, self.palette.second_text, [caption; 2]),
+        };
+        let wordings = numbers.iter().flat_map(|text| sizes.map(|size| (text, size)));
+        let free = room.right - right_of_count;
+        if let Some((text, size)) = { wordings }.find(|&(text, size)| width(text, weight, size) <= free) {
+            self.right(text, weight, size, colour, room.right, baseline);
         }
     }
 
@@ -133,6 +137,7 @@ impl Writer<'_> {
             let mut line = |rectangle: [f64; 4]| {
                 self.marks.push(Mark {
                     rectangle: rectangle.map(narrow),
+                    along: Mark::UPRIGHT,
                     colour: halved,
                     second: halved,
                     shape: MarkShape::Filled,
@@ -158,9 +163,9 @@ impl Writer<'_> {
         }
     }
 
-    fn right(&mut self, text: &str, size: f64, colour: Colour, right: f64, baseline: f64) {
-        let left = right - width(text, Weight::Regular, size);
-        self.left(text, Weight::Regular, size, colour, left, baseline);
+    fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
+        let left = right - width(text, weight, size);
+        self.left(text, weight, size, colour, left, baseline);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::camera::{Lens, framing};
 use super::caption::{Writer, numbers};
+use super::ears::{Ears, bare_elements};
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::{narrow, narrow_point};
 use super::palette::Palette;
@@ -11,9 +12,10 @@ use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
 use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
-use crate::sim::body::{Body, Dimension, ElementKind};
+use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
+use crate::sim::topology::edges_of;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -25,6 +27,10 @@ const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Distance of the camera above which the floor is drawn wider (sizes of the body).
+const USUAL_DISTANCE: f64 = 12.0;
+/// Floors whose normal rises more than this are level.
+pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 /// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
 /// on clean ground.
 const FADE_ABOVE: f64 = 94.0;
@@ -32,6 +38,8 @@ const FADE_ABOVE: f64 = 94.0;
 const SOFT_SHARE: f64 = 4.5;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
 const MOST_CELLS: f64 = 10.0;
+/// Coordinates of what blew up are kept within this (sides).
+const FARTHEST: f64 = 1e12;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
@@ -46,6 +54,9 @@ pub struct Composer<'a> {
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
     skin: Skin,
+    ears: Ears,
+    /// Elements without faces.
+    bare: Vec<usize>,
     extent: f64,
     /// The unit of soft distances (sides).
     soft: f64,
@@ -61,7 +72,7 @@ struct Skin {
 }
 
 impl Skin {
-    fn new(body: &Body) -> Self {
+    fn new(body: &Body, ears: &Ears) -> Self {
         let mut places = HashMap::new();
         let mut nodes = Vec::new();
         let mut place = |node: u32| {
@@ -73,7 +84,10 @@ impl Skin {
         let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
         let mut triangles = Vec::new();
         for (face, _) in outside {
-            triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place)));
+            match ears.of(face) {
+                Some(ears) => triangles.extend(ears.iter().map(|ear| ear.map(|at| place(face[at as usize])))),
+                None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
+            }
         }
         Self { nodes, triangles }
     }
@@ -93,13 +107,16 @@ impl<'a> Composer<'a> {
             Dimension::Space => Vec::new(),
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
+        let ears = Ears::new(body);
         Self {
             scene,
             palette: Palette::of(scene.view.theme),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
-            skin: Skin::new(body),
+            skin: Skin::new(body, &ears),
+            ears,
+            bare: bare_elements(body),
             extent,
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
@@ -111,7 +128,9 @@ impl<'a> Composer<'a> {
         let size = view.size.map(|length| length.max(1));
         let panels = layout::panels(size, frame.runs.len(), view.columns);
         let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
-        let framing = framing(&view.camera, centres.fold(f64::NEG_INFINITY, f64::max));
+        let heights = centres.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        let level = contact::ground(&self.scene.obstacles).is_some_and(|(normal, _)| normal.y > LEVEL);
+        let framing = framing(&view.camera, heights, !level);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
         let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&panels);
@@ -148,30 +167,38 @@ impl<'a> Composer<'a> {
     ) -> Panel {
         let view = &self.scene.view;
         let body = &*self.scene.body;
-        let (origin, side) = (view.camera.target, view.side);
+        let (origin, side) = (framing.base, view.side);
         let edges = viewport.map(f64::from);
         let lens = Lens::new(view, framing, body.dimension, edges, scale.unit);
         let key = key_light(&lens, framing);
         // A body of which no node is known is drawn as nothing.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let position: Vec<_> = position.iter().map(|&at| finite(at)).collect();
+        let position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * side)).collect();
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if !position.is_empty() {
-            let surroundings =
-                Surroundings { body, position: &position, lens: &lens, origin, side, soft: self.soft * side };
+            let surroundings = Surroundings {
+                body,
+                ears: &self.ears,
+                position: &position,
+                lens: &lens,
+                origin,
+                side,
+                soft: self.soft * side,
+            };
             let over = &run.snapshot.turned_over;
             let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
             surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
             let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
             surroundings.add(&boundary(body, over, true), kinds, &mut turned_over, &mut lines);
-            self.add_segments(&position, origin, &mut lines);
+            self.add_bare(&position, over, origin, &mut lines);
         }
         let flat = body.dimension == Dimension::Plane;
         let diverged = matches!(run.snapshot.status, Status::Diverged(_));
         if flat {
             let flat = Flat {
                 body,
+                ears: &self.ears,
                 position: &position,
                 turned_over: &run.snapshot.turned_over,
                 lens: &lens,
@@ -179,7 +206,7 @@ impl<'a> Composer<'a> {
                 scale,
                 palette: &self.palette,
             };
-            flat.floor(&self.scene.obstacles, under);
+            flat.floors(&self.scene.obstacles, under);
             if !diverged {
                 flat.signs(above);
             }
@@ -195,7 +222,7 @@ impl<'a> Composer<'a> {
             sight: Sight {
                 clip: lens.clip(origin, side, edges),
                 eye: narrow_point((lens.eye - origin) / side),
-                near: narrow(lens.near / side),
+                near: narrow(lens.near_in(side)),
                 focal: narrow(if flat { lens.focal * side } else { lens.focal }),
                 key: narrow_point(key),
                 flat,
@@ -210,24 +237,35 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Elements that are mere segments have no faces, but can be seen.
-    fn add_segments(&self, position: &[DVec3], origin: DVec3, lines: &mut Vec<Line>) {
+    /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
+    fn add_bare(&self, position: &[DVec3], over: &[bool], origin: DVec3, lines: &mut Vec<Line>) {
         let body = &*self.scene.body;
-        let segments = body.elements.iter().zip(&body.kinds).filter(|(_, kind)| **kind == ElementKind::Segment);
-        lines.extend(segments.map(|(nodes, _)| {
-            let [from, to] = [nodes[0], nodes[1]]
-                .map(|node| narrow_point((position[node as usize] - origin) / self.scene.view.side).to_array());
-            Line { from, to, kind: LineKind::Edge }
-        }));
+        let relative = |point: DVec3| narrow_point((point - origin) / self.scene.view.side).to_array();
+        for &element in &self.bare {
+            let nodes = &body.elements[element];
+            let over = over.get(element).copied().unwrap_or(false);
+            let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
+            let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind });
+            let at = |node: u32| position[node as usize];
+            let edges = edges_of(body.kinds[element], nodes);
+            for &[a, b] in &edges {
+                line(at(a), at(b));
+            }
+            if edges.is_empty() {
+                let middle = nodes.iter().map(|&node| at(node)).sum::<DVec3>() / nodes.len() as f64;
+                nodes.iter().for_each(|&node| line(middle, at(node)));
+            }
+        }
     }
 
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
-        let (origin, side) = (view.camera.target, view.side);
+        let (origin, side) = (framing.base, view.side);
         let (normal, height) = contact::ground(&self.scene.obstacles)?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
-        let widening = (framing.distance / view.camera.distance).sqrt();
+        let usual = view.camera.distance.min(USUAL_DISTANCE * self.extent);
+        let widening = (framing.distance / usual).sqrt();
         let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * widening);
         let on_skin = self.skin.nodes.iter().filter_map(|&node| position.get(node as usize));
         let points: Vec<_> = on_skin.map(|&at| (at - origin) / side).collect();
@@ -303,9 +341,8 @@ fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
 }
 
 /// Coordinates beyond all bounds are brought to where arithmetic still works.
-fn finite(point: DVec3) -> DVec3 {
-    const FARTHEST: f64 = 1e12;
-    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) };
+fn finite(point: DVec3, farthest: f64) -> DVec3 {
+    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
     DVec3::new(one(point.x), one(point.y), one(point.z))
 }
 

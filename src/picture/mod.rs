@@ -11,6 +11,7 @@
 mod camera;
 mod caption;
 mod compose;
+mod ears;
 mod layout;
 mod narrow;
 mod number;
@@ -163,12 +164,19 @@ pub enum LineKind {
 pub struct Mark {
     /// Left, top, width and height (px).
     pub rectangle: [f32; 4],
+    /// Unit vector along its width (px to the right and down): the rectangle is turned around its left upper corner.
+    pub along: [f32; 2],
     /// Its colour.
     pub colour: Colour,
     /// The colour of what is drawn on it.
     pub second: Colour,
     /// What it looks like.
     pub shape: MarkShape,
+}
+
+impl Mark {
+    /// Along the width of a mark that is not turned.
+    pub const UPRIGHT: [f32; 2] = [1.0, 0.0];
 }
 
 /// What a mark looks like.
@@ -188,4 +196,6 @@ pub enum MarkShape {
     Fading,
     /// The lower half of a soft disc.
     Shadow,
+    /// A filled rectangle with smooth borders, a pixel wide inside it.
+    Smooth,
 }

@@ -1,6 +1,6 @@
 //! The one place where double precision ends.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, DVec4, Vec3, Vec4};
 
 /// The largest coordinate that a picture holds: far outside of any panel, and small enough that products of four
 /// coordinates are finite.
@@ -16,6 +16,15 @@ pub(super) fn narrow(value: f64) -> f32 {
 /// A point or direction of three narrowed coordinates.
 pub(super) fn narrow_point(point: DVec3) -> Vec3 {
     Vec3::new(narrow(point.x), narrow(point.y), narrow(point.z))
+}
+
+/// A row of a matrix. Its numbers may be much larger than coordinates: those far away and the strongest lenses still
+/// come out undistorted.
+#[expect(clippy::cast_possible_truncation, reason = "the numbers are kept in range")]
+pub(super) fn narrow_row(row: DVec4) -> Vec4 {
+    const LARGEST: f64 = 1e15;
+    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-LARGEST, LARGEST) as f32 };
+    Vec4::new(one(row.x), one(row.y), one(row.z), one(row.w))
 }
 
 #[cfg(test)]

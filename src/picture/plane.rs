@@ -2,12 +2,14 @@
 //! floor seen from its side.
 
 use super::camera::Lens;
-use super::layout::{Rectangle, Scale};
+use super::compose::LEVEL;
+use super::ears::Ears;
+use super::layout::{self, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;
-use crate::sim::contact::{self, Obstacle};
+use crate::sim::contact::{Obstacle, Shape};
 use glam::{DVec2, DVec3};
 
 /// Radius of a node (px in the reference picture).
@@ -20,12 +22,20 @@ const LEAST_ROOM: f64 = 18.0;
 const MANY_NODES: usize = 150;
 /// How far the floor reaches down (px in the reference picture).
 const FLOOR_DEPTH: f64 = 50.0;
+/// Floors whose normal rises or falls less than this are walls.
+const STEEP: f64 = 0.5;
+/// Between walls and the sides of the panel (px in the reference picture).
+const WALL_MARGIN: f64 = 4.0;
 /// Depth of the soft shadow on the floor (px in the reference picture).
 const SHADOW_DEPTH: f64 = 16.0;
+
+/// A pixel, and how far it is from the sides around it (px).
+type Place = (DVec2, f64);
 
 /// One panel in the plane.
 pub(super) struct Flat<'a> {
     pub(super) body: &'a Body,
+    pub(super) ears: &'a Ears,
     pub(super) position: &'a [DVec3],
     pub(super) turned_over: &'a [bool],
     pub(super) lens: &'a Lens,
@@ -35,11 +45,56 @@ pub(super) struct Flat<'a> {
 }
 
 impl Flat<'_> {
-    /// The floor, below the body.
-    pub(super) fn floor(&self, obstacles: &[Obstacle], marks: &mut Vec<Mark>) {
-        // Slopes and walls have no marks of their own yet.
-        let level = contact::ground(obstacles).filter(|(normal, _)| normal.y > 1.0 - 1e-9);
-        let Some((_, level)) = level else { return };
+    /// All floors, below the body.
+    pub(super) fn floors(&self, obstacles: &[Obstacle], marks: &mut Vec<Mark>) {
+        for obstacle in obstacles {
+            let Shape::Floor { normal, height } = obstacle.shape;
+            if normal.y > LEVEL { self.level(height, marks) } else { self.slope(normal, height, marks) }
+        }
+    }
+
+    /// A floor at any angle, also a wall or a ceiling: a line between the words, soft on the side that is solid.
+    fn slope(&self, normal: DVec3, height: f64, marks: &mut Vec<Mark>) {
+        let unit = self.scale.unit;
+        // The point of it nearest to the middle of what is seen.
+        let middle = DVec3::new(self.lens.eye.x, self.lens.eye.y, 0.0);
+        let Some(start) = self.pixel(middle + (height - normal.dot(middle)) * normal) else { return };
+        let along = DVec2::new(normal.y, normal.x);
+        let [left, top, width, height] = self.viewport.map(f64::from);
+        let mut clear = layout::clear_of_words(self.viewport, self.scale).map(f64::from);
+        if normal.y.abs() < STEEP {
+            // Beside the words there is room for walls, too.
+            (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
+        }
+        let Some([from, to]) = within(start, along, clear) else { return };
+        // Nothing of one panel appears in its neighbour.
+        let inward = along.perp();
+        let ends = [from, to].map(|at| start + at * along);
+        let reaches = ends.iter().flat_map(|end| {
+            [(end.x - left, inward.x, width), (end.y - top, inward.y, height)]
+                .map(|(at, step, length)| if step < 0.0 { at / -step } else { (length - at) / step.max(1e-9) })
+        });
+        let depth = reaches.fold(FLOOR_DEPTH * unit, f64::min).max(0.0);
+        let mut mark = |[from, to]: [f64; 2], [above, below]: [f64; 2], colour, shape| {
+            let corner = start + from * along - above * along.perp();
+            let rectangle = [corner.x, corner.y, to - from, above + below].map(narrow);
+            marks.push(Mark { rectangle, along: [along.x, along.y].map(narrow), colour, second: colour, shape });
+        };
+        mark([from, to], [0.0, depth], self.palette.hairline, MarkShape::Fading);
+        let room = 40.0 * unit;
+        let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
+        let near = pixels.filter(|&pixel| along.perp_dot(pixel - start) > -room).map(|pixel| along.dot(pixel - start));
+        let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
+        let (low, high) = ((low - room).max(from), (high + room).min(to));
+        if high > low {
+            mark([low, high], [0.0, (SHADOW_DEPTH * unit).min(depth)], self.palette.shadow, MarkShape::Shadow);
+        }
+        let thickness = (1.6 * unit).round().max(1.0);
+        mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
+    }
+
+    /// A level floor.
+    fn level(&self, level: f64, marks: &mut Vec<Mark>) {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (pixel[1].round(), self.scale.margin(), self.scale.unit);
@@ -50,6 +105,7 @@ impl Flat<'_> {
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);
         let mark = |rectangle: [f64; 4], colour, shape| Mark {
             rectangle: rectangle.map(narrow),
+            along: Mark::UPRIGHT,
             colour,
             second: colour,
             shape,
@@ -84,14 +140,15 @@ impl Flat<'_> {
             let corners: Vec<_> = nodes.iter().filter_map(|&node| self.pixel(self.position[node as usize])).collect();
             if corners.len() == nodes.len() && nodes.len() > 2 {
                 let over = self.turned_over.get(element).copied().unwrap_or(false);
-                if over { turned_over.push(corners) } else { sound.push(corners) }
+                let place = self.place(nodes, &corners);
+                if over { turned_over.push((corners, place)) } else { sound.push(place) }
             }
         }
-        for corners in &sound {
-            self.sound_arrow(corners, &turned_over, marks);
+        for &place in &sound {
+            self.sound_arrow(place, &turned_over, marks);
         }
-        for corners in &turned_over {
-            self.alarm_arrow(corners, marks);
+        for &(_, place) in &turned_over {
+            self.alarm_arrow(place, marks);
         }
         let unit = self.scale.line();
         for pixel in self.position.iter().filter_map(|&point| self.pixel(point)) {
@@ -99,20 +156,25 @@ impl Flat<'_> {
         }
     }
 
+    /// Where an element's arrow stands: in the roomiest of its triangles if it is not convex.
+    fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Place {
+        let Some(ears) = self.ears.of(nodes) else { return roomiest(corners) };
+        let places = ears.iter().map(|ear| roomiest(&ear.map(|at| corners[at as usize])));
+        places.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((DVec2::ZERO, 0.0))
+    }
+
     /// The arrow of a sound element, unless a turned-over one lies over it.
-    fn sound_arrow(&self, corners: &[DVec2], turned_over: &[Vec<DVec2>], marks: &mut Vec<Mark>) {
+    fn sound_arrow(&self, (middle, room): Place, turned_over: &[(Vec<DVec2>, Place)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
-        let (middle, room) = roomiest(corners);
-        if room > LEAST_ROOM * unit && !turned_over.iter().any(|polygon| is_inside(polygon, middle)) {
+        if room > LEAST_ROOM * unit && !turned_over.iter().any(|(polygon, _)| is_inside(polygon, middle)) {
             let colour = self.palette.sign();
             self.round(middle, RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
         }
     }
 
     /// The arrow of a turned-over element, on a disc of its own.
-    fn alarm_arrow(&self, corners: &[DVec2], marks: &mut Vec<Mark>) {
+    fn alarm_arrow(&self, (middle, room): Place, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
-        let (middle, room) = roomiest(corners);
         if room > 0.55 * disc {
             let white = [255; 3];
             self.round(middle, disc, white, white, MarkShape::Node, marks);
@@ -139,13 +201,30 @@ impl Flat<'_> {
             && middle.y <= top + height - radius;
         if inside {
             let rectangle = [middle.x - radius, middle.y - radius, 2.0 * radius, 2.0 * radius].map(narrow);
-            marks.push(Mark { rectangle, colour, second, shape });
+            marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second, shape });
         }
     }
 
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.lens.project(point).map(|(pixel, _)| DVec2::from(pixel))
     }
+}
+
+/// From where to where a straight line, given by a point and a direction of length one, lies in a rectangle.
+fn within(start: DVec2, along: DVec2, [left, top, width, height]: [f64; 4]) -> Option<[f64; 2]> {
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (at, step, low, length) in [(start.x, along.x, left, width), (start.y, along.y, top, height)] {
+        if step.abs() < 1e-12 {
+            // It runs beside the rectangle or between these two sides.
+            if at < low || at > low + length {
+                return None;
+            }
+        } else {
+            let [one, other] = [low, low + length].map(|side| (side - at) / step);
+            (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
+        }
+    }
+    (to > from).then_some([from, to])
 }
 
 /// Whether a polygon winds around a point.
@@ -158,7 +237,7 @@ fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
 }
 
 /// The point among a few inside a polygon that is farthest from all its sides, and how far it is.
-fn roomiest(corners: &[DVec2]) -> (DVec2, f64) {
+fn roomiest(corners: &[DVec2]) -> Place {
     let centroid = corners.iter().sum::<DVec2>() / corners.len() as f64;
     let next = corners.iter().cycle().skip(1);
     let room = corners
@@ -192,6 +271,17 @@ mod tests {
         let corners = [DVec2::new(0.0, 0.0), DVec2::new(4.0, 0.0), DVec2::new(0.0, 3.0)];
         let (middle, room) = roomiest(&corners);
         assert!((middle - DVec2::ONE).length() < 1e-12 && (room - 1.0).abs() < 1e-12, "{middle} {room}");
+    }
+
+    #[test]
+    fn lines_are_cut_to_their_rectangle() {
+        let (rectangle, slant) = ([10.0, 20.0, 40.0, 30.0], DVec2::ONE.normalize());
+        assert_eq!(within(DVec2::new(0.0, 30.0), DVec2::X, rectangle), Some([10.0, 50.0]));
+        assert_eq!(within(DVec2::new(0.0, 10.0), DVec2::X, rectangle), None);
+        assert_eq!(within(DVec2::new(30.0, 0.0), -DVec2::Y, rectangle), Some([-50.0, -20.0]));
+        let [from, to] = within(DVec2::new(10.0, 20.0), slant, rectangle).unwrap();
+        assert!(from.abs() < 1e-12 && (to - 30.0 * 2.0_f64.sqrt()).abs() < 1e-12, "{from} {to}");
+        assert_eq!(within(DVec2::new(60.0, 0.0), slant, rectangle), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Closed surfaces of sets of elements: their triangles, edges and contours.
 
 use super::camera::Lens;
+use super::ears::Ears;
 use super::narrow::{narrow, narrow_point};
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::sim::body::Body;
@@ -37,6 +38,7 @@ pub(super) fn boundary(body: &Body, turned_over: &[bool], over: bool) -> Vec<Vec
 /// What is needed to turn faces into what a panel shows.
 pub(super) struct Surroundings<'a> {
     pub(super) body: &'a Body,
+    pub(super) ears: &'a Ears,
     pub(super) position: &'a [DVec3],
     pub(super) lens: &'a Lens,
     /// The panel's origin (m).
@@ -101,7 +103,9 @@ impl Surroundings<'_> {
     /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
     fn cut(&self, faces: &[Vec<u32>]) -> usize {
         let warp = |face: &Vec<u32>| match face[..] {
-            [a, b, c, d] => (self.at(a) - self.at(b) + self.at(c) - self.at(d)).length(),
+            [a, b, c, d] if self.ears.of(face).is_none() => {
+                (self.at(a) - self.at(b) + self.at(c) - self.at(d)).length()
+            }
             _ => 0.0,
         };
         let deviation = |face: &Vec<u32>| {
@@ -117,6 +121,9 @@ impl Surroundings<'_> {
     }
 
     fn patch(&self, face: &[u32], cut: usize) -> Patch {
+        if let Some(triangles) = self.ears.of(face) {
+            return Patch { triangles: triangles.to_vec(), points: face.iter().map(|&node| self.at(node)).collect() };
+        }
         match face[..] {
             [a, b, c, d] => bilinear([a, b, c, d].map(|node| self.at(node)), cut),
             _ => {
@@ -141,10 +148,11 @@ impl Surroundings<'_> {
             .iter()
             .map(|&node| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft))
             .collect();
-        let weights = weights(face.len(), patch.points.len());
+        let is_bilinear = face.len() == 4 && self.ears.of(face).is_none();
+        let weights = weights(face.len(), patch.points.len(), is_bilinear);
         for (point, weight) in patch.points.iter().zip(&weights) {
             let normal = match corners[..] {
-                [a, b, c, d] => bilinear_normal([a, b, c, d], weight.place),
+                [a, b, c, d] if is_bilinear => bilinear_normal([a, b, c, d], weight.place),
                 _ => newell(&corners),
             };
             let phase: f64 = weight.of_corner.iter().zip(&phases).map(|(weight, phase)| weight * phase).sum();
@@ -189,9 +197,14 @@ impl Surroundings<'_> {
         facing: &[bool],
         borders: &mut HashMap<(u32, u32, usize), Facing>,
     ) {
+        let ears = self.ears.of(face);
         for (side, [a, b]) in around(face).enumerate() {
+            let two = [side as u32, ((side + 1) % face.len()) as u32];
+            // The one triangle that has this side.
+            let ear = ears.and_then(|ears| ears.iter().position(|ear| two.iter().all(|corner| ear.contains(corner))));
             for piece in 0..cut {
                 let seen = match face.len() {
+                    _ if ears.is_some() => ear.is_none_or(|at| facing[at]),
                     4 => facing[border_triangle(side, piece, cut)],
                     3 => facing[0],
                     _ => facing[side],
@@ -274,8 +287,8 @@ struct Weight {
 }
 
 /// The weights of all points of a patch, in their order.
-fn weights(corners: usize, points: usize) -> Vec<Weight> {
-    if corners == 4 {
+fn weights(corners: usize, points: usize, is_bilinear: bool) -> Vec<Weight> {
+    if is_bilinear {
         let cut = points.isqrt() - 1;
         let place = |at: usize| [at % (cut + 1), at / (cut + 1)].map(|along| along as f64 / cut as f64);
         let weight = |[u, v]: [f64; 2]| {

@@ -104,6 +104,7 @@ impl Tally {
                 let y = bottom - side - up as f64 * (side + gap);
                 marks.push(Mark {
                     rectangle: [x, y, side, side].map(narrow),
+                    along: Mark::UPRIGHT,
                     colour: if over { palette.alarm } else { palette.tally },
                     second: palette.alarm_line,
                     shape: if over { MarkShape::Struck } else { MarkShape::Filled },
@@ -133,6 +134,7 @@ impl Tally {
         let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.unit - height).round());
         let bar = |from: f64, length: f64, colour| Mark {
             rectangle: [left + from, top, length, height].map(narrow),
+            along: Mark::UPRIGHT,
             colour,
             second: palette.alarm_line,
             shape: MarkShape::Filled,

@@ -14,14 +14,16 @@ pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 #[repr(C)]
 struct Mark {
     rectangle: [f32; 4],
+    along: [f32; 2],
     colour: [u8; 4],
     second: [u8; 4],
     glyph: [u32; 2],
     shape: u32,
 }
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
-    wgpu::vertex_attr_array![0 => Float32x4, 1 => Unorm8x4, 2 => Unorm8x4, 3 => Uint32x2, 4 => Uint32];
+const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+    0 => Float32x4, 1 => Float32x2, 2 => Unorm8x4, 3 => Unorm8x4, 4 => Uint32x2, 5 => Uint32
+];
 
 /// The struct `Canvas` of the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -86,6 +88,7 @@ impl Overlay {
                     let [width, height] = raster.size.map(|length| length as f32);
                     marks.push(Mark {
                         rectangle: [x + raster.offset[0], y + raster.offset[1], width, height],
+                        along: picture::Mark::UPRIGHT,
                         colour: opaque(run.colour),
                         second: opaque(run.colour),
                         glyph: raster.at,
@@ -141,6 +144,7 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
 fn plain(mark: &picture::Mark) -> Mark {
     Mark {
         rectangle: mark.rectangle,
+        along: mark.along,
         colour: opaque(mark.colour),
         second: opaque(mark.second),
         glyph: [0; 2],
@@ -152,6 +156,7 @@ fn plain(mark: &picture::Mark) -> Mark {
             MarkShape::Clockwise => 5,
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
+            MarkShape::Smooth => 8,
         },
     }
 }

@@ -45,7 +45,10 @@ pub struct Camera {
     pub target: DVec3,
     /// Distance from it (m).
     pub distance: f64,
-    /// Whether the camera rises and draws back with the highest body shown, alike in all panels. What it does then
+    /// How much higher the body starts than it would stand, where target and distance were chosen to show both (m).
+    pub rise: f64,
+    /// Whether the camera rises and draws back with the highest body shown, alike in all panels; without a level floor
+    /// it sinks with the lowest. What it does then
     /// is a function of the frame alone, so that any frame can be drawn by itself.
     pub follow: bool,
 }

@@ -1,7 +1,7 @@
 //! What a picture shows, told by its numbers: no device needed.
 
 use super::fig4b;
-use localshape::picture::{Composer, LineKind, Mesh, Picture, compose};
+use localshape::picture::{Composer, LineKind, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
@@ -144,7 +144,10 @@ fn a_run_that_blew_up_says_when() {
     snapshot.position[9].x = f64::MAX;
     snapshot.diagnostics.shape_error = f64::INFINITY;
     let picture = compose(&scene, &frame);
-    assert!(picture.words.iter().any(|run| run.text == "diverged at 35 ms"));
+    let said = picture.words.iter().find(|run| run.text == "diverged at 35 ms").expect("the word");
+    assert!(said.weight == Weight::SemiBold && said.colour == picture.palette.text && said.size >= 16.0);
+    let beside = |run: &&TextRun| (run.baseline - said.baseline).abs() < 26.0 && run.span[0] >= 640.0 && *run != said;
+    assert!(picture.words.iter().filter(beside).all(|run| run.span[1] < said.span[0]));
     assert!(numbers(&picture).iter().all(|number| number.is_finite()));
     // It pulls no camera along: the other panel is seen as if nothing had happened.
     assert_eq!(picture.panels[0].sight.eye, compose(&scene, &fig4b(0).1).panels[0].sight.eye);
@@ -191,4 +194,191 @@ fn few_elements_are_counted_in_squares() {
     let (scene, frame) = fig4b(0);
     let picture = compose(&scene, &frame);
     assert_eq!(picture.marks.len(), 1 + 2 * 27);
+}
+
+/// The scene of Fig. 4(b) with all lengths and speeds times a factor.
+fn scaled(factor: f64) -> (Scene, Frame) {
+    let (mut scene, mut frame) = fig4b(4);
+    let mut body = (*scene.body).clone();
+    body.rest.iter_mut().for_each(|at| *at *= factor);
+    scene.body = std::sync::Arc::new(body);
+    scene.initial.position.iter_mut().chain(&mut scene.initial.velocity).for_each(|at| *at *= factor);
+    scene.view.side *= factor;
+    scene.view.camera.target *= factor;
+    scene.view.camera.distance *= factor;
+    for run in &mut frame.runs {
+        run.snapshot.position.iter_mut().chain(&mut run.snapshot.velocity).for_each(|at| *at *= factor);
+    }
+    (scene, frame)
+}
+
+#[test]
+fn a_picture_is_the_same_in_any_unit_of_length() {
+    let (scene, frame) = fig4b(4);
+    let expected = compose(&scene, &frame);
+    for factor in [1e-6, 1e-5, 0.1, 1.0, 1e3, 1e6] {
+        let (scene, frame) = scaled(factor);
+        let picture = compose(&scene, &frame);
+        for (panel, expected) in picture.panels.iter().zip(&expected.panels) {
+            let rows = |panel: &localshape::picture::Panel| panel.sight.clip.to_cols_array();
+            for (a, b) in rows(panel).into_iter().zip(rows(expected)) {
+                assert!((a - b).abs() <= 1e-5 * b.abs().max(1.0), "{factor}: {a} for {b}");
+            }
+            let near = [panel.sight.near, expected.sight.near];
+            assert!((near[0] / near[1] - 1.0).abs() < 1e-5, "{factor}: {near:?}");
+            assert_eq!(panel.region, expected.region, "{factor}");
+            assert_eq!(panel.lines.len(), expected.lines.len(), "{factor}");
+            for (a, b) in panel.lines.iter().zip(&expected.lines) {
+                let apart = |a: [f32; 3], b: [f32; 3]| glam::Vec3::from(a).distance(glam::Vec3::from(b));
+                assert!(a.kind == b.kind && apart(a.from, b.from).max(apart(a.to, b.to)) < 1e-4, "{factor}: {a:?}");
+                // What is compared with the near plane is in front of it.
+                let distance = |point: [f32; 3]| (panel.sight.clip * glam::Vec3::from(point).extend(1.0)).w;
+                assert!(distance(a.from) > panel.sight.near && distance(a.to) > panel.sight.near, "{factor}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lines_of_large_bodies_in_the_plane_are_before_the_near_plane() {
+    let text = "time = { duration = 1, step = 'T/50', frames_per_second = 60 }
+        body = { lattice = { cells = [60, 4], side = 0.01 } }
+        [[run]]
+        name = 'a'
+        model = { kind = 'shape-based', stiffness = 1e3 }";
+    let scene = Scene::parse(text, "plane.toml", &Limits::default()).expect("sound");
+    let sight = compose(&scene, &Sequence::new(&scene, &[0]).frame(0)).panels[0].sight;
+    assert!(sight.near < sight.clip.w_axis.w, "{sight:?}");
+}
+
+#[test]
+fn a_dropped_body_and_the_floor_below_it_are_in_the_first_picture() {
+    for lowest in [0.0, 0.02, 0.1, 0.2, 0.4, 1.0, 3.0, 30.0] {
+        for elevation in [0.0, 17_f64.to_radians(), 1.0, 1.5] {
+            for size in [[1280, 720], [600, 600], [720, 1280], [333, 200]] {
+                let (mut scene, frame) = scene(|text| {
+                    let camera = format!("camera = {{ elevation = {elevation} }}");
+                    text.replace("lowest = 0.0", &format!("lowest = {lowest:?}"))
+                        .replace("camera = { follow = true }", &camera)
+                });
+                scene.view.size = size;
+                let picture = compose(&scene, &frame);
+                let words = |upper: bool, panel: &localshape::picture::Panel| {
+                    let middle = panel.viewport[3] as f32 / 2.0;
+                    let lines = picture.words.iter().filter(move |run| (run.baseline < middle) == upper);
+                    lines.map(move |run| if upper { run.baseline } else { run.baseline - 0.7 * run.size })
+                };
+                for panel in &picture.panels {
+                    let [left, _, width, height] = panel.viewport.map(|length| length as f32);
+                    let below = words(true, panel).fold(0.0, f32::max);
+                    let above = words(false, panel).fold(height, f32::min);
+                    let fallen = lowest as f32 / scene.view.side as f32;
+                    for vertex in &panel.sound.vertices {
+                        for drop in [0.0, fallen] {
+                            let point = glam::Vec3::from(vertex.position) - drop * glam::Vec3::Y;
+                            let at = panel.sight.clip * point.extend(1.0);
+                            let x = left + (0.5 + 0.5 * at.x / at.w) * width;
+                            let y = (0.5 - 0.5 * at.y / at.w) * height;
+                            let inside = left < x && x < left + width && below < y && y < above;
+                            assert!(inside, "{lowest} {elevation} {size:?}: {x} {y} in {below} {above}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
+    let floor = |normal: &str| format!("[[obstacle]]\nkind = 'floor'\nnormal = {normal}\nheight = -0.3\n");
+    let normals = ["[0, 1]", "[1, 1]", "[-1, 3]", "[1, 0]", "[-1, 0]", "[0, -1]", "[2, -1]"];
+    for normal in normals {
+        let text = format!(
+            "time = {{ duration = 1, step = 'T/50', frames_per_second = 60 }}
+            [body]
+            lattice = {{ cells = [3, 3], side = 0.1 }}
+            [[run]]
+            name = 'a'
+            model = {{ kind = 'shape-based', stiffness = 1e3 }}
+            {}[view.camera]
+            target = [0, 0]
+            distance = 4",
+            floor(normal)
+        );
+        let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+        let line = if normal == "[0, 1]" { MarkShape::Filled } else { MarkShape::Smooth };
+        for shape in [line, MarkShape::Fading] {
+            assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
+        }
+        let Some(obstacle) = scene.obstacles.first() else { panic!("{normal}") };
+        let localshape::sim::contact::Shape::Floor { normal: out, height } = obstacle.shape;
+        for mark in &picture.under {
+            let [left, top, width, depth] = mark.rectangle;
+            let [x, y] = mark.along;
+            for (across, down) in [(0.0, 0.0), (width, 0.0), (0.0, depth), (width, depth)] {
+                let corner = [left + across * x - down * y, top + across * y + down * x];
+                assert!((0.0..=1280.0).contains(&corner[0]) && (0.0..=720.0).contains(&corner[1]), "{normal} {mark:?}");
+            }
+            // Its solid side lies against the normal, and its line on the floor.
+            assert!((glam::DVec2::new((-y).into(), x.into()) - glam::DVec2::new(-out.x, out.y)).length() < 1e-6);
+            let sight = picture.panels[0].sight;
+            let at = |pixel: [f32; 2]| {
+                let [x, y] = [pixel[0] / 640.0 - 1.0, 1.0 - pixel[1] / 360.0];
+                let clip = sight.clip;
+                let point = [(x - clip.w_axis.x) / clip.x_axis.x, (y - clip.w_axis.y) / clip.y_axis.y];
+                let [x, y] = point.map(|sides| f64::from(sides) * scene.view.side);
+                glam::DVec3::new(x, y, 0.0) + scene.view.camera.target
+            };
+            let off = out.dot(at([left, top])) - height;
+            let pixel = f64::from(1.6 / sight.focal) * scene.view.side;
+            assert!(off.abs() < pixel, "{normal}: {off} {pixel}");
+        }
+    }
+}
+
+/// A scene of one body with one element of all its nodes.
+fn one_element(nodes: &str, count: usize) -> (Scene, Picture) {
+    let all: Vec<_> = (0..count).collect();
+    let text = format!(
+        "time = {{ duration = 1, step = 'T/50', frames_per_second = 60 }}
+        [body]
+        nodes = {nodes}
+        elements = [{all:?}]
+        [[run]]
+        name = 'a'
+        model = {{ kind = 'shape-based', stiffness = 1e3 }}"
+    );
+    let scene = Scene::parse(&text, "one.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+    (scene, picture)
+}
+
+#[test]
+fn a_concave_polygon_is_filled_to_its_own_sides() {
+    for (nodes, count, area) in
+        [("[[0,0],[2,0],[2,2],[1,0.3],[0,2]]", 5, 2.3), ("[[0,0],[2,-1],[0.5,0],[2,1]]", 4, 0.5)]
+    {
+        let (scene, picture) = one_element(nodes, count);
+        let panel = &picture.panels[0];
+        let at = |index: u32| glam::Vec3::from(panel.sound.vertices[index as usize].position);
+        let areas = panel.sound.triangles.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).z);
+        let areas: Vec<_> = areas.map(|sides| f64::from(sides) * scene.view.side * scene.view.side).collect();
+        assert!(areas.iter().all(|&area| area > 0.0) && areas.len() == count - 2, "{areas:?}");
+        assert!((areas.iter().sum::<f64>() - area).abs() < 1e-5, "{areas:?}");
+        for kind in [LineKind::Edge, LineKind::Contour] {
+            assert_eq!(panel.lines.iter().filter(|line| line.kind == kind).count(), count, "{kind:?}");
+        }
+    }
+}
+
+#[test]
+fn an_element_without_faces_is_drawn_from_its_middle() {
+    let nodes = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1]]";
+    let (_, picture) = one_element(nodes, 7);
+    let panel = &picture.panels[0];
+    assert_eq!(panel.lines.len(), 7);
+    assert!(panel.lines.iter().all(|line| line.kind == LineKind::Edge && line.from == panel.lines[0].from));
+    assert!(panel.region[2] > 50 && panel.region[3] > 50);
 }

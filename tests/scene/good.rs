@@ -97,12 +97,22 @@ fn what_is_not_said_has_its_documented_default() {
 }
 
 #[test]
-fn a_falling_body_is_looked_at_where_it_will_stand() {
+fn a_falling_body_is_looked_at_where_it_starts_and_where_it_will_stand() {
     let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\nlowest = 10\noffset = [3, 0, 0]\n";
-    let scene = good(&format!("{WORLD}{body}[[obstacle]]\nkind = 'floor'\nheight = -2"));
-    assert_eq!(scene.view.camera.target, DVec3::new(3.0, -1.5, 0.0));
+    let floor = "[[obstacle]]\nkind = 'floor'\nheight = -2";
+    let scene = good(&format!("{WORLD}{body}{floor}"));
+    let camera = &scene.view.camera;
+    assert_eq!((camera.target, camera.rise), (DVec3::new(3.0, 4.5, 0.0), 12.0));
+    assert!(camera.distance > 40.0, "{}", camera.distance);
+    // One that follows rises by itself.
+    let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera.follow = true"));
+    assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
+    // What is in the picture anyway moves nothing, nor does a body that nothing stops.
+    let low = body.replace("lowest = 10", "lowest = -1.9");
+    let scene = good(&format!("{WORLD}{low}{floor}"));
+    assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
     let scene = good(&format!("{WORLD}{body}"));
-    assert_eq!(scene.view.camera.target, DVec3::new(3.0, 10.5, 0.0));
+    assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, 10.5, 0.0), 8.5));
 }
 
 #[test]

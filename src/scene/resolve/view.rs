@@ -17,6 +17,10 @@ const FIELD_OF_VIEW: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 /// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
 const DISTANCE: f64 = 8.5;
 
+/// How far bodies may reach from the point looked at, sideways, up and down, in heights of the picture at the reference
+/// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
+const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
+
 /// How many panels stand beside each other unless the scene says so.
 const COLUMNS: usize = 3;
 
@@ -35,24 +39,36 @@ pub(super) fn resolve(
         let message = format!("`view.camera.{key}` is given, but a body in the plane is looked at from the front");
         report.at_key(&camera(key), message, format!("take `{key}` out"));
     }
-    let target = match &typed.camera.target {
-        Some(target) => vector(target, dimension, &camera("target"), report)?,
-        None => standing(&body.initial.position, obstacles),
-    };
     let (azimuth, elevation) = match dimension {
         Dimension::Plane => (0.0, 0.0),
         Dimension::Space => (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(ELEVATION)),
     };
-    let camera = Camera {
+    let start = &body.initial.position;
+    let standing = standing(start, obstacles);
+    let mut chosen = Camera {
         azimuth,
         elevation,
         field_of_view: typed.camera.field_of_view.unwrap_or(FIELD_OF_VIEW),
-        target,
+        target: standing,
         distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body)),
+        rise: 0.0,
         follow: typed.camera.follow,
     };
+    match &typed.camera.target {
+        Some(target) => chosen.target = vector(target, dimension, &camera("target"), report)?,
+        // A camera that follows shows by itself how high a body is.
+        None if chosen.follow => {}
+        None => show_start(&mut chosen, start, dimension, typed.camera.distance.is_some()),
+    }
     let columns = typed.columns.map_or(COLUMNS, |columns| columns as usize).clamp(1, runs.max(1));
-    Some(View { size: typed.size, theme: typed.theme, camera, clock: typed.clock.clone(), columns, side: body.side })
+    Some(View {
+        size: typed.size,
+        theme: typed.theme,
+        camera: chosen,
+        clock: typed.clock.clone(),
+        columns,
+        side: body.side,
+    })
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
@@ -69,4 +85,36 @@ fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     let Some((normal, height)) = contact::ground(obstacles) else { return middle };
     let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
     DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
+}
+
+/// Moves a camera that looks at where a body will stand so that the body is also in the picture where it starts. A start
+/// that is in the picture already changes nothing.
+fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_distance: bool) {
+    let (low, high) = bounds(start);
+    let drop = camera.target - (low + high) / 2.0;
+    let shown: Vec<_> = start.iter().flat_map(|&at| [at, at + drop]).collect();
+    if least_distance(camera, start, dimension) <= camera.distance {
+        return;
+    }
+    camera.rise = -drop.y;
+    camera.target -= drop / 2.0;
+    if !keep_distance {
+        camera.distance = camera.distance.max(least_distance(camera, &shown, dimension));
+    }
+}
+
+/// The least distance at which a camera has points in the picture (m).
+fn least_distance(camera: &Camera, points: &[DVec3], dimension: Dimension) -> f64 {
+    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    let up = towards.cross(right);
+    let [aside, above, below] = ROOM.map(|share| share * 2.0 * libm::tan(camera.field_of_view / 2.0));
+    let least = points.iter().map(|&point| {
+        let from_target = point - camera.target;
+        let (x, y) = (from_target.dot(right), from_target.dot(up));
+        let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
+        depth + (x.abs() / aside).max(y / above).max(-y / below)
+    });
+    least.fold(0.0, f64::max)
 }
