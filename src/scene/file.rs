@@ -247,9 +247,11 @@ pub(super) struct CameraFile {
     /// The point looked at (m). Default: the middle of the body as it would stand on the first floor below it, or
     /// where it starts if there is none.
     pub(super) target: Option<Coordinates>,
-    /// Distance from that point (m). Default: 8.5 times the largest side of the box around the body at the start.
+    /// Distance from that point (m). Default: 8.5 times the largest side of the box around the body at the start, and
+    /// more if the body starts higher than that shows.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) distance: Option<f64>,
-    /// Whether the camera rises and draws back with the highest body shown, alike in all panels.
+    /// Whether the camera rises and draws back with the highest body shown, alike in all panels. Where there is no
+    /// floor to stand on, it sinks with the lowest.
     pub(super) follow: bool,
 }

@@ -3,7 +3,7 @@
 use super::Scene;
 use super::words::{count, list};
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::words;
 use crate::sim::world::cycle;
 use glam::DVec3;
@@ -78,6 +78,11 @@ impl Scene {
             step: run.step,
             steps: self.frame_step(at, last),
         };
+        let ground = contact::ground(&self.obstacles);
+        let is_drawn = |obstacle: &Obstacle| {
+            let Shape::Floor { normal, height } = obstacle.shape;
+            body.dimension == Dimension::Plane || ground == Some((normal, height))
+        };
         Summary {
             title: self.title.clone(),
             name: self.name.clone(),
@@ -92,7 +97,7 @@ impl Scene {
             frames_per_second: self.frames_per_second,
             cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
-            obstacles: self.obstacles.iter().map(|obstacle| describe(obstacle, &coordinates)).collect(),
+            obstacles: self.obstacles.iter().map(|one| describe(one, is_drawn(one), &coordinates)).collect(),
             picture: self.picture(),
         }
     }
@@ -129,10 +134,12 @@ fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
-fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
+/// An obstacle in words. In space only the ground has a picture yet.
+fn describe(obstacle: &Obstacle, is_drawn: bool, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
     let Obstacle { shape: Shape::Floor { normal, height }, restitution, friction } = obstacle;
     let normal = vector(&coordinates(*normal));
-    format!("floor at {} m along {normal}, e = {}, μ = {}", short(*height), short(*restitution), short(*friction))
+    let note = if is_drawn { "" } else { " (not drawn)" };
+    format!("floor at {} m along {normal}, e = {}, μ = {}{note}", short(*height), short(*restitution), short(*friction))
 }
 
 fn vector(coordinates: &[f64]) -> String {

@@ -29,6 +29,26 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     ([info.width, info.height], bytes)
 }
 
+/// A folder whose frames differ in size or runs would be no sequence.
+#[test]
+fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.run("render small.toml --samples 1 --frames 0-2").good();
+    place.run("render small.toml --samples 1 --frames 3").good();
+    for command in ["--size 80x60", "--only Mass-spring"] {
+        let ran = place.run(&format!("render small.toml --samples 1 --frames 1 {command}"));
+        ran.bad(2, &["output/small holds 4 frames of this scene of 96×64 pixels", "-o", "--overwrite"]);
+    }
+    assert_eq!(place.names("output/small").len(), 2 + 4);
+    place.run("render small.toml --samples 1 --frames 1 --size 80x60 --overwrite").good();
+    assert_eq!(place.names("output/small"), ["diagnostics.csv", "frame_00001.png", "run.json"]);
+    // Numbers go beside any frames of the scene.
+    place.run("simulate small.toml").good();
+}
+
 #[test]
 fn frames_diagnostics_and_summary() {
     if !can_draw() {
