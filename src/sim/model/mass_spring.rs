@@ -5,7 +5,7 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
 
-use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, blocks};
+use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, ElementKind, State};
 use crate::sim::census::Census;
 use crate::sim::topology::{self, Springs};
@@ -46,10 +46,8 @@ pub struct MassSpring {
     pub springs: Vec<[u32; 2]>,
 }
 
-impl Parameters {
-    /// # Errors
-    /// Both kinds of damping at once, or no spring at all.
-    pub fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<MassSpring, Misfit> {
+impl TypedModel for Parameters {
+    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
         let mut springs = match (self.springs, listed) {
             (None, Some(listed)) => listed.to_vec(),
             (named, _) => topology::springs(named.unwrap_or(DEFAULT), &body.elements, &body.kinds),
@@ -64,14 +62,14 @@ impl Parameters {
             return Err(Misfit { key: "springs", message });
         }
         let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
-        Ok(MassSpring { stiffness: self.stiffness, damping, springs })
+        Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs }))
     }
 
-    /// What the model will need on a body, at most. Measured on a block of 64³ cubes: 71 bytes for each spring at work.
-    pub(super) fn needs(&self, census: &Census) -> Needs {
+    fn needs(&self, census: &Census) -> Needs {
         /// A pair of nodes in a list that grows by doubling (bytes).
         const PAIR: u128 = 16;
         /// Its nodes twice, its natural length, its force, its two entries in the sums, and their sorting (bytes).
+        /// Measured on a block of 64³ cubes: 71.
         const SPRING: u128 = 75;
         let (written, springs) = match (self.springs, census.springs) {
             (None, Some(listed)) => (listed, listed),

@@ -1,7 +1,7 @@
 //! The elastic models. One file each; the list below is all that the rest of the crate knows of them.
 //!
-//! To add a model, write a file with a `Parameters` (what a scene types), a resolved description that implements
-//! [`ElasticModel`], and a worker that implements [`ForceModel`]; then add it to [`ModelParameters`].
+//! To add a model, write a file with `Parameters`, what a scene types, which implement `TypedModel`, a resolved
+//! description that implements [`ElasticModel`], and a worker that implements [`ForceModel`]; then name it in the list.
 
 mod blocks;
 pub mod mass_spring;
@@ -16,14 +16,32 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// The list of elastic models, as a scene names them: `model = { kind = "…", … }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum ModelParameters {
+/// Makes [`ModelParameters`] from a list of models.
+macro_rules! models {
+    ($($(#[$doc:meta])* $name:ident => $module:ident,)*) => {
+        /// What a scene types for a model: `model = { kind = "…", … }`.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(tag = "kind", rename_all = "kebab-case")]
+        pub enum ModelParameters {
+            $($(#[$doc])* $name($module::Parameters),)*
+        }
+
+        impl ModelParameters {
+            fn typed(&self) -> &dyn TypedModel {
+                match self {
+                    $(Self::$name(parameters) => parameters,)*
+                }
+            }
+        }
+    };
+}
+
+// The list of elastic models.
+models! {
     /// Elasticity of volume elements that keep their shape (paper, section 3).
-    ShapeBased(shape_based::Parameters),
+    ShapeBased => shape_based,
     /// Springs between pairs of nodes (paper, section 2).
-    MassSpring(mass_spring::Parameters),
+    MassSpring => mass_spring,
 }
 
 impl ModelParameters {
@@ -32,19 +50,22 @@ impl ModelParameters {
     /// # Errors
     /// Parameters that contradict each other or do not fit the body.
     pub fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        Ok(match self {
-            Self::ShapeBased(parameters) => Arc::new(parameters.resolve(body)?),
-            Self::MassSpring(parameters) => Arc::new(parameters.resolve(body, springs)?),
-        })
+        self.typed().resolve(body, springs)
     }
 
     /// What the model will need on a body, at most; asked before the body is made.
     pub fn needs(&self, census: &Census) -> Needs {
-        match self {
-            Self::ShapeBased(parameters) => parameters.needs(census),
-            Self::MassSpring(parameters) => parameters.needs(census),
-        }
+        self.typed().needs(census)
     }
+}
+
+/// What a scene types for one model.
+trait TypedModel {
+    /// See [`ModelParameters::resolve`].
+    fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit>;
+
+    /// See [`ModelParameters::needs`].
+    fn needs(&self, census: &Census) -> Needs;
 }
 
 /// What one run needs of memory besides the state of its nodes.

@@ -9,7 +9,7 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, blocks};
+use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, State};
 use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linearised, planar};
@@ -52,19 +52,16 @@ pub struct ShapeBased {
     pub passes: u32,
 }
 
-impl Parameters {
-    /// # Errors
-    /// Both kinds of damping at once.
-    pub fn resolve(&self, body: &Body) -> Result<ShapeBased, Misfit> {
-        Ok(ShapeBased {
+impl TypedModel for Parameters {
+    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        Ok(Arc::new(ShapeBased {
             stiffness: self.stiffness,
             damping: super::damping(self.damping, self.damping_ratio, self.stiffness, body)?,
             passes: self.passes.unwrap_or(2),
-        })
+        }))
     }
 
-    /// What the model will need on a body.
-    pub(super) fn needs(&self, census: &Census) -> Needs {
+    fn needs(&self, census: &Census) -> Needs {
         /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
         const CORNER: u128 = 70;
         let corners = census.corners();
