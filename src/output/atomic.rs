@@ -103,9 +103,15 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
         let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
-        if entry.file_name().to_str().is_some_and(hidden) && File::open(entry.path()).is_ok_and(|file| claim(&file)) {
+        if !entry.file_name().to_str().is_some_and(hidden) {
+            continue;
+        }
+        let Ok(file) = File::open(entry.path()) else { continue };
+        if claim(&file) {
+            // Still locked: whoever is just beginning this file must not get it before it is gone.
             remove(&entry.path())?;
         }
+        drop(file);
     }
     Ok(())
 }
