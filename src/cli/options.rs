@@ -11,8 +11,8 @@ pub(super) struct SceneOptions {
     #[arg(value_name = "SCENE", required = true, value_hint = ValueHint::FilePath)]
     pub(super) scenes: Vec<PathBuf>,
 
-    /// Accept scenes beyond the limits that guard against slips of the keyboard; that of 32-bit indices, some 178
-    /// million hexahedra, remains
+    /// Accept scenes beyond the limits that guard against slips of the keyboard, as far as the memory goes and at most
+    /// 4294967295 nodes or elements
     #[arg(long)]
     pub(super) allow_large: bool,
 }

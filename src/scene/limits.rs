@@ -77,11 +77,13 @@ impl Demand {
         self.body.nodes.saturating_mul(48).saturating_mul(self.runs.len() as u128)
     }
 
-    /// The longest list that 32-bit indices must count: of nodes, of the corners of all faces before they are matched,
-    /// or of what a model keeps.
-    fn longest_list(&self) -> u128 {
-        let body = self.body.nodes.max(self.body.corners()).max(self.body.face_corners());
-        self.runs.iter().fold(body, |longest, run| longest.max(run.indices))
+    /// Why this machine cannot hold it, if it cannot: that much memory is asked for, and given back without being
+    /// touched. An allocation that failed later would end the program without a word.
+    pub(super) fn denied(&self) -> Option<Excess> {
+        let bytes = usize::try_from(self.bytes()).unwrap_or(usize::MAX);
+        Vec::<u8>::new().try_reserve_exact(bytes).err()?;
+        let message = format!("this takes about {} of memory, which this machine does not give", size(self.bytes()));
+        Some(Excess { message, help: "make the body smaller, or take a larger machine".to_owned(), run: None })
     }
 
     /// Why this is too much, if it is, and what to do.
@@ -96,9 +98,9 @@ impl Demand {
         };
         let (memory, frame) = (size(self.bytes()), size(self.bytes_per_frame()));
         let asked = format!("this makes {parts}, about {memory} of memory and {frame} for the states of each frame");
-        let indices = self.longest_list() > u128::from(u32::MAX);
+        let indices = self.body.nodes.max(self.body.count()) > u128::from(u32::MAX);
         let message = if indices {
-            format!("{asked}: more than 32-bit indices can count")
+            format!("{asked}: more nodes or elements than 32-bit indices can count")
         } else if self.body.nodes > u128::from(limits.nodes) {
             format!("{asked}; the limit is {} nodes", count(limits.nodes.into()))
         } else if self.bytes() > u128::from(limits.memory) {
@@ -178,17 +180,22 @@ mod tests {
     }
 
     #[test]
-    fn lists_of_faces_and_of_springs_must_be_counted_by_32_bits() {
-        let beyond = |dimension, corners, count, model| {
-            listed(dimension, corners, count, model).beyond(&Limits::NONE).map(|excess| excess.message)
+    fn nodes_and_elements_must_be_counted_by_32_bits() {
+        let beyond = |corners, count| {
+            let demand = listed(Dimension::Space, corners, count, model("'shape-based'"));
+            demand.beyond(&Limits::NONE).map(|excess| excess.message)
         };
-        // Six faces of four corners each.
-        let hexahedra = |count| beyond(Dimension::Space, 8, count, model("'shape-based'"));
-        assert_eq!(hexahedra((1 << 32) / 24), None);
-        assert!(hexahedra((1 << 32) / 24 + 1).unwrap().contains("32-bit"));
-        let springs = |corners| beyond(Dimension::Plane, corners, 1, model("'mass-spring'\nsprings = 'all'"));
-        assert_eq!(springs(65_000), None);
-        assert!(springs(66_000).unwrap().contains("32-bit"));
+        assert_eq!(beyond(8, (1 << 32) - 1), None);
+        assert!(beyond(8, 1 << 32).unwrap().contains("32-bit"));
+        // A thousand cells a side can be counted, if they are allowed.
+        assert_eq!(block(&[1000, 1000, 1000], &[model("'shape-based'")]).beyond(&Limits::NONE), None);
+    }
+
+    #[test]
+    fn what_no_machine_gives_is_said_beforehand() {
+        let demand = listed(Dimension::Space, 8, 1 << 60, model("'shape-based'"));
+        assert!(demand.denied().unwrap().message.contains("which this machine does not give"));
+        assert_eq!(block(&[1, 1, 1], &[model("'shape-based'")]).denied(), None);
     }
 
     #[test]

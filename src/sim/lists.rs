@@ -3,7 +3,7 @@
 /// Lists of indices of varying length, stored one behind the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IndexLists {
-    offsets: Vec<u32>,
+    offsets: Vec<usize>,
     indices: Vec<u32>,
 }
 
@@ -17,7 +17,7 @@ impl IndexLists {
     /// Appends one list.
     pub fn push(&mut self, list: &[u32]) {
         self.indices.extend_from_slice(list);
-        self.offsets.push(u32::try_from(self.indices.len()).expect("fewer than 2^32 indices"));
+        self.offsets.push(self.indices.len());
     }
 
     /// The number of lists.
@@ -32,7 +32,7 @@ impl IndexLists {
 
     /// Where list `at` stands in [`Self::indices`].
     pub fn range(&self, at: usize) -> std::ops::Range<usize> {
-        self.offsets[at] as usize..self.offsets[at + 1] as usize
+        self.offsets[at]..self.offsets[at + 1]
     }
 
     /// All indices, list after list.

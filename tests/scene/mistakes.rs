@@ -461,7 +461,7 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
         SPACE,
         "[1, 1, 1]",
         "[4000000000, 4000000000, 4000000000]",
-        &[(5, 21, "more than 32-bit indices can count use fewer cells")],
+        &[(5, 21, "more nodes or elements than 32-bit indices can count use fewer cells")],
     );
     let none = Limits { nodes: 7, ..Limits::default() };
     assert!(matches!(Scene::parse(SPACE, "a", &none), Err(SceneError::Mistakes(_))));

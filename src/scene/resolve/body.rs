@@ -92,7 +92,7 @@ fn beyond(body: Census, runs: &[Option<RunFile>], limits: &Limits) -> Option<Exc
     let mut models: Vec<usize> = Vec::new();
     let known = runs.iter().enumerate().filter_map(|(at, run)| Some((at, &run.as_ref()?.model)));
     let demand = Demand::new(body, known.map(|(at, model)| (models.push(at), model).1));
-    let mut excess = demand.beyond(limits)?;
+    let mut excess = demand.beyond(limits).or_else(|| demand.denied())?;
     excess.run = excess.run.map(|run| models[run]);
     Some(excess)
 }

@@ -62,20 +62,20 @@ pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mu
 
 /// For each node, which entries of a list of forces are its own.
 pub(super) struct Gather {
-    entries: IndexLists,
+    entries: EntriesOfNode,
 }
 
 impl Gather {
     /// `node_of_entry` names the node on which each entry acts.
     pub(super) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
-        Self { entries: sorted_by_node(nodes, (0..).zip(node_of_entry)) }
+        Self { entries: EntriesOfNode::new(nodes, (0..).zip(node_of_entry)) }
     }
 
     /// Adds to each node its own entries, in rising order.
     pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
         for_each_one(forces, &|node, force| {
-            for &entry in &self.entries[node] {
-                *force += entries[entry as usize];
+            for &entry in self.entries.of(node) {
+                *force += entries[entry];
             }
         });
     }
@@ -84,38 +84,53 @@ impl Gather {
 /// For each node, which springs pull at it, and in which direction.
 pub(super) struct SignedGather {
     /// Twice the index of the spring, plus one at its second node.
-    entries: IndexLists,
+    entries: EntriesOfNode,
 }
 
 impl SignedGather {
     pub(super) fn new(nodes: usize, springs: &[[u32; 2]]) -> Self {
-        let ends = (0u32..).zip(springs).flat_map(|(at, &[i, j])| [(2 * at, i), (2 * at + 1, j)]);
-        Self { entries: sorted_by_node(nodes, ends) }
+        let ends = (0..).zip(springs).flat_map(|(at, &[i, j])| [(2 * at, i), (2 * at + 1, j)]);
+        Self { entries: EntriesOfNode::new(nodes, ends) }
     }
 
     /// Adds to each node the forces of its springs, in rising order, reversed at a spring's second node.
     pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
         for_each_one(forces, &|node, force| {
-            for &entry in &self.entries[node] {
-                let spring = entries[(entry / 2) as usize];
+            for &entry in self.entries.of(node) {
+                let spring = entries[entry / 2];
                 *force += if entry % 2 == 0 { spring } else { -spring };
             }
         });
     }
 }
 
-/// The entries of each node, each node's in the order given.
-fn sorted_by_node(nodes: usize, entries: impl Iterator<Item = (u32, u32)>) -> IndexLists {
-    let mut pairs: Vec<_> = entries.map(|(entry, node)| (node, entry)).collect();
-    pairs.sort_unstable();
-    let mut lists = IndexLists::default();
-    let (mut own, mut pairs) = (Vec::new(), pairs.into_iter().peekable());
-    for node in 0..nodes {
-        own.clear();
-        while let Some((_, entry)) = pairs.next_if(|pair| pair.0 as usize == node) {
-            own.push(entry);
+/// The entries of each node, node after node, each node's in rising order.
+struct EntriesOfNode {
+    /// Where each node's entries begin, and at last where all end.
+    starts: Vec<usize>,
+    entries: Vec<usize>,
+}
+
+impl EntriesOfNode {
+    /// Sorts rising entries by their nodes, which are fewer than `nodes`.
+    fn new(nodes: usize, entries: impl Iterator<Item = (usize, u32)> + Clone) -> Self {
+        let mut starts = vec![0; nodes + 1];
+        for (_, node) in entries.clone() {
+            starts[node as usize + 1] += 1;
         }
-        lists.push(&own);
+        for node in 0..nodes {
+            starts[node + 1] += starts[node];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![0; starts[nodes]];
+        for (entry, node) in entries {
+            sorted[next[node as usize]] = entry;
+            next[node as usize] += 1;
+        }
+        Self { starts, entries: sorted }
     }
-    lists
+
+    fn of(&self, node: usize) -> &[usize] {
+        &self.entries[self.starts[node]..self.starts[node + 1]]
+    }
 }

@@ -77,8 +77,6 @@ pub struct Needs {
     pub making: u128,
     /// As long as the run lasts (bytes).
     pub working: u128,
-    /// The longest list of 32-bit indices.
-    pub indices: u128,
 }
 
 /// A parameter that does not fit, said about one key of the model's table.

@@ -63,9 +63,8 @@ impl TypedModel for Parameters {
 
     fn needs(&self, census: &Census) -> Needs {
         /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
-        const CORNER: u128 = 70;
-        let corners = census.corners();
-        Needs { working: corners.saturating_mul(CORNER), indices: corners, ..Needs::default() }
+        const CORNER: u128 = 74;
+        Needs { working: census.corners().saturating_mul(CORNER), ..Needs::default() }
     }
 }
 
