@@ -63,7 +63,7 @@ impl TypedModel for Parameters {
 
     fn needs(&self, census: &Census) -> Needs {
         /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
-        const CORNER: u128 = 74;
+        const CORNER: u128 = 70;
         Needs { working: census.corners().saturating_mul(CORNER), ..Needs::default() }
     }
 }
