@@ -4,6 +4,7 @@
 mod body;
 mod elements;
 mod lattice;
+mod obstacles;
 mod runs;
 mod view;
 
@@ -14,7 +15,6 @@ use super::report::{Report, Way, written};
 use super::structure::Checked;
 use super::words::count;
 use crate::sim::body::Dimension;
-use crate::sim::contact::{Obstacle, Shape};
 use glam::DVec3;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
@@ -104,7 +104,7 @@ pub(super) fn resolve(
         (Some(typed), Some(dimension)) => vector(typed, dimension, &[Way::Key("gravity")], report),
         _ => Some(DVec3::ZERO),
     };
-    let obstacles = obstacles(&parts.obstacles, dimension, report);
+    let obstacles = obstacles::resolve(&parts.obstacles, dimension, report);
     if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
@@ -144,31 +144,6 @@ fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
         let help = "make `duration` or `frames_per_second` smaller".to_owned();
         report.at(&[Way::Key("time"), Way::Key("duration")], message, help);
     }
-}
-
-fn obstacles(
-    typed: &[Option<ObstacleFile>],
-    dimension: Option<Dimension>,
-    report: &mut Report<'_>,
-) -> Option<Vec<Obstacle>> {
-    let mut obstacles = Vec::new();
-    for (at, obstacle) in typed.iter().enumerate() {
-        let Some(ObstacleFile::Floor(floor)) = obstacle else { continue };
-        let path = [Way::Key("obstacle"), Way::Index(at), Way::Key("normal")];
-        let normal = match (&floor.normal, dimension) {
-            (None, _) => Some(DVec3::Y),
-            (Some(typed), Some(dimension)) => {
-                vector(typed, dimension, &path, report).and_then(|vector| direction(vector, &path, report))
-            }
-            (Some(_), None) => None,
-        };
-        obstacles.extend(normal.map(|normal| Obstacle {
-            shape: Shape::Floor { normal, height: floor.height },
-            restitution: floor.restitution,
-            friction: floor.friction,
-        }));
-    }
-    (obstacles.len() == typed.len()).then_some(obstacles)
 }
 
 /// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.

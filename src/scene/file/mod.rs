@@ -1,0 +1,108 @@
+//! What a scene file says, as typed. The field documentation below is what `localshape schema` prints, and the
+//! schema made from these types is what files are checked against: there is no second list of keys.
+//!
+//! A length is in metres, a time in seconds, a mass in kilograms, an angle in radians. Vectors have three
+//! coordinates in space and two in the plane.
+
+mod body;
+mod obstacle;
+mod view;
+
+pub(in crate::scene) use body::{BodyFile, RotationFile};
+pub(in crate::scene) use obstacle::ObstacleFile;
+pub(in crate::scene) use view::ViewFile;
+
+use super::step::FractionOfCycle;
+use crate::sim::integrate::Integrator;
+use crate::sim::model::ModelParameters;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A scene: one body, one world and several runs, each of which is one elastic model on that body.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SceneFile {
+    /// What the scene shows, in a few words. Default: the file's name.
+    #[schemars(length(max = 200))]
+    pub(in crate::scene) title: Option<String>,
+    /// Acceleration of gravity (m/s²), such as `[0, -9.8, 0]`. Default: none.
+    pub(in crate::scene) gravity: Option<Coordinates>,
+    /// How long, in which steps, and how often a frame is shown.
+    pub(in crate::scene) time: TimeFile,
+    /// The body, the same in all runs.
+    pub(in crate::scene) body: BodyFile,
+    /// The runs, at least one: each is one panel of the picture.
+    #[schemars(length(min = 1, max = 256))]
+    pub(in crate::scene) run: Vec<RunFile>,
+    /// What the body bounces off, in the order in which they act. Default: nothing.
+    #[serde(default)]
+    pub(in crate::scene) obstacle: Vec<ObstacleFile>,
+    /// How the scene is drawn.
+    #[serde(default)]
+    pub(in crate::scene) view: ViewFile,
+}
+
+/// A point or a vector: three coordinates in space, two in the plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub(in crate::scene) struct Coordinates(#[schemars(length(min = 2, max = 3))] pub(in crate::scene) Vec<f64>);
+
+/// A number greater than zero.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub(in crate::scene) struct Positive(#[schemars(extend("exclusiveMinimum" = 0))] pub(in crate::scene) f64);
+
+/// How long a scene lasts and how its time is cut up.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct TimeFile {
+    /// Simulated time (s); 0 shows the start alone.
+    #[schemars(range(min = 0.0))]
+    pub(in crate::scene) duration: f64,
+    /// Time step ΔT: seconds, or a fraction of the cycle T such as `"T/50"` or `"0.02 T"`. T = 2π√(m/k), with the
+    /// smallest mass of a node and the largest stiffness of all runs, so that one step serves every run.
+    #[serde(default)]
+    pub(in crate::scene) step: StepFile,
+    /// Frames per second of simulated time (1/s).
+    #[serde(default = "sixty")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) frames_per_second: f64,
+    /// How positions and velocities move from one step to the next.
+    #[serde(default)]
+    pub(in crate::scene) integrator: Integrator,
+}
+
+fn sixty() -> f64 {
+    60.0
+}
+
+/// A time step as typed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum StepFile {
+    /// A number of seconds.
+    Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// A fraction of the cycle T.
+    Cycles(#[schemars(extend("format" = "fraction-of-T"))] FractionOfCycle),
+}
+
+impl Default for StepFile {
+    fn default() -> Self {
+        Self::Cycles(FractionOfCycle::Divided(50.0))
+    }
+}
+
+/// One run: a model on the scene's body.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct RunFile {
+    /// Its name, shown over its panel and used by `--only` and in result files: different from all others.
+    #[schemars(length(min = 1, max = 80))]
+    pub(in crate::scene) name: String,
+    /// The elastic model and its parameters.
+    pub(in crate::scene) model: ModelParameters,
+    /// Time step of this run alone, written like that of `[time]` and with the same T. Default: that of `[time]`.
+    pub(in crate::scene) step: Option<StepFile>,
+    /// Integrator of this run alone. Default: that of `[time]`.
+    pub(in crate::scene) integrator: Option<Integrator>,
+}
