@@ -68,9 +68,12 @@ impl Scene {
     /// If the scene has no such run.
     pub fn world(&self, run: usize) -> World {
         let run = &self.runs[run];
-        let surroundings = Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone() };
+        let surroundings =
+            Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: self.grips.clone() };
         let stepping = Stepping { integrator: run.integrator, step: run.step };
-        World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping)
+        let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
+        world.show(self.view.colour.map(|scale| scale.field));
+        world
     }
 }
 

@@ -161,7 +161,7 @@ impl Lens {
 mod tests {
     use super::*;
     use crate::picture::narrow::narrow_point;
-    use crate::scene::Theme;
+    use crate::scene::{Theme, Visible};
 
     const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
 
@@ -180,6 +180,9 @@ mod tests {
             },
             clock: String::new(),
             columns: 2,
+            visible: Visible::default(),
+            colour: None,
+            arrow_scale: 1.0,
             side: 0.1,
         }
     }

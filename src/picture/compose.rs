@@ -129,7 +129,7 @@ impl<'a> Composer<'a> {
         let panels = layout::panels(size, frame.runs.len(), view.columns);
         let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
         let heights = centres.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
-        let level = contact::ground(&self.scene.obstacles).is_some_and(|(normal, _)| normal.y > LEVEL);
+        let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
         let framing = framing(&view.camera, heights, !level);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
         let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
@@ -261,7 +261,7 @@ impl<'a> Composer<'a> {
     fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (framing.base, view.side);
-        let (normal, height) = contact::ground(&self.scene.obstacles)?;
+        let (normal, height) = contact::ground(&self.scene.obstacles, 0.0)?;
         let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
         // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
         let usual = view.camera.distance.min(USUAL_DISTANCE * self.extent);

@@ -9,7 +9,7 @@ use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::contact::Obstacle;
 use glam::{DVec2, DVec3};
 
 /// Radius of a node (px in the reference picture).
@@ -48,7 +48,7 @@ impl Flat<'_> {
     /// All floors, below the body.
     pub(super) fn floors(&self, obstacles: &[Obstacle], marks: &mut Vec<Mark>) {
         for obstacle in obstacles {
-            let Shape::Floor { normal, height } = obstacle.shape;
+            let Some((normal, height)) = obstacle.floor(0.0) else { continue };
             if normal.y > LEVEL { self.level(height, marks) } else { self.slope(normal, height, marks) }
         }
     }

@@ -26,10 +26,11 @@ pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
-pub use view::{Camera, Theme, View};
+pub use view::{Camera, ColourScale, Theme, View, Visible};
 
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;
+use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use glam::DVec3;
@@ -58,6 +59,8 @@ pub struct Scene {
     pub runs: Vec<Run>,
     /// In the order in which they act.
     pub obstacles: Vec<Obstacle>,
+    /// What holds and drags nodes.
+    pub grips: Vec<Grip>,
     /// How it is drawn.
     pub view: View,
 }

@@ -3,7 +3,8 @@
 use super::Scene;
 use super::words::{count, list};
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{self, Obstacle, Shape};
+use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::grip::Grip;
 use crate::sim::words;
 use crate::sim::world::cycle;
 use glam::DVec3;
@@ -41,6 +42,8 @@ pub struct Summary {
     pub runs: Vec<RunSummary>,
     /// Each obstacle in a few words.
     pub obstacles: Vec<String>,
+    /// Each grip in a few words.
+    pub grips: Vec<String>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -78,11 +81,6 @@ impl Scene {
             step: run.step,
             steps: self.frame_step(at, last),
         };
-        let ground = contact::ground(&self.obstacles);
-        let is_drawn = |obstacle: &Obstacle| {
-            let Shape::Floor { normal, height } = obstacle.shape;
-            body.dimension == Dimension::Plane || ground == Some((normal, height))
-        };
         Summary {
             title: self.title.clone(),
             name: self.name.clone(),
@@ -97,7 +95,8 @@ impl Scene {
             frames_per_second: self.frames_per_second,
             cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
-            obstacles: self.obstacles.iter().map(|one| describe(one, is_drawn(one), &coordinates)).collect(),
+            obstacles: self.obstacles.iter().map(|one| describe(one, &coordinates)).collect(),
+            grips: self.grips.iter().map(grip).collect(),
             picture: self.picture(),
         }
     }
@@ -134,12 +133,44 @@ fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
-/// An obstacle in words. In space only the ground has a picture yet.
-fn describe(obstacle: &Obstacle, is_drawn: bool, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
-    let Obstacle { shape: Shape::Floor { normal, height }, restitution, friction } = obstacle;
-    let normal = vector(&coordinates(*normal));
-    let note = if is_drawn { "" } else { " (not drawn)" };
-    format!("floor at {} m along {normal}, e = {}, μ = {}{note}", short(*height), short(*restitution), short(*friction))
+/// An obstacle in words.
+fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> String {
+    let vector = |point: DVec3| vector(&coordinates(point));
+    let shape = match obstacle.shape {
+        Shape::Floor { normal, height } => format!("floor at {} m along {}", short(height), vector(normal)),
+        Shape::Plate { point, normal } => format!("plate at {} m, facing {}", vector(point), vector(normal)),
+        Shape::Sphere { centre, radius } => format!("sphere at {} m, radius {} m", vector(centre), short(radius)),
+        Shape::Capsule { from, to, radius } => {
+            format!("capsule from {} to {} m, radius {} m", vector(from), vector(to), short(radius))
+        }
+        Shape::Box { centre, half, .. } => format!("box at {} m, sides {} m", vector(centre), vector(2.0 * half)),
+    };
+    let (e, friction) = (short(obstacle.restitution), short(obstacle.friction));
+    format!("{shape}, e = {e}, μ = {friction}{}", path(&obstacle.motion))
+}
+
+/// What follows the words for something that moves.
+fn path(motion: &Motion) -> String {
+    match motion {
+        Motion::Still => String::new(),
+        Motion::Keys { keys, repeat, .. } => {
+            let last = keys.last().map_or(0.0, |key| key.time);
+            let again = if *repeat { ", repeating" } else { "" };
+            format!(", moving along {} keys until {} s{again}", keys.len(), short(last))
+        }
+        Motion::Swing { period, .. } => format!(", swinging once in {} s", short(*period)),
+    }
+}
+
+/// A grip in words.
+fn grip(grip: &Grip) -> String {
+    let nodes = match grip.nodes.len() {
+        1 => format!("node {}", grip.nodes[0]),
+        several => format!("{} nodes", count(several as u128)),
+    };
+    let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "for good".into() };
+    let what = if grip.motion == Motion::Still { "held" } else { "dragged" };
+    format!("{nodes} {what} from {} s {until}", short(grip.from))
 }
 
 fn vector(coordinates: &[f64]) -> String {
@@ -175,6 +206,9 @@ impl fmt::Display for Summary {
         }
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;
+        }
+        for grip in &self.grips {
+            line("grip", grip)?;
         }
         line("picture", &self.picture)?;
         write!(f, "  {:<9} {}", "digest", self.digest)

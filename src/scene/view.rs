@@ -1,5 +1,6 @@
 //! How a scene is looked at, resolved.
 
+use crate::sim::field::Field;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,8 +18,36 @@ pub struct View {
     pub clock: String,
     /// How many panels stand beside each other before a new row begins.
     pub columns: usize,
+    /// What is drawn of the body.
+    pub visible: Visible,
+    /// What its surface is coloured by, if not by what it is.
+    pub colour: Option<ColourScale>,
+    /// How many times longer than the displacements their arrows are drawn.
+    pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
     pub side: f64,
+}
+
+/// What is drawn of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visible {
+    /// The faces of the elements, with their edges.
+    pub surfaces: bool,
+    /// The nodes, as discs.
+    pub nodes: bool,
+    /// The springs of models that have them, as lines.
+    pub springs: bool,
+    /// An arrow to each node from where the best rigid placement of the rest shape has it.
+    pub displacements: bool,
+}
+
+/// The colours of a scalar field. They do not depend on the motion, so that any frame can be drawn by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColourScale {
+    /// The field.
+    pub field: Field,
+    /// The values at the two ends of the scale, in the field's unit.
+    pub range: [f64; 2],
 }
 
 /// The colours of a picture.

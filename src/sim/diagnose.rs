@@ -3,7 +3,7 @@
 use super::body::{Body, Dimension, ElementKind, State};
 use super::model::Measure;
 use super::rotation::{davenport1968, moment, planar};
-use super::snapshot::Diagnostics;
+use super::snapshot::{Diagnostics, Placement};
 use super::topology;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::sync::Arc;
@@ -14,6 +14,8 @@ pub struct Diagnose {
     sizes: Vec<ElementSize>,
     /// Total volume at rest (m³, in the plane m²).
     volume_at_rest: f64,
+    /// Mean of the rest positions (m).
+    rest_centre: DVec3,
     /// Rest positions relative to their mean (m).
     centred: Vec<DVec3>,
 }
@@ -39,13 +41,13 @@ impl Diagnose {
                 ElementSize::None => 0.0,
             })
             .sum();
-        let centre = mean(&body.rest);
-        let centred = body.rest.iter().map(|&rest| rest - centre).collect();
-        Self { body: Arc::clone(body), sizes, volume_at_rest, centred }
+        let rest_centre = mean(&body.rest);
+        let centred = body.rest.iter().map(|&rest| rest - rest_centre).collect();
+        Self { body: Arc::clone(body), sizes, volume_at_rest, rest_centre, centred }
     }
 
-    /// The diagnostics of a state, and whether each element is turned over.
-    pub fn state(&self, state: &State, gravity: DVec3, measure: Measure) -> (Diagnostics, Vec<bool>) {
+    /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
+    pub fn state(&self, state: &State, gravity: DVec3, measure: Measure) -> (Diagnostics, Vec<bool>, Placement) {
         let mut diagnostics = Diagnostics {
             elastic: measure.energy.unwrap_or(f64::NAN),
             residual: measure.residual.unwrap_or(f64::NAN),
@@ -67,8 +69,9 @@ impl Diagnose {
             .collect();
         diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
         diagnostics.volume_ratio = volume / self.volume_at_rest;
-        diagnostics.shape_error = self.shape_error(&state.position);
-        (diagnostics, turned_over)
+        let placement = self.placement(&state.position);
+        diagnostics.shape_error = self.shape_error(&state.position, &placement);
+        (diagnostics, turned_over, placement)
     }
 
     /// Signed volume of an element now and at rest (m³, in the plane m²).
@@ -87,14 +90,20 @@ impl Diagnose {
         }
     }
 
-    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
-    fn shape_error(&self, position: &[DVec3]) -> f64 {
+    /// The rigid placement of the rest shape that is nearest to the nodes.
+    fn placement(&self, position: &[DVec3]) -> Placement {
         let centre = mean(position);
         let at_rest = moment(&self.centred, position.iter().map(|&position| position - centre));
         let turn = match self.body.dimension {
             Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
             Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
         };
+        Placement { rest_centre: self.rest_centre, centre, turn }
+    }
+
+    /// RMS distance of the nodes from a rigid placement of the rest shape (m).
+    fn shape_error(&self, position: &[DVec3], placement: &Placement) -> f64 {
+        let Placement { centre, turn, .. } = *placement;
         let squared =
             self.centred.iter().zip(position).map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
         (squared.sum::<f64>() / position.len() as f64).sqrt()

@@ -1,6 +1,6 @@
 //! What one run looks like at one moment: all that drawing, diagnostics and files ever see of a simulation.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Where and when a run blew up. That is a result, not an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +36,32 @@ pub struct Snapshot {
     pub velocity: Vec<DVec3>,
     /// Whether each element has changed sign; see [`Diagnostics::turned_over`].
     pub turned_over: Vec<bool>,
+    /// Where the best rigid placement of the rest shape is.
+    pub placement: Placement,
+    /// The field that was asked for, a number for each node or each element; empty if none was.
+    pub field: Vec<f64>,
     /// Energies, momenta and measures of shape.
     pub diagnostics: Diagnostics,
     /// Whether the run goes on.
     pub status: Status,
+}
+
+/// The rigid placement of a body's rest shape that is nearest to its nodes (least squares).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Mean of the nodes at rest (m).
+    pub rest_centre: DVec3,
+    /// Mean of the nodes (m).
+    pub centre: DVec3,
+    /// The rotation.
+    pub turn: DMat3,
+}
+
+impl Placement {
+    /// Where a point of the rest shape (m) is placed.
+    pub fn place(&self, rest: DVec3) -> DVec3 {
+        self.centre + self.turn * (rest - self.rest_centre)
+    }
 }
 
 /// Numbers that describe a state. SI units; in the plane volumes are areas.

@@ -3,7 +3,9 @@
 use super::body::{Body, State, bounds};
 use super::contact::Obstacle;
 use super::diagnose::Diagnose;
-use super::integrate::{Integrator, semi_implicit_euler};
+use super::field::Field;
+use super::grip::{Grip, Hand};
+use super::integrate::{Integrator, Step, Stepper};
 use super::model::{ElasticModel, ForceModel};
 use super::snapshot::{Divergence, Snapshot, Status};
 use glam::DVec3;
@@ -16,6 +18,8 @@ pub struct Surroundings {
     pub gravity: DVec3,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
+    /// What holds and drags nodes, after all obstacles.
+    pub grips: Vec<Grip>,
 }
 
 /// How a run is stepped.
@@ -34,10 +38,12 @@ pub struct World {
     surroundings: Surroundings,
     stepping: Stepping,
     forces_of: Box<dyn ForceModel>,
+    stepper: Stepper,
+    hands: Vec<Hand>,
     diagnose: Diagnose,
+    /// What snapshots show besides positions and velocities.
+    field: Option<Field>,
     state: State,
-    /// Scratch: the force on each node (N).
-    forces: Vec<DVec3>,
     /// Steps of the clock, which goes on after a divergence.
     steps: u64,
     bounds: SpeedBounds,
@@ -57,18 +63,28 @@ impl World {
         stepping: Stepping,
     ) -> Self {
         assert!(initial.position.len() == body.len() && initial.velocity.len() == body.len(), "one entry per node");
+        let mut state = initial;
+        let mut hands: Vec<_> = surroundings.grips.iter().cloned().map(Hand::new).collect();
+        hands.iter_mut().for_each(|hand| hand.start(&mut state));
         Self {
-            forces_of: model.prepare(body, &initial),
+            forces_of: model.prepare(body, &state),
+            stepper: Stepper::new(stepping.integrator, body.len()),
+            hands,
             diagnose: Diagnose::new(body),
-            bounds: SpeedBounds::new(body, &initial, model.stiffness(), surroundings.gravity),
+            bounds: SpeedBounds::new(body, &state, model.stiffness(), &surroundings),
             body: Arc::clone(body),
             surroundings,
             stepping,
-            forces: vec![DVec3::ZERO; initial.position.len()],
-            state: initial,
+            field: None,
+            state,
             steps: 0,
             status: Status::Ok,
         }
+    }
+
+    /// Makes snapshots show a field from now on, or none.
+    pub fn show(&mut self, field: Option<Field>) {
+        self.field = field;
     }
 
     /// Goes on by a number of steps. A diverged world only lets its clock go on.
@@ -81,31 +97,38 @@ impl World {
         self.steps = last;
     }
 
-    /// One step: forces, Eqs. (2)–(3), collisions (paper, section 2).
+    /// One step: forces, Eqs. (2)–(3), collisions (paper, section 2), and hands.
     fn step(&mut self) {
-        let Self { body, surroundings, stepping, state, forces, .. } = self;
+        let Self { body, surroundings, stepping: Stepping { step, .. }, stepper, hands, forces_of, state, .. } = self;
+        let (time, step) = ((self.steps + 1) as f64 * *step, *step);
+        hands.iter_mut().for_each(|hand| hand.reach(time, state));
         // Forces: gravity, then the elastic model's Eq. (1) or Eq. (4).
-        for (force, &mass) in forces.iter_mut().zip(&body.mass) {
-            *force = surroundings.gravity * mass;
-        }
-        self.forces_of.add_forces(state, forces);
-        // Motion.
-        let time = (self.steps + 1) as f64 * stepping.step;
-        let moved = match stepping.integrator {
-            Integrator::SemiImplicitEuler => {
-                semi_implicit_euler(state, forces, &body.mass, stepping.step, self.bounds.at(time))
+        let mut forces_at = |state: &State, forces: &mut [DVec3]| {
+            for (force, &mass) in forces.iter_mut().zip(&body.mass) {
+                *force = surroundings.gravity * mass;
             }
+            forces_of.add_forces(state, forces);
         };
-        if let Err(runaway) = moved {
+        // Motion.
+        let bounds = Step { mass: &body.mass, step, speed_limit: self.bounds.at(time) };
+        if let Err(runaway) = stepper.advance(&bounds, state, &mut forces_at) {
             let element = body.elements.iter().position(|nodes| nodes.contains(&(runaway.node as u32)));
             self.status = Status::Diverged(Divergence { time, step: self.steps + 1, element });
             return;
         }
         // Collisions.
-        for obstacle in &surroundings.obstacles {
+        let mut disturbed = false;
+        for obstacle in surroundings.obstacles.iter().map(|obstacle| obstacle.at(time, step)) {
             for (position, velocity) in state.position.iter_mut().zip(&mut state.velocity) {
-                obstacle.rebound(position, velocity);
+                disturbed |= obstacle.rebound(position, velocity);
             }
+        }
+        // Hands.
+        for hand in hands {
+            disturbed |= hand.drag(time, step, state);
+        }
+        if disturbed {
+            stepper.disturbed();
         }
     }
 
@@ -127,13 +150,19 @@ impl World {
     /// The present moment with its diagnostics.
     pub fn snapshot(&self) -> Snapshot {
         let measure = self.forces_of.measure(&self.state);
-        let (diagnostics, turned_over) = self.diagnose.state(&self.state, self.surroundings.gravity, measure);
+        let (diagnostics, turned_over, placement) =
+            self.diagnose.state(&self.state, self.surroundings.gravity, measure);
+        let field = self.field.map_or_else(Vec::new, |field| {
+            field.values(&self.body, &self.state, &placement, |out| self.forces_of.share_energy(&self.state, out))
+        });
         Snapshot {
             step: self.steps,
             time: self.steps as f64 * self.stepping.step,
             position: self.state.position.clone(),
             velocity: self.state.velocity.clone(),
             turned_over,
+            placement,
+            field,
             diagnostics,
             status: self.status,
         }
@@ -143,7 +172,8 @@ impl World {
 /// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
 ///
 /// Swinging through its whole extent, a body moves at 2π extents per cycle. The factor leaves a wide margin above that,
-/// and keeps the last state within some extents. What it had at the start and what gravity adds comes on top.
+/// and keeps the last state within some extents. What it had at the start and what gravity, obstacles and hands add
+/// comes on top.
 struct SpeedBounds {
     own: f64,
     gravity: f64,
@@ -154,7 +184,7 @@ impl SpeedBounds {
     const EXTENTS_PER_CYCLE: f64 = 50.0;
     const MARGIN: f64 = 10.0;
 
-    fn new(body: &Body, initial: &State, stiffness: f64, gravity: DVec3) -> Self {
+    fn new(body: &Body, initial: &State, stiffness: f64, surroundings: &Surroundings) -> Self {
         let (low, high) = bounds(&initial.position);
         let extent = body.extent().max((high - low).max_element());
         let cycle = cycle(body, stiffness);
@@ -162,7 +192,16 @@ impl SpeedBounds {
         let mut elements_of_node = vec![0u32; body.len()];
         body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
-        let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / cycle + Self::MARGIN * start;
+        let Surroundings { gravity, obstacles, grips } = surroundings;
+        let pushed = obstacles.iter().map(|obstacle| {
+            // A half-space turns under a body that is somewhere near.
+            let reach = obstacle.shape.reach();
+            let near = (low - obstacle.shape.pivot()).length().max((high - obstacle.shape.pivot()).length());
+            obstacle.motion.greatest_speed(if reach.is_finite() { reach } else { near + extent })
+        });
+        let dragged = grips.iter().map(|grip| grip.motion.greatest_speed(extent));
+        let fastest = pushed.chain(dragged).fold(start, f64::max);
+        let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / cycle + Self::MARGIN * fastest;
         Self { own, gravity: Self::MARGIN * gravity.length() }
     }
 

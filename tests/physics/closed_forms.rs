@@ -32,7 +32,7 @@ fn a_free_element_breathes_at_exactly_its_frequency() {
 #[test]
 fn a_body_falls_as_the_sum_of_its_steps() {
     let (body, step, g) = (lattice(2, 0.1), 1e-3, 9.8);
-    let around = Surroundings { gravity: DVec3::new(0.0, -g, 0.0), obstacles: vec![] };
+    let around = Surroundings { gravity: DVec3::new(0.0, -g, 0.0), ..Surroundings::default() };
     for model in [
         &shape_based(1e4, 20.0) as &dyn localshape::sim::model::ElasticModel,
         &mass_spring(&body, 1e4, 20.0, Springs::All),
@@ -53,7 +53,11 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
     elements.push(&[0, 1]);
     let rest = vec![DVec3::ZERO, DVec3::X];
     let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, None));
-    let around = Surroundings { gravity: DVec3::new(0.0, -9.8, 0.0), obstacles: vec![floor(0.5, 0.0)] };
+    let around = Surroundings {
+        gravity: DVec3::new(0.0, -9.8, 0.0),
+        obstacles: vec![floor(0.5, 0.0)],
+        ..Surroundings::default()
+    };
     let start = State::at_rest(vec![DVec3::Y, DVec3::new(1.0, 1.0, 0.0)]);
     let mut world = world(&body, start, &shape_based(1.0, 0.0), 1e-4, around);
     let mut peaks = Vec::new();
@@ -74,13 +78,13 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
 fn friction_brakes_by_the_impulse_of_the_rebound_and_never_reverses() {
     for (friction, kept) in [(0.0, 3.0), (0.2, 3.0 - 0.2 * 1.5 * 2.0), (10.0, 0.0)] {
         let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(0.0, -2.0, 3.0));
-        floor(0.5, friction).rebound(&mut position, &mut velocity);
+        floor(0.5, friction).at(0.0, 1.0).rebound(&mut position, &mut velocity);
         assert!((position - DVec3::new(0.0, 0.005, 0.0)).length() < 1e-16);
         assert!((velocity - DVec3::new(0.0, 1.0, kept)).length() < 1e-14, "{friction}: {velocity}");
     }
     // A node that is already leaving is put out and keeps its velocity.
     let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(1.0, 2.0, 3.0));
-    floor(0.5, 0.3).rebound(&mut position, &mut velocity);
+    floor(0.5, 0.3).at(0.0, 1.0).rebound(&mut position, &mut velocity);
     assert!((position.y - 0.005).abs() < 1e-17);
     assert_eq!(velocity, DVec3::new(1.0, 2.0, 3.0));
 }

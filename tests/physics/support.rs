@@ -2,11 +2,11 @@
 
 use glam::{DQuat, DVec3};
 use localshape::sim::body::{Body, Dimension, IndexLists, State};
-use localshape::sim::contact::{Obstacle, Shape};
+use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
-use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::topology::{self, Springs};
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
@@ -33,7 +33,13 @@ pub(crate) fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]])
 }
 
 pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
-    ShapeBased { stiffness, damping, passes: 2 }
+    ShapeBased {
+        stiffness,
+        damping,
+        passes: 2,
+        rotation: RotationReading::Arctangent,
+        damping_of: DampingReading::RelativeMotion,
+    }
 }
 
 pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {
@@ -41,7 +47,7 @@ pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Spri
 }
 
 pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {
-    Obstacle { shape: Shape::Floor { normal: DVec3::Y, height: 0.0 }, restitution, friction }
+    Obstacle { shape: Shape::Floor { normal: DVec3::Y, height: 0.0 }, motion: Motion::Still, restitution, friction }
 }
 
 /// A world without gravity and obstacles.

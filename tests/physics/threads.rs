@@ -15,7 +15,11 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
     let velocity = vec![DVec3::new(0.3, -5.0, 0.1); body.len()];
     let start = State { position, velocity };
-    let around = Surroundings { gravity: DVec3::new(0.0, -9.8, 0.0), obstacles: vec![floor(0.5, 0.3)] };
+    let around = Surroundings {
+        gravity: DVec3::new(0.0, -9.8, 0.0),
+        obstacles: vec![floor(0.5, 0.3)],
+        ..Surroundings::default()
+    };
     for model in
         [&shape_based(1e4, 20.0) as &dyn ElasticModel, &mass_spring(&body, 1e4, 20.0, Springs::EdgesOneDiagonal)]
     {

@@ -313,7 +313,7 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
             assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
         }
         let Some(obstacle) = scene.obstacles.first() else { panic!("{normal}") };
-        let localshape::sim::contact::Shape::Floor { normal: out, height } = obstacle.shape;
+        let Some((out, height)) = obstacle.floor(0.0) else { panic!("{normal}") };
         for mark in &picture.under {
             let [left, top, width, depth] = mark.rectangle;
             let [x, y] = mark.along;

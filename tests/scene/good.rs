@@ -131,10 +131,10 @@ fn one_cycle_serves_all_runs_and_a_run_may_have_its_own_step() {
 
 #[test]
 fn normals_get_unit_length_whatever_they_had() {
-    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\n";
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\noffset = [0, 1, 1]\n";
     for normal in ["[0, 3, 4]", "[0, 3e-200, 4e-200]", "[0, 3e29, 4e29]"] {
         let scene = good(&format!("{WORLD}{body}[[obstacle]]\nkind = 'floor'\nnormal = {normal}"));
-        let Shape::Floor { normal, .. } = scene.obstacles[0].shape;
+        let Shape::Floor { normal, .. } = scene.obstacles[0].shape else { panic!("no floor") };
         assert!(normal.distance(DVec3::new(0.0, 0.6, 0.8)) < 1e-15, "{normal}");
     }
 }

@@ -68,7 +68,8 @@ fn unknown_keys() {
     case(PLANE, "nodes =", "node =", &[(6, 1, "did you mean `nodes`?")]);
     case(PLANE, "[view]", "[viev]", &[(19, 2, "unknown key `viev` did you mean `view`?")]);
     case(PLANE, "[time]", "[tiem]", &[(2, 2, "did you mean `time`?")]);
-    case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "unknown key `colour` in `body` known here: lattice, nodes,")]);
+    case(PLANE, "mass = 1", "hue = 1", &[(9, 1, "unknown key `hue` in `body` known here: lattice, nodes,")]);
+    case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `view`")]);
     case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
     case(PLANE, "mass = 1", "azimuth = 1", &[(9, 1, "`azimuth` belongs to `view.camera`")]);
     case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", &[(5, 44, "`rotation` belongs to `body`")]);
@@ -86,7 +87,7 @@ fn missing_keys() {
         PLANE,
         "kind = 'floor'\n",
         "",
-        &[(16, 1, "`obstacle[0]` has no `kind`; expected \"floor\" such as kind = \"floor\"")],
+        &[(16, 1, "`obstacle[0]` has no `kind`; expected \"floor\", \"plate\", \"sphere\", \"capsule\" or \"box\" such as kind = \"floor\"")],
     );
     case(PLANE, "kind = 'mass-spring', ", "", &[(15, 9, "has no `kind`; expected \"shape-based\" or \"mass-spring\"")]);
     case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edge (m)")]);

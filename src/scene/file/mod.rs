@@ -5,12 +5,14 @@
 //! coordinates in space and two in the plane.
 
 mod body;
+mod motion;
 mod obstacle;
 mod view;
 
 pub(in crate::scene) use body::{BodyFile, RotationFile};
+pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
 pub(in crate::scene) use obstacle::ObstacleFile;
-pub(in crate::scene) use view::ViewFile;
+pub(in crate::scene) use view::{ArrangementFile, ColourFile, ShowFile, ViewFile};
 
 use super::step::FractionOfCycle;
 use crate::sim::integrate::Integrator;
@@ -37,6 +39,12 @@ pub(in crate::scene) struct SceneFile {
     /// What the body bounces off, in the order in which they act. Default: nothing.
     #[serde(default)]
     pub(in crate::scene) obstacle: Vec<ObstacleFile>,
+    /// Nodes that are held where they are. Default: none.
+    #[serde(default)]
+    pub(in crate::scene) hold: Vec<HoldFile>,
+    /// Nodes that are grabbed, dragged along a path and let go. Default: none.
+    #[serde(default)]
+    pub(in crate::scene) grab: Vec<GrabFile>,
     /// How the scene is drawn.
     #[serde(default)]
     pub(in crate::scene) view: ViewFile,

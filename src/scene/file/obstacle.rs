@@ -1,32 +1,116 @@
 //! Obstacles as typed.
 
-use super::Coordinates;
+use super::{Coordinates, MotionFile, RotationFile, SwingFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Something rigid that nodes bounce off.
+/// Something rigid that nodes bounce off. It stays where it is unless a `path` or a `swing` moves it.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub(in crate::scene) enum ObstacleFile {
-    /// A plane with everything behind it filled.
+    /// A plane with everything behind it filled, drawn as ground.
     Floor(FloorFile),
+    /// A half-space like a floor, drawn as a plate: something flat that presses.
+    Plate(PlateFile),
+    /// A ball; in the plane a disc.
+    Sphere(SphereFile),
+    /// A rod with round ends.
+    Capsule(CapsuleFile),
+    /// A cuboid; in the plane a rectangle.
+    Box(BoxFile),
 }
 
-/// A plane with everything behind it filled.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(in crate::scene) struct FloorFile {
-    /// Direction out of the floor, of any length but zero. Default: up, along y.
-    pub(in crate::scene) normal: Option<Coordinates>,
-    /// Distance of the surface from the origin along `normal` (m).
-    #[serde(default)]
-    pub(in crate::scene) height: f64,
-    /// Restitution coefficient e: the part of the normal velocity that a rebound gives back.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1.0))]
+/// What every obstacle has besides its shape.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) struct Common<'a> {
     pub(in crate::scene) restitution: f64,
-    /// Friction coefficient μ.
-    #[serde(default)]
-    #[schemars(range(min = 0.0))]
     pub(in crate::scene) friction: f64,
+    pub(in crate::scene) path: Option<&'a MotionFile>,
+    pub(in crate::scene) swing: Option<&'a SwingFile>,
+}
+
+/// Defines the tables of the kinds: their own keys, and those that all have.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $table:ident as $kind:ident { $($(#[$key_doc:meta])* $key:ident: $type:ty,)* })*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+            #[serde(deny_unknown_fields)]
+            #[schemars(extend("not" = { "required": ["path", "swing"] }))]
+            pub(in crate::scene) struct $table {
+                $($(#[$key_doc])* pub(in crate::scene) $key: $type,)*
+                /// Restitution coefficient e: the part of the normal velocity that a rebound gives back.
+                #[serde(default)]
+                #[schemars(range(min = 0.0, max = 1.0))]
+                restitution: f64,
+                /// Friction coefficient μ.
+                #[serde(default)]
+                #[schemars(range(min = 0.0))]
+                friction: f64,
+                /// A path along which it moves. Not together with `swing`.
+                path: Option<MotionFile>,
+                /// A periodic motion to and fro. Not together with `path`.
+                swing: Option<SwingFile>,
+            }
+        )*
+
+        impl ObstacleFile {
+            pub(in crate::scene) fn common(&self) -> Common<'_> {
+                match self {
+                    $(Self::$kind($table { restitution, friction, path, swing, .. }) => Common {
+                        restitution: *restitution,
+                        friction: *friction,
+                        path: path.as_ref(),
+                        swing: swing.as_ref(),
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// A plane with everything behind it filled, drawn as ground. It turns about its point nearest to the origin.
+    FloorFile as Floor {
+        /// Direction out of the floor, of any length but zero. Default: up, along y.
+        normal: Option<Coordinates>,
+        /// Distance of the surface from the origin along `normal` (m).
+        #[serde(default)]
+        height: f64,
+    }
+    /// A half-space, drawn as a plate around its point. It turns about that point.
+    PlateFile as Plate {
+        /// A point of its surface (m).
+        point: Coordinates,
+        /// Direction out of the surface, towards what is pressed, of any length but zero.
+        normal: Coordinates,
+    }
+    /// A ball, in the plane a disc. It turns about its middle.
+    SphereFile as Sphere {
+        /// Its middle (m).
+        centre: Coordinates,
+        /// Its radius (m).
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        radius: f64,
+    }
+    /// All points near a line: a rod with round ends. It turns about its middle.
+    CapsuleFile as Capsule {
+        /// The middle of one round end (m).
+        from: Coordinates,
+        /// The middle of the other (m).
+        to: Coordinates,
+        /// The radius of rod and ends (m).
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        radius: f64,
+    }
+    /// A cuboid, in the plane a rectangle. It turns about its middle.
+    BoxFile as Box {
+        /// Its middle (m).
+        centre: Coordinates,
+        /// Its sides (m), each greater than zero.
+        #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
+        size: Coordinates,
+        /// How its sides are turned. Default: along the axes.
+        rotation: Option<RotationFile>,
+    }
 }

@@ -2,12 +2,14 @@
 
 use super::Coordinates;
 use crate::scene::view::Theme;
+use crate::sim::field::Field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a scene is drawn.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(extend("not" = { "required": ["columns", "panels"] }))]
 pub(in crate::scene) struct ViewFile {
     /// Width and height of the picture (px).
     #[schemars(inner(range(min = 16, max = 16384)))]
@@ -17,9 +19,21 @@ pub(in crate::scene) struct ViewFile {
     /// What the clock counts from, in the words shown under the time.
     #[schemars(length(max = 80))]
     pub(in crate::scene) clock: String,
-    /// How many panels stand beside each other. Default: all of them, up to 3; never more than there are runs.
+    /// How many panels stand beside each other. Default: all of them, up to 3; never more than there are runs. Not
+    /// together with `panels`.
     #[schemars(range(min = 1, max = 64))]
     pub(in crate::scene) columns: Option<u32>,
+    /// How the panels stand: beside each other, below each other, or in as many rows as leave them most room. Not
+    /// together with `columns`.
+    pub(in crate::scene) panels: Option<ArrangementFile>,
+    /// What is drawn of the body. Default: its surfaces, and in the plane its nodes, too.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) show: Option<Vec<ShowFile>>,
+    /// A scalar field that colours the body. Default: none.
+    pub(in crate::scene) colour: Option<ColourFile>,
+    /// How many times longer than the displacements their arrows are drawn.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) arrow_scale: f64,
     /// From where the scene is seen.
     pub(in crate::scene) camera: CameraFile,
 }
@@ -31,9 +45,51 @@ impl Default for ViewFile {
             theme: Theme::default(),
             clock: "after release".into(),
             columns: None,
+            panels: None,
+            show: None,
+            colour: None,
+            arrow_scale: 1.0,
             camera: CameraFile::default(),
         }
     }
+}
+
+/// How panels stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum ArrangementFile {
+    /// Beside each other.
+    Row,
+    /// Below each other.
+    Column,
+    /// In as many rows as leave them most room.
+    Grid,
+}
+
+/// A part of the body that can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum ShowFile {
+    /// The faces of the elements, with their edges.
+    Surfaces,
+    /// The nodes, as discs.
+    Nodes,
+    /// The springs of models that have them, as lines.
+    Springs,
+    /// An arrow to each node from where the rigid placement of the rest shape nearest to the body has it.
+    Displacements,
+}
+
+/// A scalar field and its scale of colours.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ColourFile {
+    /// The field.
+    pub(in crate::scene) by: Field,
+    /// The values at both ends of the scale, in the field's unit. Default: from zero to what the scene lets expect: a
+    /// strain of 0.5, a displacement of half an element's edge, the speed of a fall through the scene or at the start,
+    /// the energy of an element strained by 0.5.
+    pub(in crate::scene) range: Option<[f64; 2]>,
 }
 
 /// A perspective camera that looks at a point. A body in the plane is looked at straight from the front.

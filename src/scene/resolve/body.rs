@@ -1,7 +1,8 @@
 //! The body and how it starts.
 
-use super::{direction, elements, lattice, vector};
-use crate::scene::file::{BodyFile, Coordinates, Positive, RotationFile, RunFile};
+use super::motion::axis;
+use super::{elements, lattice, vector};
+use crate::scene::file::{BodyFile, Coordinates, Positive, RunFile};
 use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
 use crate::sim::body::{Body, Dimension, IndexLists, State};
@@ -153,32 +154,15 @@ fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Rep
 
 /// A turn (unit axis, angle), a shift and a velocity, each with its mistakes reported and then left out.
 fn check_start(file: &BodyFile, dimension: Dimension, report: &mut Report<'_>) -> (Option<(DVec3, f64)>, DVec3, DVec3) {
-    let turn = file.rotation.as_ref().and_then(|typed| Some((axis(typed, dimension, report)?, typed.angle)));
+    let turn = file.rotation.as_ref().and_then(|typed| {
+        let path = [Way::Key("body"), Way::Key("rotation")];
+        Some((axis(typed, dimension, &path, report)?, typed.angle))
+    });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
         Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (turn, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
-}
-
-fn axis(typed: &RotationFile, dimension: Dimension, report: &mut Report<'_>) -> Option<DVec3> {
-    let path = [Way::Key("body"), Way::Key("rotation"), Way::Key("axis")];
-    match (&typed.axis, dimension) {
-        (None, Dimension::Plane) => Some(DVec3::Z),
-        (Some(_), Dimension::Plane) => {
-            let message = "`body.rotation` has an `axis`, but the body is in the plane and turns within it";
-            report.at_key(&path, message, "take `axis` out; a positive angle turns counter-clockwise".to_owned());
-            None
-        }
-        (None, Dimension::Space) => {
-            let help = "such as axis = [0, 0, 1]".to_owned();
-            report.at(&path, "`body.rotation` has no `axis`, which a turn in space needs", help);
-            None
-        }
-        (Some(axis), Dimension::Space) => {
-            vector(axis, dimension, &path, report).and_then(|axis| direction(axis, &path, report))
-        }
-    }
 }
 
 /// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.

@@ -3,13 +3,15 @@
 
 mod body;
 mod elements;
+mod grips;
 mod lattice;
+mod motion;
 mod obstacles;
 mod runs;
 mod view;
 
 use super::Scene;
-use super::file::{BodyFile, Coordinates, ObstacleFile, RunFile, TimeFile, ViewFile};
+use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
 use super::limits::Limits;
 use super::report::{Report, Way, written};
 use super::structure::Checked;
@@ -32,6 +34,8 @@ pub(super) struct Parts {
     flawed: BTreeSet<String>,
     runs: Vec<Option<RunFile>>,
     obstacles: Vec<Option<ObstacleFile>>,
+    holds: Vec<Option<HoldFile>>,
+    grabs: Vec<Option<GrabFile>>,
     view: Option<ViewFile>,
 }
 
@@ -53,6 +57,8 @@ impl Parts {
             flawed: checked.flawed.clone(),
             runs: several(file, "run", report),
             obstacles: several(file, "obstacle", report),
+            holds: several(file, "hold", report),
+            grabs: several(file, "grab", report),
             view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
         }
     }
@@ -104,13 +110,18 @@ pub(super) fn resolve(
         (Some(typed), Some(dimension)) => vector(typed, dimension, &[Way::Key("gravity")], report),
         _ => Some(DVec3::ZERO),
     };
-    let obstacles = obstacles::resolve(&parts.obstacles, dimension, report);
+    let obstacles = obstacles::resolve(&parts.obstacles, dimension, body.as_ref(), report);
+    let grips = body.as_ref().and_then(|body| grips::resolve(&parts.holds, &parts.grabs, body, report));
     if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);
     let view = match (&parts.view, &body, &obstacles) {
-        (Some(view), Some(body), Some(obstacles)) => view::resolve(view, body, obstacles, parts.runs.len(), report),
+        (Some(view), Some(body), Some(obstacles)) => {
+            let runs = runs.as_deref().unwrap_or_default();
+            let around = view::Around { body, gravity: gravity.unwrap_or_default(), obstacles, runs };
+            view::resolve(view, &around, report)
+        }
         _ => None,
     };
     if report.total() > 0 {
@@ -128,6 +139,7 @@ pub(super) fn resolve(
         initial: body.initial,
         runs: runs?,
         obstacles: obstacles?,
+        grips: grips?,
         view: view?,
     })
 }

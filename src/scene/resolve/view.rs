@@ -2,12 +2,16 @@
 
 use super::body::ResolvedBody;
 use super::vector;
-use crate::scene::file::ViewFile;
+use crate::scene::Run;
+use crate::scene::file::{ArrangementFile, ColourFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, View};
+use crate::scene::view::{Camera, ColourScale, View, Visible};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle};
+use crate::sim::field::Field;
+use crate::sim::world::cycle;
 use glam::DVec3;
+use std::f64::consts::TAU;
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
 const AZIMUTH: f64 = 31.0 / 180.0 * std::f64::consts::PI;
@@ -25,13 +29,9 @@ const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 const COLUMNS: usize = 3;
 
 /// The view, or `None` if there is a mistake in it.
-pub(super) fn resolve(
-    typed: &ViewFile,
-    body: &ResolvedBody,
-    obstacles: &[Obstacle],
-    runs: usize,
-    report: &mut Report<'_>,
-) -> Option<View> {
+pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<View> {
+    let &Around { body, obstacles, .. } = scene;
+    let runs = scene.runs.len();
     let dimension = body.body.dimension;
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
@@ -60,15 +60,96 @@ pub(super) fn resolve(
         None if chosen.follow => {}
         None => show_start(&mut chosen, start, dimension, typed.camera.distance.is_some()),
     }
-    let columns = typed.columns.map_or(COLUMNS, |columns| columns as usize).clamp(1, runs.max(1));
+    let columns = match (typed.columns, typed.panels) {
+        (Some(columns), _) => columns as usize,
+        (None, Some(ArrangementFile::Row)) => runs,
+        (None, Some(ArrangementFile::Column)) => 1,
+        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
+        (None, None) => COLUMNS,
+    };
+    let columns = columns.clamp(1, runs.max(1));
+    let colour = match &typed.colour {
+        Some(typed) => Some(colour(typed, scene, report)?),
+        None => None,
+    };
+    let visible = match &typed.show {
+        Some(shown) => Visible {
+            surfaces: shown.contains(&ShowFile::Surfaces),
+            nodes: shown.contains(&ShowFile::Nodes),
+            springs: shown.contains(&ShowFile::Springs),
+            displacements: shown.contains(&ShowFile::Displacements),
+        },
+        None => Visible { surfaces: true, nodes: dimension == Dimension::Plane, ..Visible::default() },
+    };
     Some(View {
         size: typed.size,
         theme: typed.theme,
         camera: chosen,
         clock: typed.clock.clone(),
         columns,
+        visible,
+        colour,
+        arrow_scale: typed.arrow_scale,
         side: body.side,
     })
+}
+
+/// Into how many columns panels are put so that the smaller of their sides is largest.
+fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
+    let side = |columns: usize| {
+        let rows = runs.div_ceil(columns);
+        (f64::from(width) / columns as f64).min(f64::from(height) / rows as f64)
+    };
+    // Of equal ones the first, with more rows and wider panels.
+    (1..=runs.max(1)).fold(1, |best, columns| if side(columns) > side(best) { columns } else { best })
+}
+
+/// The colours of a field, over a range that follows from the scene if none is typed.
+fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
+    let range = match typed.range {
+        Some([low, high]) if low >= high => {
+            let message = format!("`view.colour.range` runs from {low} to {high}; expected a rising range");
+            report.at(&[Way::Key("view"), Way::Key("colour"), Way::Key("range")], message, None);
+            return None;
+        }
+        Some(range) => range,
+        None => [0.0, scene.largest(typed.by)],
+    };
+    Some(ColourScale { field: typed.by, range })
+}
+
+/// What a view follows from.
+pub(super) struct Around<'a> {
+    pub(super) body: &'a ResolvedBody,
+    pub(super) gravity: DVec3,
+    pub(super) obstacles: &'a [Obstacle],
+    pub(super) runs: &'a [Run],
+}
+
+impl Around<'_> {
+    /// The largest value of a field that the scene lets expect.
+    fn largest(&self, field: Field) -> f64 {
+        /// The strain, and the displacement in edges of an element, that count as large.
+        const LARGE: f64 = 0.5;
+        let side = self.body.side;
+        let stiffness = self.runs.iter().fold(0.0, |most: f64, run| most.max(run.model.stiffness()));
+        match field {
+            Field::Strain => LARGE,
+            Field::Displacement => LARGE * side,
+            Field::ElasticEnergy => 0.5 * stiffness * (LARGE * side).powi(2),
+            Field::Speed => {
+                let start = self.body.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
+                let (_, high) = bounds(&self.body.initial.position);
+                let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
+                let fall = (2.0 * self.gravity.length() * drop).sqrt();
+                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
+                let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
+                // A body that nothing moves swings by itself at the most.
+                let swing = LARGE * side * TAU / cycle(&self.body.body, stiffness);
+                if fastest > 0.0 { fastest } else { swing }
+            }
+        }
+    }
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
@@ -82,7 +163,7 @@ fn size(body: &ResolvedBody) -> f64 {
 fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     let (low, high) = bounds(start);
     let middle = (low + high) / 2.0;
-    let Some((normal, height)) = contact::ground(obstacles) else { return middle };
+    let Some((normal, height)) = contact::ground(obstacles, 0.0) else { return middle };
     let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
     DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
 }

@@ -136,6 +136,10 @@ impl ElasticModel for MassSpring {
         super::describe(&springs, self.stiffness, self.damping, body)
     }
 
+    fn springs(&self) -> &[[u32; 2]] {
+        &self.springs
+    }
+
     fn prepare(&self, body: &Arc<Body>, _initial: &State) -> Box<dyn ForceModel> {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
         Box::new(Lattice {
@@ -174,11 +178,23 @@ impl ForceModel for Lattice {
     }
 
     fn measure(&self, state: &State) -> Measure {
-        let energy = self.model.springs.iter().zip(&self.natural_length).map(|(&[i, j], &natural)| {
+        Measure { energy: Some(self.energies(state).map(|(_, energy)| energy).sum()), residual: None }
+    }
+
+    fn share_energy(&self, state: &State, energies: &mut [f64]) {
+        for (ends, energy) in self.energies(state) {
+            ends.iter().for_each(|&node| energies[node as usize] += 0.5 * energy);
+        }
+    }
+}
+
+impl Lattice {
+    /// The ends of each spring and its energy (J).
+    fn energies(&self, state: &State) -> impl Iterator<Item = ([u32; 2], f64)> {
+        self.model.springs.iter().zip(&self.natural_length).map(|(&[i, j], &natural)| {
             let stretch = (state.position[i as usize] - state.position[j as usize]).length() - natural;
-            0.5 * self.model.stiffness * stretch * stretch
-        });
-        Measure { energy: Some(energy.sum()), residual: None }
+            ([i, j], 0.5 * self.model.stiffness * stretch * stretch)
+        })
     }
 }
 

@@ -98,6 +98,11 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// A few words for a picture's second line, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
     fn describe(&self, body: &Body) -> String;
 
+    /// The two nodes of each spring, for models that are made of springs.
+    fn springs(&self) -> &[[u32; 2]] {
+        &[]
+    }
+
     /// Makes the worker that evaluates the forces on `body`, starting at `initial`.
     fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel>;
 }
@@ -110,6 +115,9 @@ pub trait ForceModel: Send {
 
     /// Energy and errors at a state, without changing the memory.
     fn measure(&self, state: &State) -> Measure;
+
+    /// Adds to each node its part of the elastic energy (J); see [`Field::ElasticEnergy`](super::field::Field).
+    fn share_energy(&self, state: &State, energies: &mut [f64]);
 }
 
 /// What a model says about a state.

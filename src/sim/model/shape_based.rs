@@ -12,7 +12,7 @@
 use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, State};
 use crate::sim::census::Census;
-use crate::sim::rotation::{self, davenport1968, linearised, planar};
+use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,37 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100))]
     pub passes: Option<u32>,
+    /// How the solution of Eq. (15) becomes a rotation. In the plane Eq. (9) is exact and there is nothing to choose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationReading>,
+    /// Which velocity the damping of Eq. (4) acts on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_of: Option<DampingReading>,
+}
+
+/// How the solution `w` of Eq. (15) becomes a rotation. The paper can be read in three ways.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RotationReading {
+    /// About `w` by the angle `atan |w|`, which is Eq. (9) about that axis; true rotations are accumulated. The default.
+    #[default]
+    Arctangent,
+    /// About `w` by the angle `|w|`; true rotations are accumulated. It overshoots and can spin a free body up.
+    VectorLength,
+    /// Eq. (16) as printed, `R + w × R`. That is no rotation: a spinning body swells.
+    LinearUpdate,
+}
+
+/// Which velocity the damping of Eq. (4) acts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DampingReading {
+    /// As printed: a node's velocity relative to the element's mean. It brakes the spin of a rigid body, too. The
+    /// default.
+    #[default]
+    RelativeMotion,
+    /// What is left of that velocity when the best-fitting rigid spin is taken away.
+    Deformation,
 }
 
 /// The model with its parameters resolved.
@@ -50,14 +81,29 @@ pub struct ShapeBased {
     pub damping: f64,
     /// How often Eq. (15) is solved at each evaluation.
     pub passes: u32,
+    /// How its solution becomes a rotation.
+    pub rotation: RotationReading,
+    /// Which velocity is damped.
+    pub damping_of: DampingReading,
 }
 
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        if body.dimension == Dimension::Plane {
+            let given = [("rotation", self.rotation.is_some()), ("passes", self.passes.is_some())];
+            if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+                let message = format!(
+                    "`{key}` is about Eq. (15), but the body is in the plane, where Eq. (9) is exact; take it out"
+                );
+                return Err(Misfit { key, message });
+            }
+        }
         Ok(Arc::new(ShapeBased {
             stiffness: self.stiffness,
             damping: super::damping(self.damping, self.damping_ratio, self.stiffness, body)?,
             passes: self.passes.unwrap_or(2),
+            rotation: self.rotation.unwrap_or_default(),
+            damping_of: self.damping_of.unwrap_or_default(),
         }))
     }
 
@@ -74,11 +120,30 @@ impl ElasticModel for ShapeBased {
     }
 
     fn describe(&self, body: &Body) -> String {
-        super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body)
+        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
+        text.push_str(match self.rotation {
+            RotationReading::Arctangent => "",
+            RotationReading::VectorLength => ", θ = |w|",
+            RotationReading::LinearUpdate => ", Eq. (16)",
+        });
+        if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
+            text.push_str(" of deformation");
+        }
+        text
     }
 
     fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel> {
         Box::new(Elements::new(self.clone(), body, initial))
+    }
+}
+
+impl ShapeBased {
+    /// The rotation of an element in space from its last one, as read.
+    fn follow(&self, at_rest: DMat3, last: DQuat) -> DQuat {
+        match self.rotation {
+            RotationReading::VectorLength => linearised::follow(at_rest, last, self.passes, linearised::turn_by_length),
+            _ => linearised::follow(at_rest, last, self.passes, linearised::turn),
+        }
     }
 }
 
@@ -89,6 +154,8 @@ enum Rotations {
     Plane(Vec<DVec2>),
     /// The unit quaternion of each element in space.
     Space(Vec<DQuat>),
+    /// The matrix of each element under Eq. (16), which is no rotation for long.
+    Linear(Vec<DMat3>),
 }
 
 /// A body's elements at work.
@@ -125,7 +192,11 @@ impl Elements {
         let rotations = match body.dimension {
             Dimension::Plane => Rotations::Plane(all.map(|e| planar::solve(at_rest(e), DVec2::X)).collect()),
             Dimension::Space => {
-                Rotations::Space(all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY)).collect())
+                let turns = all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY));
+                match model.rotation {
+                    RotationReading::LinearUpdate => Rotations::Linear(turns.map(DMat3::from_quat).collect()),
+                    RotationReading::Arctangent | RotationReading::VectorLength => Rotations::Space(turns.collect()),
+                }
             }
         };
         let corner_forces = vec![DVec3::ZERO; rest.len()];
@@ -137,8 +208,23 @@ impl Elements {
     fn rotation(&self, element: usize, at_rest: DMat3) -> DMat3 {
         match &self.rotations {
             Rotations::Plane(last) => planar::matrix(planar::solve(at_rest, last[element])),
-            Rotations::Space(last) => DMat3::from_quat(linearised::follow(at_rest, last[element], self.model.passes)),
+            Rotations::Space(last) => DMat3::from_quat(self.model.follow(at_rest, last[element])),
+            Rotations::Linear(last) => linear_update::follow(at_rest, last[element], self.model.passes),
         }
+    }
+
+    /// Calls `visit` with each node of an element and its squared distance from the equilibrium shape (m²), and returns
+    /// `Σ R rᵀ` (m²).
+    fn distances(&self, element: usize, state: &State, mut visit: impl FnMut(u32, f64)) -> DMat3 {
+        let nodes = &self.body.elements[element];
+        let rest = &self.rest[self.body.elements.range(element)];
+        let centre = mean(nodes, &state.position);
+        let at_rest = moment_at_rest(rest, nodes, centre, &state.position);
+        let turn = self.rotation(element, at_rest);
+        for (&node, &rest) in nodes.iter().zip(rest) {
+            visit(node, (state.position[node as usize] - centre - turn * rest).length_squared());
+        }
+        turn * at_rest
     }
 }
 
@@ -155,8 +241,14 @@ impl ForceModel for Elements {
             }),
             Rotations::Space(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
                 evaluate.element(element, out, |at_rest| {
-                    *last = linearised::follow(at_rest, *last, model.passes);
+                    *last = model.follow(at_rest, *last);
                     DMat3::from_quat(*last)
+                });
+            }),
+            Rotations::Linear(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
+                evaluate.element(element, out, |at_rest| {
+                    *last = linear_update::follow(at_rest, *last, model.passes);
+                    *last
                 });
             }),
         }
@@ -165,19 +257,19 @@ impl ForceModel for Elements {
 
     fn measure(&self, state: &State) -> Measure {
         let (mut energy, mut residual) = (0.0, 0.0f64);
-        for (element, nodes) in self.body.elements.iter().enumerate() {
-            let rest = &self.rest[self.body.elements.range(element)];
-            let centre = mean(nodes, &state.position);
-            let at_rest = moment_at_rest(rest, nodes, centre, &state.position);
-            let turn = self.rotation(element, at_rest);
-            for (&node, &rest) in nodes.iter().zip(rest) {
-                energy += 0.5
-                    * self.model.stiffness
-                    * (state.position[node as usize] - centre - turn * rest).length_squared();
-            }
-            residual = residual.max(angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]));
+        for element in 0..self.body.elements.len() {
+            let a = self.distances(element, state, |_, squared| energy += 0.5 * self.model.stiffness * squared);
+            residual = residual.max(angular_acceleration(a, self.model.stiffness, self.inertia[element]));
         }
         Measure { energy: Some(energy), residual: Some(residual) }
+    }
+
+    fn share_energy(&self, state: &State, energies: &mut [f64]) {
+        for element in 0..self.body.elements.len() {
+            self.distances(element, state, |node, squared| {
+                energies[node as usize] += 0.5 * self.model.stiffness * squared;
+            });
+        }
     }
 }
 
@@ -194,15 +286,28 @@ impl Evaluate<'_> {
     /// rotation matrix.
     #[doc(alias = "Eq. 4")]
     fn element(&self, element: usize, forces: &mut [DVec3], solve: impl FnOnce(DMat3) -> DMat3) {
-        let Self { model: &ShapeBased { stiffness: k, damping: d, .. }, body, state, .. } = *self;
+        let Self { model: &ShapeBased { stiffness: k, damping: d, damping_of, .. }, body, state, .. } = *self;
         let nodes = &body.elements[element];
         let rest = &self.rest[body.elements.range(element)];
         let centre = mean(nodes, &state.position);
         let drift = mean(nodes, &state.velocity);
         let turn = solve(moment_at_rest(rest, nodes, centre, &state.position));
+        let spin = match damping_of {
+            DampingReading::RelativeMotion => None,
+            DampingReading::Deformation => {
+                let corners = nodes
+                    .iter()
+                    .map(|&node| (state.position[node as usize] - centre, state.velocity[node as usize] - drift));
+                Some(best_spin(corners))
+            }
+        };
         for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
-            let displacement = state.position[node as usize] - centre - turn * rest;
-            let relative_velocity = state.velocity[node as usize] - drift;
+            let r = state.position[node as usize] - centre;
+            let displacement = r - turn * rest;
+            let mut relative_velocity = state.velocity[node as usize] - drift;
+            if let Some(spin) = spin {
+                relative_velocity -= spin.cross(r);
+            }
             *force = -(displacement * k + relative_velocity * d);
         }
     }
@@ -217,6 +322,28 @@ fn moment_at_rest(rest: &[DVec3], nodes: &[u32], centre: DVec3, position: &[DVec
 fn mean(nodes: &[u32], values: &[DVec3]) -> DVec3 {
     let sum = nodes.iter().fold(DVec3::ZERO, |sum, &node| sum + values[node as usize]);
     sum / nodes.len() as f64
+}
+
+/// The spin `ω` (rad/s) that takes most away from velocities: `Σ (r² I − r rᵀ) ω = Σ r × v`, for corners given by place
+/// (m) and velocity (m/s) relative to their means. Forces in proportion to what is left have no torque.
+fn best_spin(corners: impl Iterator<Item = (DVec3, DVec3)>) -> DVec3 {
+    /// Corners whose matrix has a determinant below this part of what it would be in a ball lie on a line.
+    const LINE: f64 = 1e-12;
+    let (mut matrix, mut momentum, mut squares) = (DMat3::ZERO, DVec3::ZERO, 0.0);
+    for (r, v) in corners {
+        let squared = r.length_squared();
+        squares += squared;
+        matrix += DMat3::from_diagonal(DVec3::splat(squared)) - DMat3::from_cols(r * r.x, r * r.y, r * r.z);
+        momentum += r.cross(v);
+    }
+    if squares == 0.0 {
+        return DVec3::ZERO;
+    }
+    if matrix.determinant() <= LINE * squares * squares * squares {
+        // A line has no spin about itself, and the same moment about all axes across.
+        return momentum / squares;
+    }
+    matrix.inverse() * momentum
 }
 
 /// Eq. (17): the rough moment of inertia `I = Σ m |R0|²` of an element (kg m²); it overstates a cube's by half.

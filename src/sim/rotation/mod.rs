@@ -9,10 +9,11 @@
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
 //! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are visited once however often
-//! Eq. (15) is solved. No function here uses a sine, a cosine or an arctangent: square roots and divisions alone are
-//! rounded alike on every machine.
+//! Eq. (15) is solved. But for one reading kept for study no function here uses a sine, a cosine or an arctangent:
+//! square roots and divisions alone are rounded alike on every machine.
 
 pub mod davenport1968;
+pub mod linear_update;
 pub mod linearised;
 pub mod planar;
 

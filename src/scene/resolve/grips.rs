@@ -1,0 +1,135 @@
+//! What holds and drags nodes.
+
+use super::body::ResolvedBody;
+use super::{motion, vector};
+use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
+use crate::scene::report::{Report, Way, written};
+use crate::sim::grip::Grip;
+use crate::sim::motion::Motion;
+use std::collections::HashMap;
+
+/// The grips, holds first, or `None` after reporting every mistake in them.
+pub(super) fn resolve(
+    holds: &[Option<HoldFile>],
+    grabs: &[Option<GrabFile>],
+    body: &ResolvedBody,
+    report: &mut Report<'_>,
+) -> Option<Vec<Grip>> {
+    let mut named: Vec<(String, Vec<Way<'_>>, Grip)> = Vec::new();
+    for (at, typed) in holds.iter().enumerate() {
+        let Some(typed) = typed else { continue };
+        let path = vec![Way::Key("hold"), Way::Index(at)];
+        let until = typed.until.unwrap_or(f64::INFINITY);
+        let nodes = nodes(&typed.nodes, body, &path, report);
+        if until <= typed.from {
+            let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
+            report.at(&[&path[..], &[Way::Key("until")]].concat(), message, None);
+        } else if let Some(nodes) = nodes {
+            let grip = Grip { nodes, from: typed.from, until, motion: Motion::Still };
+            named.push((format!("held by `hold[{at}]`"), path, grip));
+        }
+    }
+    for (at, typed) in grabs.iter().enumerate() {
+        let Some(typed) = typed else { continue };
+        let path = vec![Way::Key("grab"), Way::Index(at)];
+        let nodes = nodes(&typed.nodes, body, &path, report);
+        let way = [&path[..], &[Way::Key("path")]].concat();
+        if typed.path.repeat {
+            let message = format!("`grab[{at}].path` repeats, so the nodes would never be let go");
+            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "take `repeat` out".to_owned());
+            continue;
+        }
+        let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
+        let [from, until] =
+            [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
+        if until <= from {
+            let message =
+                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be let go at once");
+            report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are".to_owned());
+        } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
+            named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
+        }
+    }
+    check_overlaps(&named, report);
+    (named.len() == holds.len() + grabs.len()).then(|| named.into_iter().map(|(_, _, grip)| grip).collect())
+}
+
+/// Reports nodes that two hands have at the same time.
+fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
+    let mut holders: HashMap<u32, Vec<usize>> = HashMap::new();
+    for (at, (_, _, grip)) in named.iter().enumerate() {
+        for &node in &grip.nodes {
+            holders.entry(node).or_default().push(at);
+        }
+    }
+    for (second, (words, path, grip)) in named.iter().enumerate() {
+        // One node says it all: others of the same two hands follow from the same mistake.
+        let clash = |first: usize| {
+            let other = &named[first].2;
+            let together = grip.from.max(other.from) <= grip.until.min(other.until);
+            let shared = || grip.nodes.iter().find(|node| holders[node].contains(&first));
+            together.then(shared).flatten().map(|&node| (first, node, other))
+        };
+        for (first, node, other) in (0..second).filter_map(clash) {
+            let (from, until) = (grip.from.max(other.from), grip.until.min(other.until));
+            let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
+            let message = format!("node {node} is {} and {words} at once, from {from} s {until}", named[first].0);
+            report.at(
+                &[&path[..], &[Way::Key("nodes")]].concat(),
+                message,
+                "leave each node to one of them at a time".to_owned(),
+            );
+        }
+    }
+}
+
+/// The nodes that are meant, in rising order.
+fn nodes(typed: &NodesFile, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+    let path = [path, &[Way::Key("nodes")]].concat();
+    match typed {
+        NodesFile::List(list) => listed(list, body.body.len(), &path, report),
+        NodesFile::Region(region) => within(region, body, &path, report),
+    }
+}
+
+fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+    let before = report.total();
+    let mut first = HashMap::new();
+    for (place, &node) in list.iter().enumerate() {
+        let at = [path, &[Way::Index(place)]].concat();
+        if node as usize >= count {
+            report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
+        } else if first.insert(node, place).is_some() {
+            report.at(&at, format!("node {node} stands twice in `{}`", written(path)), None);
+        }
+    }
+    let mut nodes = list.to_vec();
+    nodes.sort_unstable();
+    (report.total() == before).then_some(nodes)
+}
+
+fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+    let dimension = body.body.dimension;
+    let mut point = |typed, key| vector(typed, dimension, &[path, &[Way::Key(key)]].concat(), report);
+    let position = &body.initial.position;
+    let nodes: Vec<u32> = match region {
+        RegionFile { of: Some(of), within: Some(within), .. } => {
+            let middle = point(of, "of")?;
+            (0..).zip(position).filter(|(_, at)| at.distance(middle) <= *within).map(|(node, _)| node).collect()
+        }
+        RegionFile { low: Some(low), high: Some(high), .. } => {
+            let (low, high) = (point(low, "low"), point(high, "high"));
+            let (low, high) = (low?, high?);
+            let is_inside = |at: &glam::DVec3| at.cmpge(low).all() && at.cmple(high).all();
+            (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect()
+        }
+        // The structure of the file has been checked.
+        _ => return None,
+    };
+    if nodes.is_empty() {
+        let message = format!("`{}` is a region without nodes at the start", written(path));
+        report.at(path, message, "make it larger, or move it to where the body starts".to_owned());
+        return None;
+    }
+    Some(nodes)
+}

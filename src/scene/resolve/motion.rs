@@ -1,0 +1,127 @@
+//! Turns and paths.
+
+use super::{direction, vector};
+use crate::scene::file::{Coordinates, MotionFile, RotationFile, SwingFile};
+use crate::scene::report::{Report, Way, written};
+use crate::sim::body::Dimension;
+use crate::sim::motion::{Key, Motion, Place};
+use glam::DVec3;
+
+/// The unit axis of a turn; a mistake if there is one too few or too many.
+pub(super) fn axis(
+    typed: &RotationFile,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<DVec3> {
+    let rotation = written(path);
+    let path = [path, &[Way::Key("axis")]].concat();
+    match (&typed.axis, dimension) {
+        (None, Dimension::Plane) => Some(DVec3::Z),
+        (Some(_), Dimension::Plane) => {
+            let message = format!("`{rotation}` has an `axis`, but the body is in the plane and turns within it");
+            report.at_key(&path, message, "take `axis` out; a positive angle turns counter-clockwise".to_owned());
+            None
+        }
+        (None, Dimension::Space) => {
+            let help = "such as axis = [0, 0, 1]".to_owned();
+            report.at(&path, format!("`{rotation}` has no `axis`, which a turn in space needs"), help);
+            None
+        }
+        (Some(axis), Dimension::Space) => {
+            vector(axis, dimension, &path, report).and_then(|axis| direction(axis, &path, report))
+        }
+    }
+}
+
+/// A shift and a turn.
+fn place(
+    shift: Option<&Coordinates>,
+    rotation: Option<&RotationFile>,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Place> {
+    let shift = match shift {
+        Some(typed) => vector(typed, dimension, &[path, &[Way::Key("shift")]].concat(), report),
+        None => Some(DVec3::ZERO),
+    };
+    let turn = match rotation {
+        Some(typed) => {
+            let axis = axis(typed, dimension, &[path, &[Way::Key("rotation")]].concat(), report);
+            axis.map(|axis| axis * typed.angle)
+        }
+        None => Some(DVec3::ZERO),
+    };
+    Some(Place { shift: shift?, turn: turn? })
+}
+
+/// A path from key to key. With a single key it stays there.
+pub(super) fn keys(
+    typed: &MotionFile,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Motion> {
+    let mut keys = Vec::with_capacity(typed.keys.len());
+    let mut in_order = true;
+    for (at, key) in typed.keys.iter().enumerate() {
+        let path = [path, &[Way::Key("keys"), Way::Index(at)]].concat();
+        if let Some(before) =
+            at.checked_sub(1).map(|before| typed.keys[before].time).filter(|&before| before >= key.time)
+        {
+            let message =
+                format!("`{}` is at {} s, not later than the key before it at {before} s", written(&path), key.time);
+            report.at(
+                &[&path[..], &[Way::Key("time")]].concat(),
+                message,
+                "list the keys in rising order of time".to_owned(),
+            );
+            in_order = false;
+        }
+        let place = place(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
+        keys.extend(place.map(|place| Key { time: key.time, place }));
+    }
+    if keys.len() < typed.keys.len() || !in_order {
+        return None;
+    }
+    if let (true, Some(first), Some(last)) = (typed.repeat, keys.first(), keys.last()) {
+        if keys.len() == 1 {
+            let message = format!("`{}` repeats, but has a single key", written(path));
+            report.at(path, message, "add keys, or take `repeat` out".to_owned());
+            return None;
+        }
+        if !same(first.place, last.place) {
+            let message = format!("`{}` repeats, but does not end where it begins: it would jump", written(path));
+            let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
+            report.at(&[path, &[Way::Key("keys"), Way::Index(keys.len() - 1)]].concat(), message, help);
+            return None;
+        }
+    }
+    Some(Motion::Keys { keys, ease: typed.ease, repeat: typed.repeat })
+}
+
+/// Whether two places are the same up to rounding and whole turns.
+fn same(one: Place, other: Place) -> bool {
+    /// A rounding of what was typed is no jump.
+    const CLOSE: f64 = 1e-6;
+    let [one_pose, other_pose] = [one, other].map(|place| Motion::at(place).pose(0.0));
+    one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)
+        && one_pose.turn.dot(other_pose.turn).abs() >= 1.0 - CLOSE * CLOSE
+}
+
+/// A motion to and fro.
+pub(super) fn swing(
+    typed: &SwingFile,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Motion> {
+    if typed.shift.is_none() && typed.rotation.is_none() {
+        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would swing", written(path));
+        report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
+        return None;
+    }
+    let amplitude = place(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
+    Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
+}

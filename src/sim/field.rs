@@ -1,0 +1,123 @@
+//! Scalar fields over a body: what a picture can colour it by.
+
+use super::body::{Body, Dimension, State};
+use super::rotation::{davenport1968, moment, planar};
+use super::snapshot::Placement;
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number for each node or each element of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Field {
+    /// How far each element is from its shape at rest: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero
+    /// for any rigid motion, `a` for an element scaled by `1 + a`.
+    Strain,
+    /// Distance of each node from where the best rigid placement of the whole rest shape has it (m).
+    Displacement,
+    /// Speed of each node (m/s).
+    Speed,
+    /// Elastic energy of each node (J): of each element's energy the part of its own distance from the equilibrium
+    /// shape, of each spring's energy a half. The sum over all nodes is the elastic energy of the body.
+    ElasticEnergy,
+}
+
+/// To what the numbers of a field belong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// One for each node.
+    Nodes,
+    /// One for each element.
+    Elements,
+}
+
+impl Field {
+    /// To what its numbers belong.
+    pub fn support(self) -> Support {
+        match self {
+            Self::Strain => Support::Elements,
+            Self::Displacement | Self::Speed | Self::ElasticEnergy => Support::Nodes,
+        }
+    }
+
+    /// What a reader calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Displacement => "displacement",
+            Self::Speed => "speed",
+            Self::ElasticEnergy => "elastic energy",
+        }
+    }
+
+    /// Its unit; empty for a pure number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Strain => "",
+            Self::Displacement => "m",
+            Self::Speed => "m/s",
+            Self::ElasticEnergy => "J",
+        }
+    }
+
+    /// The field at a state. `share_energy` adds to each node its part of the elastic energy (J).
+    pub(super) fn values(
+        self,
+        body: &Body,
+        state: &State,
+        placement: &Placement,
+        share_energy: impl FnOnce(&mut [f64]),
+    ) -> Vec<f64> {
+        match self {
+            Self::Strain => body.elements.iter().map(|nodes| strain(body, nodes, &state.position)).collect(),
+            Self::Displacement => {
+                let nodes = body.rest.iter().zip(&state.position);
+                nodes.map(|(&rest, &now)| now.distance(placement.place(rest))).collect()
+            }
+            Self::Speed => state.velocity.iter().map(|velocity| velocity.length()).collect(),
+            Self::ElasticEnergy => {
+                let mut energies = vec![0.0; body.len()];
+                share_energy(&mut energies);
+                energies
+            }
+        }
+    }
+}
+
+/// The distance of an element from its shape at rest, as a part of its size; see [`Field::Strain`].
+fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
+    let centred = |points: &[DVec3]| {
+        let corners = nodes.iter().map(|&node| points[node as usize]);
+        let mean = corners.clone().sum::<DVec3>() / nodes.len() as f64;
+        corners.map(|corner| corner - mean).collect::<Vec<_>>()
+    };
+    let (rest, now) = (centred(&body.rest), centred(position));
+    let at_rest = moment(&rest, now.iter().copied());
+    let turn = match body.dimension {
+        Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
+        Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
+    };
+    let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - turn * rest).length_squared()).sum();
+    (off / rest.iter().map(|rest| rest.length_squared()).sum::<f64>()).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strain_is_the_scale_of_a_scaled_element_and_nothing_for_a_turned_one() {
+        let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::new(0.4, 0.5, 1.0)];
+        let turn = DQuat::from_xyzw(0.3, -0.4, 0.1, 0.8).normalize();
+        for dimension in [Dimension::Plane, Dimension::Space] {
+            let body =
+                Body::new(dimension, rest.clone(), vec![1.0; 5], [&[0, 1, 2, 3][..]].into_iter().collect(), None);
+            let turn = if dimension == Dimension::Plane { DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8) } else { turn };
+            for scale in [1.0, 1.25, 0.4] {
+                let position: Vec<_> = rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect();
+                assert!((strain(&body, &[0, 1, 2, 3], &position) - (scale - 1.0).abs()).abs() < 1e-14, "{scale}");
+            }
+        }
+    }
+}

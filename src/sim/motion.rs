@@ -1,0 +1,240 @@
+//! How rigid things are moved: obstacles, and the hands that drag nodes.
+
+use glam::{DQuat, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// A displacement of something rigid: a turn about a pivot of its own, then a shift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The shift (m).
+    pub shift: DVec3,
+    /// The turn about the pivot.
+    pub turn: DQuat,
+}
+
+impl Pose {
+    /// Where it was at the beginning.
+    pub const NONE: Self = Self { shift: DVec3::ZERO, turn: DQuat::IDENTITY };
+
+    /// Where a point (m) of the thing is, which without the displacement is at `point`.
+    pub fn apply(&self, pivot: DVec3, point: DVec3) -> DVec3 {
+        pivot + self.shift + self.turn * (point - pivot)
+    }
+
+    /// The point (m) of the thing that the displacement has brought to `point`.
+    pub fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
+        pivot + self.turn.conjugate() * (point - pivot - self.shift)
+    }
+}
+
+/// A displacement as typed: the turn is a vector along its axis, as long as its angle (rad), so that it may go round
+/// more than once.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// The shift (m).
+    pub shift: DVec3,
+    /// Axis times angle of the turn (rad).
+    pub turn: DVec3,
+}
+
+impl Place {
+    fn pose(self) -> Pose {
+        Pose { shift: self.shift, turn: quaternion(self.turn) }
+    }
+
+    fn lerp(self, other: Self, share: f64) -> Self {
+        Self { shift: self.shift.lerp(other.shift, share), turn: self.turn.lerp(other.turn, share) }
+    }
+}
+
+/// A place at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// When (s).
+    pub time: f64,
+    /// Where.
+    pub place: Place,
+}
+
+/// How a path runs from one key to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ease {
+    /// From rest to rest: the share of the way is `(1 − cos πs)/2` after the share `s` of the time.
+    #[default]
+    Smooth,
+    /// At constant speed.
+    Linear,
+}
+
+impl Ease {
+    fn share(self, s: f64) -> f64 {
+        match self {
+            // To the same bits on every machine: this library computes its cosine in plain arithmetic.
+            Self::Smooth => 0.5 * (1.0 - libm::cos(PI * s)),
+            Self::Linear => s,
+        }
+    }
+
+    /// The greatest speed between two keys over the mean one.
+    fn peak(self) -> f64 {
+        match self {
+            Self::Smooth => 0.5 * PI,
+            Self::Linear => 1.0,
+        }
+    }
+}
+
+/// A path through space and time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Motion {
+    /// It stays where it is.
+    #[default]
+    Still,
+    /// From key to key, whose times rise. Before the first key it is at the first one, after the last at the last.
+    Keys {
+        /// The keys, one or more.
+        keys: Vec<Key>,
+        /// How it runs between them.
+        ease: Ease,
+        /// Whether the path begins again at the first key's time when it has reached the last one's.
+        repeat: bool,
+    },
+    /// To and fro about where it is: `sin(2π t / period + phase)` times a place.
+    Swing {
+        /// Duration of one swing to and fro (s).
+        period: f64,
+        /// Where in the swing it is at time zero (rad).
+        phase: f64,
+        /// The farthest place.
+        amplitude: Place,
+    },
+}
+
+impl Motion {
+    /// Staying at a place.
+    pub fn at(place: Place) -> Self {
+        Self::Keys { keys: vec![Key { time: 0.0, place }], ease: Ease::Linear, repeat: false }
+    }
+
+    /// Where it is at a time (s).
+    pub fn pose(&self, time: f64) -> Pose {
+        match self {
+            Self::Still => Pose::NONE,
+            Self::Keys { keys, ease, repeat } => along(keys, *ease, *repeat, time).pose(),
+            Self::Swing { period, phase, amplitude } => {
+                // Whole swings first: what is left has all its digits however long it has swung.
+                let swings = time / period;
+                let share = libm::sin(TAU * (swings - swings.floor()) + phase);
+                Place::default().lerp(*amplitude, share).pose()
+            }
+        }
+    }
+
+    /// The greatest speed (m/s) at a distance from the pivot (m).
+    pub fn greatest_speed(&self, distance: f64) -> f64 {
+        let way = |place: Place| place.shift.length() + place.turn.length() * distance;
+        match self {
+            Self::Still => 0.0,
+            Self::Keys { keys, ease, .. } => {
+                let speed = |two: &[Key]| {
+                    let [from, to] = [two[0], two[1]];
+                    let place =
+                        Place { shift: to.place.shift - from.place.shift, turn: to.place.turn - from.place.turn };
+                    way(place) / (to.time - from.time) * ease.peak()
+                };
+                keys.windows(2).map(speed).fold(0.0, f64::max)
+            }
+            Self::Swing { period, amplitude, .. } => TAU / period * way(*amplitude),
+        }
+    }
+}
+
+fn along(keys: &[Key], ease: Ease, repeat: bool, time: f64) -> Place {
+    let (Some(first), Some(last)) = (keys.first(), keys.last()) else { return Place::default() };
+    let length = last.time - first.time;
+    let mut time = time;
+    if repeat && length > 0.0 && time > first.time {
+        let rounds = (time - first.time) / length;
+        time = first.time + (rounds - rounds.floor()) * length;
+    }
+    let after = keys.partition_point(|key| key.time <= time);
+    match (after.checked_sub(1).map(|at| keys[at]), keys.get(after)) {
+        (None, _) => first.place,
+        (Some(last), None) => last.place,
+        (Some(from), Some(to)) => {
+            let share = (time - from.time) / (to.time - from.time);
+            from.place.lerp(to.place, ease.share(share))
+        }
+    }
+}
+
+/// The turn about a vector by its length (rad).
+fn quaternion(turn: DVec3) -> DQuat {
+    let angle = turn.length();
+    if angle == 0.0 {
+        return DQuat::IDENTITY;
+    }
+    let (sine, cosine) = libm::sincos(0.5 * angle);
+    let axis = turn / angle * sine;
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(time: f64, x: f64, turn: f64) -> Key {
+        Key { time, place: Place { shift: DVec3::X * x, turn: DVec3::Z * turn } }
+    }
+
+    #[test]
+    fn paths_meet_their_keys_and_rest_before_and_after() {
+        for ease in [Ease::Smooth, Ease::Linear] {
+            let path = Motion::Keys { keys: vec![key(1.0, 0.5, 0.0), key(2.0, 1.5, PI)], ease, repeat: false };
+            for (time, x) in [(0.0, 0.5), (1.0, 0.5), (1.5, 1.0), (2.0, 1.5), (9.0, 1.5)] {
+                assert!((path.pose(time).shift.x - x).abs() < 1e-15, "{ease:?} {time}");
+            }
+            let quarter = path.pose(1.5).apply(DVec3::Y, DVec3::Y + DVec3::X);
+            assert!(quarter.distance(DVec3::new(1.0, 2.0, 0.0)) < 1e-15, "{quarter}");
+            assert!(
+                path.pose(1.3).undo(DVec3::Y, path.pose(1.3).apply(DVec3::Y, DVec3::ONE)).distance(DVec3::ONE) < 1e-15
+            );
+        }
+    }
+
+    #[test]
+    fn a_smooth_stroke_follows_a_cosine() {
+        let keys = vec![key(0.0, 0.0, 0.0), key(0.2, 0.22, 0.0), key(0.4, 0.0, 0.0)];
+        let path = Motion::Keys { keys, ease: Ease::Smooth, repeat: true };
+        for step in 0..100 {
+            let time = 0.013 * f64::from(step);
+            let depth = 0.11 * (1.0 - (TAU * time / 0.4).cos());
+            assert!((path.pose(time).shift.x - depth).abs() < 1e-13, "{time}");
+        }
+    }
+
+    #[test]
+    fn no_path_is_faster_than_its_greatest_speed() {
+        let amplitude = Place { shift: DVec3::X, turn: DVec3::Z };
+        let paths = [
+            Motion::Swing { period: 0.7, phase: 0.4, amplitude },
+            Motion::Keys {
+                keys: vec![key(0.0, 0.0, 0.0), key(0.5, 1.0, 2.0), key(0.6, 0.8, 0.0)],
+                ease: Ease::Smooth,
+                repeat: true,
+            },
+            Motion::Keys { keys: vec![key(0.0, 0.0, 0.0), key(0.5, 1.0, 2.0)], ease: Ease::Linear, repeat: false },
+        ];
+        for path in &paths {
+            let mut greatest: f64 = 0.0;
+            let place = |time: f64| path.pose(time).apply(DVec3::ZERO, DVec3::new(0.0, 0.3, 0.0));
+            for step in 1..6000 {
+                let time = 1e-4 * f64::from(step);
+                greatest = greatest.max((place(time) - place(time - 1e-4)).length() / 1e-4);
+            }
+            assert!(greatest <= path.greatest_speed(0.3) * (1.0 + 1e-9), "{greatest} {path:?}");
+            assert!(greatest > 0.4 * path.greatest_speed(0.3), "{greatest} {path:?}");
+        }
+    }
+}
