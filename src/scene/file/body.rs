@@ -51,6 +51,19 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) lowest: Option<f64>,
     /// Initial velocity of all nodes (m/s). Default: at rest.
     pub(in crate::scene) velocity: Option<Coordinates>,
+    /// A rigid spin at the start about the mean of the nodes, on top of all other velocities. Default: none.
+    pub(in crate::scene) spin: Option<SpinFile>,
+}
+
+/// A rigid spin.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SpinFile {
+    /// The axis, of any length but zero, about which the spin is counter-clockwise when it points at the viewer. In
+    /// the plane there is none.
+    pub(in crate::scene) axis: Option<Coordinates>,
+    /// The angular velocity (rad/s).
+    pub(in crate::scene) rate: f64,
 }
 
 /// A block of equal cells standing on the level of the origin, its middle above (in the plane: at) the origin.

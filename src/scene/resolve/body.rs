@@ -131,19 +131,23 @@ fn masses(file: &BodyFile, nodes: usize, report: &mut Report<'_>) -> Vec<f64> {
 
 /// Where and how fast the body starts.
 fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Report<'_>) -> State {
-    let (turn, offset, velocity) = check_start(file, dimension, report);
+    let (turn, spin, offset, velocity) = check_start(file, dimension, report);
     let mut listed = |typed: &Option<Vec<Coordinates>>, key| {
         let typed = typed.as_ref()?;
         check_count(key, typed.len(), rest.len(), report);
         Some(points(typed, key, dimension, report))
     };
     let mut position = listed(&file.positions, "positions").unwrap_or_else(|| rest.to_vec());
-    let velocity = listed(&file.velocities, "velocities").unwrap_or_else(|| vec![velocity; rest.len()]);
+    let mut velocity = listed(&file.velocities, "velocities").unwrap_or_else(|| vec![velocity; rest.len()]);
     if let Some((axis, angle)) = turn {
         let centre = position.iter().sum::<DVec3>() / position.len() as f64;
         position.iter_mut().for_each(|point| *point = centre + turned(*point - centre, axis, angle));
     }
     position.iter_mut().for_each(|point| *point += offset);
+    if let Some(spin) = spin {
+        let centre = position.iter().sum::<DVec3>() / position.len() as f64;
+        velocity.iter_mut().zip(&position).for_each(|(velocity, &point)| *velocity += spin.cross(point - centre));
+    }
     if let Some(height) = file.lowest {
         let lowest = position.iter().fold(f64::INFINITY, |lowest, point| lowest.min(point.y));
         // In this order the lowest node stands at the very height that was typed.
@@ -152,17 +156,25 @@ fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Rep
     State { position, velocity }
 }
 
-/// A turn (unit axis, angle), a shift and a velocity, each with its mistakes reported and then left out.
-fn check_start(file: &BodyFile, dimension: Dimension, report: &mut Report<'_>) -> (Option<(DVec3, f64)>, DVec3, DVec3) {
+/// A turn (unit axis, angle), a spin (rad/s), a shift and a velocity, each with its mistakes reported and then left out.
+fn check_start(
+    file: &BodyFile,
+    dimension: Dimension,
+    report: &mut Report<'_>,
+) -> (Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let turn = file.rotation.as_ref().and_then(|typed| {
         let path = [Way::Key("body"), Way::Key("rotation")];
-        Some((axis(typed, dimension, &path, report)?, typed.angle))
+        Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
+    });
+    let spin = file.spin.as_ref().and_then(|typed| {
+        let path = [Way::Key("body"), Way::Key("spin")];
+        Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
         Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
-    (turn, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
+    (turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.

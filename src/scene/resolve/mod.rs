@@ -45,9 +45,9 @@ impl Parts {
         let file = &checked.sound;
         let mut body: Option<BodyFile> = part(file, "body", report);
         // Beside a lattice lists for each node are mistakes, which have been said.
-        if let Some(BodyFile { lattice: Some(lattice), mass, rotation, offset, lowest, velocity, .. }) = body {
+        if let Some(BodyFile { lattice: Some(lattice), mass, rotation, offset, lowest, velocity, spin, .. }) = body {
             let lattice = Some(lattice);
-            body = Some(BodyFile { lattice, mass, rotation, offset, lowest, velocity, ..BodyFile::default() });
+            body = Some(BodyFile { lattice, mass, rotation, offset, lowest, velocity, spin, ..BodyFile::default() });
         }
         Self {
             title: part(file, "title", report),
