@@ -2,6 +2,7 @@
 
 mod digest;
 mod good;
+mod manipulators;
 mod mistakes;
 mod robust;
 mod schema;
