@@ -6,6 +6,7 @@ pub mod body;
 pub mod census;
 pub mod contact;
 pub mod diagnose;
+pub mod hull;
 pub mod integrate;
 pub mod lists;
 pub mod model;

@@ -146,8 +146,8 @@ fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
 /// Mean length of all elements' edges at rest (m); the size of the body if they have none.
 pub(super) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for (nodes, &kind) in body.elements.iter().zip(&body.kinds) {
-        for [a, b] in topology::edges_of(kind, nodes) {
+    for element in 0..body.elements.len() {
+        for [a, b] in body.topology().edges_of(element) {
             sum += body.rest[a as usize].distance(body.rest[b as usize]);
             count += 1.0;
         }
