@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_flat_element_is_a_face_of_its_own_that_bounds_nothing() {
-        let rest: Vec<_> = (0..7).map(|at| f64::from(at)).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
+        let rest: Vec<_> = (0..7).map(f64::from).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
         let elements = [&[0, 1, 2, 3, 4, 5, 6][..]; 2].into_iter().collect();
         let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, None);
         assert_eq!(body.faces.inner, [Some(0), Some(1)]);

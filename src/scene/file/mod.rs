@@ -8,7 +8,9 @@ mod body;
 mod obstacle;
 mod view;
 
-pub(in crate::scene) use body::{BodyFile, RotationFile};
+pub(in crate::scene) use body::{
+    BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile,
+};
 pub(in crate::scene) use obstacle::ObstacleFile;
 pub(in crate::scene) use view::ViewFile;
 
