@@ -15,7 +15,6 @@ use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
-use crate::sim::topology::edges_of;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -247,7 +246,7 @@ impl<'a> Composer<'a> {
             let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
             let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind });
             let at = |node: u32| position[node as usize];
-            let edges = edges_of(body.kinds[element], nodes);
+            let edges = body.topology().edges_of(element);
             for &[a, b] in &edges {
                 line(at(a), at(b));
             }

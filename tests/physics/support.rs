@@ -9,7 +9,7 @@ use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::topology::{self, Springs};
+use localshape::sim::topology::Springs;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
 }
 
 pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {
-    MassSpring { stiffness, damping, springs: topology::springs(named, &body.elements, &body.kinds) }
+    MassSpring { stiffness, damping, springs: body.topology().springs(named) }
 }
 
 pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {

@@ -1,5 +1,7 @@
 //! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
 
+mod archives;
+mod bodies;
 mod digest;
 mod good;
 mod manipulators;
