@@ -192,18 +192,27 @@ impl<'p> Cloud<'p> {
                 first = Some((place, (x, y)));
             }
         }
+        // The plane through a point, the points in it, and whether there are others above it.
         let through = |place: u32| {
             let normal = from_line(self.at(place) - origin, line).cross(line).try_normalize()?;
-            let height = |place: u32| normal.dot(self.at(place) - origin);
-            let inside = self.places.iter().copied().filter(|&place| height(place).abs() <= self.tolerance);
-            Some((normal, inside.collect::<Vec<_>>()))
+            let (mut inside, mut is_above) = (Vec::new(), false);
+            for &place in &self.places {
+                let height = normal.dot(self.at(place) - origin);
+                is_above |= height > self.tolerance;
+                if height.abs() <= self.tolerance {
+                    inside.push(place);
+                }
+            }
+            Some((normal, inside, is_above))
         };
-        let (_, inside) = through(first?.0)?;
+        let (first, _) = first?;
+        let (mut normal, mut inside, mut is_above) = through(first)?;
         // The point farthest from the line says best how the plane lies.
         let (far, _) = self.farthest(&inside, |point| from_line(point - origin, line).length())?;
-        let (normal, inside) = through(far)?;
-        let is_outside = |&place: &u32| normal.dot(self.at(place) - origin) > self.tolerance;
-        (!self.places.iter().any(is_outside)).then_some((normal, inside))
+        if far != first {
+            (normal, inside, is_above) = through(far)?;
+        }
+        (!is_above).then_some((normal, inside))
     }
 
     /// The outline of points in a plane, counter-clockwise about its normal, from a corner on and, when one is given,
