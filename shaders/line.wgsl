@@ -13,6 +13,8 @@ const EDGE = 0u;
 const ALARM_EDGE = 1u;
 const CONTOUR = 2u;
 const ALARM_CONTOUR = 3u;
+const OBSTACLE_EDGE = 8u;
+const OBSTACLE_CONTOUR = 9u;
 
 // Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
 const REACH = 1.25;
@@ -61,10 +63,14 @@ fn segment(
     return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
 }
 
-fn depth_at(pixel: vec2<f32>) -> f32 {
+fn pixel_of(place: vec2<f32>) -> vec2<i32> {
     let low = panel.region.xy;
     let high = low + panel.region.zw - 1.0;
-    return load_depth(vec2<i32>(clamp(floor(pixel), low, high)));
+    return vec2<i32>(clamp(floor(place), low, high));
+}
+
+fn depth_at(pixel: vec2<f32>) -> f32 {
+    return load_depth(pixel_of(pixel));
 }
 
 fn distance_of(depth: f32) -> f32 {
@@ -91,6 +97,14 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let here = depth_at(middle);
     let visible = before >= here || panel.flatness > 0.5;
     let scale = panel.line_scale;
+    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
+    let of_obstacle = segment.kind == OBSTACLE_EDGE || segment.kind == OBSTACLE_CONTOUR;
+    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(pixel_of(middle))) {
+        return vec4(0.0);
+    }
+    if segment.kind == OBSTACLE_EDGE {
+        return vec4(0.80 * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
+    }
     let strength = min(1.0, panel.element / SMALL_ELEMENT);
     if segment.kind == EDGE && panel.flatness > 0.5 {
         return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
@@ -125,7 +139,9 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     if farther <= 0.0 && (shown || open) {
         return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
     }
-    if shown && distance_of(farther) - distance_of(nearer) > STEP * panel.soft {
+    // Where one thing ends before another, a contour is drawn however close they are.
+    let meets = is_obstacle(pixel_of(middle + across)) != is_obstacle(pixel_of(middle - across));
+    if shown && (meets || distance_of(farther) - distance_of(nearer) > STEP * panel.soft) {
         let step = 0.85 * covered(distance, 1.5 * scale);
         return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
     }

@@ -7,6 +7,17 @@ fn load_depth(at: vec2<i32>) -> f32 {
     return textureLoad(body_depth, at, 0);
 }
 
+// The share of samples that hold something farther away than a depth.
+fn share_beyond(at: vec2<i32>, depth: f32) -> f32 {
+    let here = vec4(
+        textureLoad(body_depth, at, 0),
+        textureLoad(body_depth, at, 1),
+        textureLoad(body_depth, at, 2),
+        textureLoad(body_depth, at, 3),
+    );
+    return dot(vec4(0.25), select(vec4(0.0), vec4(1.0), (here > vec4(0.0)) & (here < vec4(depth))));
+}
+
 // Linear, multiplied with alpha: the mean of the samples.
 fn load_colour(at: vec2<i32>) -> vec4<f32> {
     let a = textureLoad(body_colour, at, 0);

@@ -40,6 +40,23 @@ const CLOCKWISE = 5u;
 const FADING = 6u;
 const SHADOW = 7u;
 const SMOOTH = 8u;
+const ARROW = 16u;
+const PIN = 17u;
+const HIDDEN_PIN = 18u;
+const HAND = 19u;
+const HIDDEN_HAND = 20u;
+
+// An arrow in a mark of height 23: length and half width of its head, how far its notch goes in, half the thickness of
+// its shaft, its halo, and the length below which all of it shrinks.
+const ARROW_HEIGHT = 23.0;
+const ARROW_HEAD = vec2<f32>(21.0, 8.5);
+const ARROW_NOTCH = 4.0;
+const ARROW_SHAFT = 2.1;
+const ARROW_HALO = 2.4;
+const SHORT_ARROW = 34.0;
+// What is hidden is so faint, and a halo so opaque.
+const HIDDEN = 0.38;
+const HALO = 0.75;
 
 // The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
 // the right), length and half width of its head.
@@ -64,6 +81,29 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
     let side = s * slant.x - (HEAD.x - t) * slant.y;
     let head = min(0.5 - side / pixel, 0.5 + t / pixel);
     return saturate(max(ring, head));
+}
+
+// The distance (px) from the border of an arrow that runs along the x-axis from 0 to `size.x`; negative inside it.
+fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> f32 {
+    let scale = size.y / ARROW_HEIGHT;
+    let short = min(1.0, size.x / (SHORT_ARROW * scale));
+    let head = ARROW_HEAD * scale * short;
+    let notch = ARROW_NOTCH * scale * short;
+    let y = abs(at.y);
+    let from_base = at.x - (size.x - head.x);
+    // The sloping side of the head, and the notch behind it.
+    let side = dot(vec2(from_base, y - head.y), normalize(vec2(head.y, head.x)));
+    let back = dot(vec2(from_base, y - head.y), normalize(vec2(-head.y, -notch)));
+    let shaft = max(y - ARROW_SHAFT * scale * short, max(-at.x, from_base - notch));
+    return min(max(side, back), shaft);
+}
+
+// A mark with a halo: how far a pixel is outside of it (px).
+fn with_halo(colour: vec3<f32>, halo: vec3<f32>, outside: f32, width: f32, strength: f32) -> vec4<f32> {
+    let inner = saturate(0.5 - outside);
+    let outer = HALO * saturate(0.5 + width - outside);
+    let alpha = inner + outer * (1.0 - inner);
+    return vec4((colour * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha * strength);
 }
 
 @vertex
@@ -110,6 +150,24 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             let down = at.y / corner.rectangle.w;
             let across = smoothstep(1.0, 0.55, abs(middle.x));
             return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
+        }
+        case ARROW: {
+            let size = corner.rectangle.zw;
+            let outside = off_arrow(at - vec2(0.0, 0.5 * size.y), size);
+            return with_halo(corner.colour.rgb, corner.second.rgb, outside, ARROW_HALO * size.y / ARROW_HEIGHT, 1.0);
+        }
+        case PIN, HIDDEN_PIN: {
+            let radius = 0.5 * corner.rectangle.z;
+            let outside = (radius * (abs(middle.x) + abs(middle.y)) - 0.74 * radius) * 0.70710678;
+            let strength = select(1.0, HIDDEN, corner.shape == HIDDEN_PIN);
+            return with_halo(corner.colour.rgb, corner.second.rgb, outside, 0.17 * radius, strength);
+        }
+        case HAND, HIDDEN_HAND: {
+            let radius = 0.5 * corner.rectangle.z;
+            let from_middle = radius * length(middle);
+            let outside = min(from_middle - 0.36 * radius, abs(from_middle - 0.76 * radius) - 0.11 * radius);
+            let strength = select(1.0, HIDDEN, corner.shape == HIDDEN_HAND);
+            return with_halo(corner.colour.rgb, corner.second.rgb, outside, 0.12 * radius, strength);
         }
         case SMOOTH: {
             let inside = min(at, corner.rectangle.zw - at);

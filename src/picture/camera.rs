@@ -1,7 +1,7 @@
 //! From where a panel is seen: pure numbers, in double precision.
 
 use super::narrow::narrow_row;
-use crate::scene::{Camera, View};
+use crate::scene::{Camera, Follow, View};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
@@ -17,6 +17,8 @@ const REFERENCE_ROOM: f64 = 0.75;
 const FULL_ASPECT: f64 = 640.0 / 720.0;
 /// Which part of a panel's height bodies may use between titles and captions.
 const USABLE_HEIGHT: f64 = 0.70;
+/// How far aside of the middle bodies may be, in heights of a panel.
+const USABLE_WIDTH: f64 = 0.39;
 /// Below this rise, in distances of the camera, following hardly begins.
 const GENTLE_RISE: f64 = 0.045;
 /// The highest rise that is followed, in distances of the camera. What flies farther leaves the picture.
@@ -41,29 +43,64 @@ pub struct Framing {
     pub rise: f64,
 }
 
-/// Where the camera looks when the lowest and the highest of the shown bodies have their centres at `heights` (m).
+/// Where the middles of the bodies shown are in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Middles {
+    /// The lowest corner of the box around them (m); infinite if no body is shown.
+    pub low: DVec3,
+    /// The highest corner of that box (m).
+    pub high: DVec3,
+    /// Where the middle of the body is at the start of the scene (m).
+    pub start: DVec3,
+}
+
+impl Middles {
+    /// Those of the bodies whose middles are given, in a scene where the body starts with its middle at `start` (m).
+    pub fn new(middles: impl IntoIterator<Item = DVec3>, start: DVec3) -> Self {
+        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, start };
+        middles.into_iter().fold(none, |all, at| Self { low: all.low.min(at), high: all.high.max(at), start })
+    }
+
+    /// How far their common middle has gone level from the start (m), and half their distance then (m).
+    fn level(&self) -> Option<(DVec3, f64)> {
+        let level = |way: DVec3| DVec3::new(way.x, 0.0, way.z);
+        let (gone, apart) = (level(self.low.midpoint(self.high) - self.start), level(self.high - self.low));
+        (gone.is_finite() && apart.is_finite()).then(|| (gone, apart.length() / 2.0))
+    }
+}
+
+/// Where the camera looks when the bodies shown are at their `middles`.
 ///
-/// With `follow`, the camera shows as much more height as the highest body has risen above the point looked at: half of
-/// it by looking higher and all of it by drawing back. Where there is nothing that ends a fall (`bottomless`), it first
-/// sinks with the lowest body. All of it begins gently, so that small bounces do not move the camera.
-pub fn framing(camera: &Camera, heights: [f64; 2], bottomless: bool) -> Framing {
+/// If it follows the height, it shows as much more height as the highest body has risen above the point looked at: half
+/// of it by looking higher and all of it by drawing back. Where there is nothing that ends a fall (`bottomless`), it
+/// first sinks with the lowest body. All of it begins gently, so that small bounces do not move the camera. If it
+/// follows the body, it also goes along level with the common middle, at once and all the way, and draws back as far as
+/// the bodies of the panels part.
+pub fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing {
     let Camera { target, distance, rise, .. } = *camera;
     let still = Framing { target, base: target, distance, rise };
+    let heights = [middles.low.y, middles.high.y];
     let pull = |length: f64, gentle: f64, most: f64| {
         let length = length.min(most * distance);
         if length > 0.0 { length * length / (length + gentle * distance) } else { 0.0 }
     };
-    if !camera.follow {
-        return still;
-    }
+    let (gone, apart) = match camera.follow {
+        Follow::Nothing => return still,
+        Follow::Height => (DVec3::ZERO, 0.0),
+        Follow::Body => middles.level().unwrap_or_default(),
+    };
+    let farthest = DEEPEST_FALL * distance;
+    let target = target + gone.clamp(DVec3::splat(-farthest), DVec3::splat(farthest));
     let sink = if bottomless { pull(target.y - heights[0], GENTLE_FALL, DEEPEST_FALL) } else { 0.0 };
     let base = target - sink * DVec3::Y;
     let risen = pull(heights[1] - base.y, GENTLE_RISE, HIGHEST_RISE);
-    let height_per_distance = 2.0 * libm::tan(camera.field_of_view / 2.0) * USABLE_HEIGHT;
+    let slope = 2.0 * libm::tan(camera.field_of_view / 2.0);
+    let back = risen * libm::cos(camera.elevation) / (slope * USABLE_HEIGHT);
+    let aside = pull(apart, GENTLE_RISE, HIGHEST_RISE) / (slope * USABLE_WIDTH);
     Framing {
         target: base + 0.5 * risen * DVec3::Y,
         base,
-        distance: distance + risen * libm::cos(camera.elevation) / height_per_distance,
+        distance: distance + back + aside,
         rise: rise + risen,
     }
 }
@@ -163,6 +200,12 @@ mod tests {
     use crate::picture::narrow::narrow_point;
     use crate::scene::{Theme, Visible};
 
+    fn at_heights(heights: [f64; 2]) -> Middles {
+        let [low, high] = heights.map(|height| height * DVec3::Y);
+        Middles { low, high, start: DVec3::ZERO }
+    }
+
+
     const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
 
     fn view() -> View {
@@ -176,7 +219,7 @@ mod tests {
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
                 rise: 0.0,
-                follow: true,
+                follow: Follow::Height,
             },
             clock: String::new(),
             columns: 2,
@@ -189,7 +232,7 @@ mod tests {
 
     fn lens(highest: f64) -> Lens {
         let view = view();
-        Lens::new(&view, &framing(&view.camera, [highest; 2], false), Dimension::Space, PANEL, 1.0)
+        Lens::new(&view, &framing(&view.camera, &at_heights([highest; 2]), false), Dimension::Space, PANEL, 1.0)
     }
 
     #[test]
@@ -246,7 +289,7 @@ mod tests {
             let fallen = f64::from(step * step) * 0.01;
             for apart in [0.0, 0.5] {
                 let heights = [0.15 - fallen, 0.15 - fallen + apart];
-                let framing = framing(&view.camera, heights, true);
+                let framing = framing(&view.camera, &at_heights(heights), true);
                 let lens = Lens::new(&view, &framing, Dimension::Space, PANEL, 1.0);
                 for corner in 0..16 {
                     let sign = |bit: usize| if corner >> bit & 1 == 1 { 0.15 } else { -0.15 };
@@ -261,26 +304,55 @@ mod tests {
     #[test]
     fn following_is_smooth_and_rests_near_the_floor() {
         let camera = view().camera;
-        assert_eq!(framing(&camera, [0.1; 2], false).distance, camera.distance);
-        assert!(framing(&camera, [0.17; 2], false).distance < 1.03 * camera.distance);
+        assert_eq!(framing(&camera, &at_heights([0.1; 2]), false).distance, camera.distance);
+        assert!(framing(&camera, &at_heights([0.17; 2]), false).distance < 1.03 * camera.distance);
         let distances: Vec<_> =
-            (0..3000).map(|step| framing(&camera, [f64::from(step) * 0.001; 2], false).distance).collect();
+            (0..3000).map(|step| framing(&camera, &at_heights([f64::from(step) * 0.001; 2]), false).distance).collect();
         for three in distances.windows(3) {
             let (first, second) = (three[1] - three[0], three[2] - three[1]);
             assert!(first >= 0.0 && (second - first).abs() < 1e-3 * camera.distance, "{three:?}");
         }
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
-            let framing = framing(&camera, [odd; 2], false);
-            assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
-            let framing = super::framing(&camera, [odd; 2], true);
-            assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
+            for follow in [Follow::Height, Follow::Body] {
+                for bottomless in [false, true] {
+                    let camera = Camera { follow, ..camera.clone() };
+                    let middles = Middles { low: DVec3::splat(odd), high: DVec3::splat(odd), start: DVec3::ZERO };
+                    let framing = super::framing(&camera, &middles, bottomless);
+                    assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
+                }
+            }
         }
+    }
+
+    #[test]
+    fn following_the_body_goes_along_level_with_the_common_middle() {
+        let height = view().camera;
+        let camera = Camera { follow: Follow::Body, ..height.clone() };
+        let start = DVec3::new(0.3, 0.15, -0.2);
+        let together = framing(&camera, &Middles::new([start + 7.0 * DVec3::X; 2], start), false);
+        let resting = framing(&height, &Middles::new([start; 2], start), false);
+        assert!((together.target - resting.target).distance(7.0 * DVec3::X) < 1e-12);
+        assert_eq!(together.distance, resting.distance);
+        // Both bodies stay in the picture when they part.
+        let view = View { camera: camera.clone(), ..view() };
+        for step in 0..60 {
+            let apart = 0.05 * f64::from(step);
+            let middles = [-apart, apart].map(|x| DVec3::new(5.0 + x, 0.15, 0.0));
+            let framing = framing(&camera, &Middles::new(middles, DVec3::new(0.0, 0.15, 0.0)), false);
+            let lens = Lens::new(&view, &framing, Dimension::Space, PANEL, 1.0);
+            for middle in middles {
+                let (pixel, _) = lens.project(middle).unwrap();
+                assert!((640.0 + 70.0..1280.0 - 70.0).contains(&pixel[0]), "{apart}: {pixel:?}");
+            }
+        }
+        // Without any body that could be followed the camera is where it began.
+        assert_eq!(framing(&camera, &Middles::new([], start), false).target, camera.target);
     }
 
     #[test]
     fn narrow_panels_show_the_body_smaller_not_cut() {
         let view = view();
-        let framing = framing(&view.camera, [0.0; 2], false);
+        let framing = framing(&view.camera, &at_heights([0.0; 2]), false);
         let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0], 0.37);
         let [left, right] = [-0.2, 0.2].map(|x| lens.project(DVec3::new(x, 0.15, 0.0)).unwrap().0[0]);
         assert!(20.0 < left && right < 180.0, "{left} {right}");

@@ -1,10 +1,14 @@
 //! Putting a picture together.
 
-use super::camera::{Lens, framing};
+use super::arrow::Arrows;
+use super::camera::{Lens, Middles, framing};
 use super::caption::{Writer, numbers};
 use super::ears::{Ears, bare_elements};
+use super::grip::Hands;
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::{narrow, narrow_point};
+use super::obstacle::{Staged, Staging};
+use super::obstacle_plane;
 use super::palette::Palette;
 use super::plane::Flat;
 use super::shadow::{self, Plane};
@@ -12,10 +16,11 @@ use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
 use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
 use crate::scene::Scene;
-use crate::sim::body::{Body, Dimension};
-use crate::sim::contact;
+use crate::sim::body::{Body, Dimension, bounds};
+use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// The key light comes from this far to the left of the viewer (rad).
@@ -57,6 +62,10 @@ pub struct Composer<'a> {
     /// Elements without faces.
     bare: Vec<usize>,
     extent: f64,
+    /// The middle of the nodes at the start (m).
+    start: DVec3,
+    /// The box around the nodes at the start (m).
+    start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
 }
@@ -117,6 +126,8 @@ impl<'a> Composer<'a> {
             ears,
             bare: bare_elements(body),
             extent,
+            start_box: bounds(&scene.initial.position).into(),
+            start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
     }
@@ -126,10 +137,9 @@ impl<'a> Composer<'a> {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
         let panels = layout::panels(size, frame.runs.len(), view.columns);
-        let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
-        let heights = centres.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        let middles = Middles::new(frame.runs.iter().filter_map(|run| middle(&run.snapshot)), self.start);
         let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
-        let framing = framing(&view.camera, heights, !level);
+        let framing = framing(&view.camera, &middles, !level);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
         let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&panels);
@@ -193,6 +203,7 @@ impl<'a> Composer<'a> {
             self.add_bare(&position, over, origin, &mut lines);
         }
         let flat = body.dimension == Dimension::Plane;
+        let element = lens.focal * side / if flat { 1.0 } else { framing.distance };
         let diverged = matches!(run.snapshot.status, Status::Diverged(_));
         if flat {
             let flat = Flat {
@@ -205,12 +216,63 @@ impl<'a> Composer<'a> {
                 scale,
                 palette: &self.palette,
             };
-            flat.floors(&self.scene.obstacles, under);
+            flat.floors(&self.scene.obstacles, run.snapshot.time, under);
             if !diverged {
                 flat.signs(above);
             }
         }
-        let mut region = region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0);
+        let arrows = Arrows { lens: &lens, viewport, scale, palette: &self.palette };
+        let time = run.snapshot.time;
+        let (obstacles, staged) = if flat {
+            let flat = obstacle_plane::Flat {
+                obstacles: &self.scene.obstacles,
+                time,
+                frame: 1.0 / self.scene.frames_per_second,
+                lens: &lens,
+                origin,
+                side,
+                extent: self.extent,
+                line_scale: scale.line(),
+                palette: &self.palette,
+            };
+            flat.arrows(&arrows, above);
+            flat.draw()
+        } else {
+            let staging = Staging {
+                obstacles: &self.scene.obstacles,
+                time,
+                frame: 1.0 / self.scene.frames_per_second,
+                lens: &lens,
+                origin,
+                side,
+                extent: self.extent,
+                widening: self.widening(framing),
+                cell: cell(self.extent / side),
+                palette: &self.palette,
+                ground: contact::ground(&self.scene.obstacles, time),
+                position: &position,
+                start: self.start_box,
+            };
+            staging.arrows(&arrows, above);
+            staging.draw(&mut lines)
+        };
+        if !diverged {
+            let hands = Hands {
+                grips: &self.scene.grips,
+                time,
+                frame: 1.0 / self.scene.frames_per_second,
+                position: &position,
+                skin: (&self.skin.triangles, &self.skin.nodes),
+                element,
+                viewport,
+                scale,
+                palette: &self.palette,
+                arrows: &arrows,
+            };
+            hands.draw(above);
+        }
+        let touched = position.iter().chain(&staged.outermost);
+        let mut region = region(viewport, touched, &lens, LINE_ROOM * scale.line() + 2.0);
         if diverged {
             // What blew up may lie across everything; the words that say so stay on clean ground.
             region = overlap(region, layout::clear_of_words(viewport, scale));
@@ -227,12 +289,13 @@ impl<'a> Composer<'a> {
                 flat,
                 line_scale: narrow(scale.line()),
                 soft: narrow(self.soft),
-                element: narrow(lens.focal * side / if flat { 1.0 } else { framing.distance }),
+                element: narrow(element),
             },
-            floor: if flat { None } else { self.floor(&position, framing, key, scale) },
+            floor: if flat { None } else { self.floor(&position, &staged, time, framing, key, scale) },
             sound,
             turned_over,
             lines,
+            obstacles,
         }
     }
 
@@ -257,28 +320,54 @@ impl<'a> Composer<'a> {
         }
     }
 
-    fn floor(&self, position: &[DVec3], framing: &Framing, key: DVec3, scale: Scale) -> Option<Floor> {
+    /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
+    /// panel.
+    fn widening(&self, framing: &Framing) -> f64 {
+        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.extent);
+        (framing.distance / usual).sqrt()
+    }
+
+    fn floor(
+        &self,
+        position: &[DVec3],
+        staged: &Staged,
+        time: f64,
+        framing: &Framing,
+        key: DVec3,
+        scale: Scale,
+    ) -> Option<Floor> {
         let view = &self.scene.view;
         let (origin, side) = (framing.base, view.side);
-        let (normal, height) = contact::ground(&self.scene.obstacles, 0.0)?;
-        let plane = Plane::new(normal, (height - normal.dot(origin)) / side);
-        // What lies farther away is drawn wider, so that it fades at about the same place in the panel.
-        let usual = view.camera.distance.min(USUAL_DISTANCE * self.extent);
-        let widening = (framing.distance / usual).sqrt();
-        let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * widening);
+        let (normal, height) = contact::ground(&self.scene.obstacles, time)?;
+        let mut plane = Plane::new(normal, (height - normal.dot(origin)) / side);
+        // The grid's lines go through the origin of the world, or through where a moving floor has brought it.
+        let mut anchor = DVec3::ZERO;
+        let moving = |one: &&Obstacle| one.motion != Motion::Still && one.floor(time) == Some((normal, height));
+        if let Some(moving) = self.scene.obstacles.iter().find(moving)
+            && let Shape::Floor { normal, .. } = moving.shape
+        {
+            let pose = moving.pose(time);
+            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+            anchor = pose.apply(moving.shape.pivot(), DVec3::ZERO);
+        }
+        let fade = FLOOR_FADE.map(|sizes| sizes * self.extent / side * self.widening(framing));
         let on_skin = self.skin.nodes.iter().filter_map(|&node| position.get(node as usize));
-        let points: Vec<_> = on_skin.map(|&at| (at - origin) / side).collect();
-        let triangles = if points.is_empty() { &[][..] } else { &self.skin.triangles };
+        let mut points: Vec<_> = on_skin.map(|&at| (at - origin) / side).collect();
+        let mut triangles = Cow::Borrowed(if points.is_empty() { &[][..] } else { &self.skin.triangles });
+        if !staged.shadow_triangles.is_empty() {
+            let base = points.len() as u32;
+            points.extend(staged.shadow_points.iter().map(|&at| (at - origin) / side));
+            triangles.to_mut().extend(staged.shadow_triangles.iter().map(|triangle| triangle.map(|at| base + at)));
+        }
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
         let shades = if key.dot(plane.normal) > 0.05 {
-            shadow::shades(&points, triangles, &plane, key, middle, fade[1], self.soft)
+            shadow::shades(&points, &triangles, &plane, key, middle, fade[1], self.soft)
         } else {
             std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
         let cell = cell(self.extent / side);
-        // The grid's lines go through the origin of the world.
-        let grid = plane.axes.map(|axis| narrow((origin / side).dot(axis).rem_euclid(cell)));
+        let grid = plane.axes.map(|axis| narrow(((origin - anchor) / side).dot(axis).rem_euclid(cell)));
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
@@ -321,13 +410,14 @@ fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
 }
 
-/// The height of a body's middle (m); `None` for a run that blew up, which no camera can follow.
-fn height_of_centre(snapshot: &Snapshot) -> Option<f64> {
-    let count = snapshot.position.len();
-    if count == 0 || matches!(snapshot.status, Status::Diverged(_)) {
-        return None;
-    }
-    Some(snapshot.position.iter().map(|at| at.y).sum::<f64>() / count as f64).filter(|height| height.is_finite())
+/// The middle of a body's nodes (m); `None` for a run that blew up, which no camera can follow.
+fn middle(snapshot: &Snapshot) -> Option<DVec3> {
+    let followed = !matches!(snapshot.status, Status::Diverged(_));
+    mean(&snapshot.position).filter(|middle| followed && middle.is_finite())
+}
+
+fn mean(points: &[DVec3]) -> Option<DVec3> {
+    (!points.is_empty()).then(|| points.iter().sum::<DVec3>() / points.len() as f64)
 }
 
 /// Unit vector towards the key light.
@@ -353,12 +443,12 @@ fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangl
     [left, top, right - left, bottom - top]
 }
 
-/// The part of a panel that a body may touch, with `room` (px) around it.
-fn region(viewport: Rectangle, position: &[DVec3], lens: &Lens, room: f64) -> Rectangle {
+/// The part of a panel that points and what lies between them may touch, with `room` (px) around it.
+fn region<'p>(viewport: Rectangle, points: impl Iterator<Item = &'p DVec3>, lens: &Lens, room: f64) -> Rectangle {
     let [left, top, width, height] = viewport;
     let mut low = DVec2::INFINITY;
     let mut high = DVec2::NEG_INFINITY;
-    for &point in position {
+    for &point in points {
         match lens.project(point) {
             Some((pixel, _)) => {
                 low = low.min(DVec2::from(pixel));

@@ -8,13 +8,17 @@
 //! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
 //! out depends on the scene and that frame alone.
 
+mod arrow;
 mod camera;
 mod caption;
 mod compose;
 mod ears;
+mod grip;
 mod layout;
 mod narrow;
 mod number;
+mod obstacle;
+mod obstacle_plane;
 mod palette;
 mod plane;
 mod shadow;
@@ -22,7 +26,7 @@ mod surface;
 mod tally;
 mod text;
 
-pub use camera::{Framing, Lens, framing};
+pub use camera::{Framing, Lens, Middles, framing};
 pub use compose::{Composer, compose};
 pub use layout::Rectangle;
 pub use palette::{Colour, Palette};
@@ -63,8 +67,69 @@ pub struct Panel {
     pub sound: Mesh,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
-    /// Edges and contours of both.
+    /// Edges and contours of both, and of solid obstacles.
     pub lines: Vec<Line>,
+    /// What the body bounces off, besides the floor.
+    pub obstacles: Obstacles,
+}
+
+/// The obstacles of a panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Obstacles {
+    /// What hides what is behind it. In the plane all of it lies behind the body, and the first before the next.
+    pub solids: Vec<Solid>,
+    /// What is seen through, from the farthest to the nearest.
+    pub slabs: Vec<Slab>,
+}
+
+impl Obstacles {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.solids.is_empty() && self.slabs.is_empty()
+    }
+}
+
+/// A closed surface of one colour.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    /// The surface.
+    pub mesh: Mesh,
+    /// Its colour, before light falls on it.
+    pub colour: Colour,
+}
+
+/// Something transparent.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Slab {
+    /// Its faces that are turned towards the viewer.
+    pub panes: Vec<Pane>,
+    /// The edges of these.
+    pub edges: Vec<[[f32; 3]; 2]>,
+}
+
+/// A transparent convex polygon.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pane {
+    /// Its corners, around it.
+    pub corners: Vec<PaneCorner>,
+    /// Its colour.
+    pub colour: Colour,
+    /// Its opacity.
+    pub alpha: f32,
+    /// Whether there is a grid on it, like that on the floor.
+    pub grid: bool,
+}
+
+/// A corner of a pane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PaneCorner {
+    /// Where it is.
+    pub position: [f32; 3],
+    /// Where it is on the grid, whose lines are at whole numbers.
+    pub grid: [f32; 2],
+    /// Where it is in the circle of radius one in which the pane fades out. A pane all of whose corners are at zero does
+    /// not fade.
+    pub from_middle: [f32; 2],
 }
 
 /// Camera and light of a panel.
@@ -157,6 +222,10 @@ pub enum LineKind {
     Contour = 2,
     /// The same of the turned-over set.
     AlarmContour = 3,
+    /// An edge of a solid obstacle.
+    ObstacleEdge = 8,
+    /// A place where the surface of a solid obstacle turns away from the viewer or ends at the floor.
+    ObstacleContour = 9,
 }
 
 /// A flat mark on the picture.
@@ -198,4 +267,14 @@ pub enum MarkShape {
     Shadow,
     /// A filled rectangle with smooth borders, a pixel wide inside it.
     Smooth,
+    /// An arrow along the whole width, with a halo of the second colour.
+    Arrow,
+    /// A diamond with a halo of the second colour.
+    Pin,
+    /// The same, faint: of something hidden.
+    HiddenPin,
+    /// A disc in a ring, both with a halo of the second colour.
+    Hand,
+    /// The same, faint: of something hidden.
+    HiddenHand,
 }

@@ -36,6 +36,20 @@ pub struct Palette {
     pub outline: Colour,
     /// Opacity of the outline.
     pub outline_alpha: f32,
+    /// A solid obstacle in space, before light falls on it.
+    pub obstacle: Colour,
+    /// A solid obstacle in the plane, and its outline.
+    pub obstacle_flat: [Colour; 2],
+    /// A transparent plate, and its sides.
+    pub plate: Colour,
+    /// The sides of a plate.
+    pub plate_side: Colour,
+    /// A wall or a slope.
+    pub wall: Colour,
+    /// Edges of what is transparent.
+    pub pane_edge: Colour,
+    /// Arrows of what moves, and marks of what is held.
+    pub pointer: Colour,
     /// Names and numbers.
     pub text: Colour,
     /// Everything else that is written.
@@ -83,6 +97,13 @@ const LIGHT: Palette = Palette {
     edge: [0x1f, 0x2a, 0x38],
     outline: [0x14, 0x1c, 0x27],
     outline_alpha: 1.0,
+    obstacle: [0xc6, 0xbf, 0xb4],
+    obstacle_flat: [[0xdd, 0xd8, 0xcf], [0x7a, 0x74, 0x6a]],
+    plate: [0xd3, 0xd6, 0xda],
+    plate_side: [0xb9, 0xc2, 0xcd],
+    wall: [0xe6, 0xe9, 0xed],
+    pane_edge: [0x2a, 0x33, 0x3e],
+    pointer: [0x3c, 0x43, 0x4d],
     text: [0x1b, 0x23, 0x2e],
     second_text: [0x5c, 0x66, 0x72],
     axis: [0x7a, 0x84, 0x91],
@@ -105,6 +126,13 @@ const DARK: Palette = Palette {
     edge: [0x0b, 0x10, 0x17],
     outline: [0xdc, 0xe5, 0xef],
     outline_alpha: 0.62,
+    obstacle: [0x6e, 0x68, 0x60],
+    obstacle_flat: [[0x38, 0x36, 0x33], [0x9a, 0x94, 0x8a]],
+    plate: [0x4a, 0x55, 0x63],
+    plate_side: [0x6b, 0x79, 0x8a],
+    wall: [0x24, 0x2c, 0x36],
+    pane_edge: [0xa9, 0xb6, 0xc5],
+    pointer: [0xdc, 0xe3, 0xea],
     text: [0xee, 0xf2, 0xf6],
     second_text: [0x9c, 0xa8, 0xb6],
     axis: [0x6b, 0x76, 0x83],

@@ -6,6 +6,7 @@ use super::compose::LEVEL;
 use super::ears::Ears;
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::narrow;
+use super::obstacle_plane::half_space;
 use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;
@@ -46,9 +47,9 @@ pub(super) struct Flat<'a> {
 
 impl Flat<'_> {
     /// All floors, below the body.
-    pub(super) fn floors(&self, obstacles: &[Obstacle], marks: &mut Vec<Mark>) {
+    pub(super) fn floors(&self, obstacles: &[Obstacle], time: f64, marks: &mut Vec<Mark>) {
         for obstacle in obstacles {
-            let Some((normal, height)) = obstacle.floor(0.0) else { continue };
+            let Some((normal, height)) = half_space(obstacle, time) else { continue };
             if normal.y > LEVEL { self.level(height, marks) } else { self.slope(normal, height, marks) }
         }
     }

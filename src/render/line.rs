@@ -10,6 +10,9 @@ use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/line.wgsl");
 pub(super) const ALARM_SHADER: &str = include_str!("../../shaders/line_alarm.wgsl");
+/// What lines know of solid obstacles, where there are none and where there are some.
+pub(super) const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
+pub(super) const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 
 /// One line as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -22,48 +25,43 @@ struct Segment {
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
 
-/// The pipeline of the lines, and the lines of one picture.
+/// A pipeline and what it reads.
+#[derive(Debug)]
+struct Way {
+    among: bool,
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    textures: Option<wgpu::BindGroup>,
+}
+
+/// The pipelines of the lines, and the lines of one picture.
 #[derive(Debug)]
 pub(super) struct Lines {
-    pipeline: wgpu::RenderPipeline,
-    depth_layout: wgpu::BindGroupLayout,
-    depth: Option<wgpu::BindGroup>,
+    alone: Way,
+    /// Among solid obstacles, as soon as there are any.
+    among: Option<Way>,
+    samples: u32,
     segments: GrowingBuffer<Segment>,
     ranges: Vec<Range<u32>>,
 }
 
 impl Lines {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let parts = [super::PANEL_SHADER, super::reading_shader(samples), ALARM_SHADER, SHADER];
-        let module = shader(gpu, "line", &parts);
-        let depth_layout = group_layout(gpu, "depth", &[texture_entry(1, true, samples), texture_entry(2, true, 1)]);
-        let largest = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Max,
-        };
-        let recipe = Recipe {
-            label: "line",
-            shader: &module,
-            entries: ["segment", "opacity"],
-            groups: &[&panels.layout, &depth_layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Segment>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: LINE_FORMAT,
-            blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-            depth: false,
-            samples: 1,
-        };
         Self {
-            pipeline: recipe.build(gpu),
-            depth_layout,
-            depth: None,
+            alone: Way::new(gpu, panels, samples, false),
+            among: None,
+            samples,
             segments: GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::VERTEX, 1024),
             ranges: Vec::new(),
+        }
+    }
+
+    /// Prepares to draw lines among solid obstacles.
+    pub(super) fn prepare_among(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies) {
+        if self.among.is_none() {
+            let mut way = Way::new(gpu, panels, self.samples, true);
+            way.retarget(gpu, bodies);
+            self.among = Some(way);
         }
     }
 
@@ -85,14 +83,17 @@ impl Lines {
 
     /// Takes note of new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        let views = [(1, &bodies.depth), (2, &bodies.alarm_depth)];
-        self.depth = Some(bind_textures(gpu, "depth", &self.depth_layout, &views));
+        self.alone.retarget(gpu, bodies);
+        if let Some(among) = &mut self.among {
+            among.retarget(gpu, bodies);
+        }
     }
 
-    /// Draws the lines of all panels.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, self.depth.as_ref(), &[]);
+    /// Draws the lines of all panels, among solid obstacles if there are any.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle], among: bool) {
+        let way = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
+        pass.set_pipeline(&way.pipeline);
+        pass.set_bind_group(1, way.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
         for (panel, (range, &place)) in self.ranges.iter().zip(places).enumerate() {
             if is_visible(place) && !range.is_empty() {
@@ -101,5 +102,46 @@ impl Lines {
                 pass.draw(0..4, range.clone());
             }
         }
+    }
+}
+
+impl Way {
+    fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
+        let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
+        let parts = [super::PANEL_SHADER, super::reading_shader(samples), obstacles, ALARM_SHADER, SHADER];
+        let module = shader(gpu, "line", &parts);
+        let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
+        if among {
+            entries.push(texture_entry(0, false, samples));
+        }
+        let layout = group_layout(gpu, "depth", &entries);
+        let largest = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Max,
+        };
+        let recipe = Recipe {
+            label: "line",
+            shader: &module,
+            entries: ["segment", "opacity"],
+            groups: &[&panels.layout, &layout],
+            vertices: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<Segment>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &ATTRIBUTES,
+            })],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: LINE_FORMAT,
+            blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
+            depth: false,
+            samples: 1,
+        };
+        Self { among, pipeline: recipe.build(gpu), layout, textures: None }
+    }
+
+    fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
+        let all = [(1, &bodies.depth), (2, &bodies.alarm_depth), (0, &bodies.colour)];
+        let views = if self.among { &all[..] } else { &all[..2] };
+        self.textures = Some(bind_textures(gpu, "depth", &self.layout, views));
     }
 }

@@ -1,10 +1,11 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
 //! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
-//! 2. `surface`: all surfaces, with several samples a pixel, in textures no larger than the bodies.
+//! 2. `surface`: all surfaces, with several samples a pixel, in textures no larger than the bodies; among them solid
+//!    obstacles (`obstacle`).
 //! 3. `line`: edges and contours as opacities, one sample a pixel with smooth borders of their own.
 //! 4. `ground`: the floor, its grid and its shadows, into the picture.
-//! 5. `composite`: bodies and lines over the ground.
+//! 5. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
 //! 6. `overlay`: marks and words.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
@@ -13,6 +14,7 @@ mod composite;
 mod glyphs;
 mod ground;
 mod line;
+mod obstacle;
 mod overlay;
 mod panel;
 mod pipeline;
@@ -24,6 +26,7 @@ mod target;
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
 use image::RgbImage;
+use obstacle::{Slabs, Solids};
 use panel::Panels;
 use target::{Bodies, Canvas};
 
@@ -74,6 +77,9 @@ pub struct Renderer {
     panels: Panels,
     surfaces: surface::Surfaces,
     lines: line::Lines,
+    /// Made when they are first needed.
+    solids: Option<Solids>,
+    slabs: Option<Slabs>,
     grounds: ground::Grounds,
     composite: composite::Composite,
     overlay: overlay::Overlay,
@@ -102,6 +108,8 @@ impl Renderer {
             samples,
             surfaces: surface::Surfaces::new(gpu, &panels, samples),
             lines: line::Lines::new(gpu, &panels, samples),
+            solids: None,
+            slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
             composite: composite::Composite::new(gpu, &panels, samples),
             overlay: overlay::Overlay::new(gpu),
@@ -142,6 +150,9 @@ impl Renderer {
                 self.surfaces.retarget(&gpu, &bodies);
                 self.lines.retarget(&gpu, &bodies);
                 self.composite.retarget(&gpu, &bodies);
+                if let Some(slabs) = &mut self.slabs {
+                    slabs.retarget(&gpu, &bodies);
+                }
                 bodies
             }
         };
@@ -150,6 +161,22 @@ impl Renderer {
         self.lines.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
+        let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
+        if with_solids {
+            self.lines.prepare_among(&gpu, &self.panels, &bodies);
+            let new = || Solids::new(&gpu, &self.panels, self.samples);
+            self.solids.get_or_insert_with(new).write(&gpu, picture);
+        }
+        if with_slabs {
+            let new = || {
+                let mut slabs = Slabs::new(&gpu, &self.panels, self.samples);
+                slabs.retarget(&gpu, &bodies);
+                slabs
+            };
+            self.slabs.get_or_insert_with(new).write(&gpu, picture);
+        }
+        let solids = self.solids.as_ref().filter(|_| with_solids);
+        let slabs = self.slabs.as_ref().filter(|_| with_slabs);
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
@@ -159,10 +186,13 @@ impl Renderer {
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
             self.surfaces.draw_all(&mut pass, &self.panels, &places);
+            if let Some(solids) = solids {
+                solids.draw(&mut pass, &self.panels, &places);
+            }
         }
         {
             let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
-            self.lines.draw(&mut pass, &self.panels, &places);
+            self.lines.draw(&mut pass, &self.panels, &places, with_solids);
         }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
         let mut background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
@@ -176,7 +206,13 @@ impl Renderer {
         {
             let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
             self.grounds.draw(&mut pass, &self.panels, picture);
+            if let Some(slabs) = slabs {
+                slabs.draw(&mut pass, &self.panels, picture, false);
+            }
             self.composite.draw(&mut pass, &self.panels, picture);
+            if let Some(slabs) = slabs {
+                slabs.draw(&mut pass, &self.panels, picture, true);
+            }
         }
         {
             let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);

@@ -157,6 +157,11 @@ fn plain(mark: &picture::Mark) -> Mark {
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
+            MarkShape::Arrow => 16,
+            MarkShape::Pin => 17,
+            MarkShape::HiddenPin => 18,
+            MarkShape::Hand => 19,
+            MarkShape::HiddenHand => 20,
         },
     }
 }

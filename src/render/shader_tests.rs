@@ -3,7 +3,7 @@
 use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
-use super::{MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, overlay, surface};
+use super::{MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, obstacle, overlay, surface};
 use std::mem::offset_of;
 
 fn parse(parts: &[&str]) -> naga::Module {
@@ -19,10 +19,14 @@ fn parse(parts: &[&str]) -> naga::Module {
 #[test]
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, surface::SHADER]);
+    parse(&[PANEL_SHADER, surface::SHADER, obstacle::SHADER]);
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
     for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
-        parse(&[PANEL_SHADER, reading, line::ALARM_SHADER, line::SHADER]);
+        for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
+            parse(&[PANEL_SHADER, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
+        }
+        parse(&[PANEL_SHADER, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
     }
 }

@@ -1,6 +1,7 @@
 //! What a scene holds, in words and numbers, for whoever checks it.
 
 use super::Scene;
+use super::view::Follow;
 use super::words::{count, list};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
@@ -125,7 +126,11 @@ impl Scene {
                 short(view.camera.elevation.to_degrees())
             ),
         };
-        let follow = if view.camera.follow { ", following" } else { "" };
+        let follow = match view.camera.follow {
+            Follow::Nothing => "",
+            Follow::Height => ", following",
+            Follow::Body => ", following the body",
+        };
         let (theme, distance) = (typed(&view.theme), short(view.camera.distance));
         format!("{width} × {height} px, {theme}, {panels}, seen {from}, {distance} m away{follow}")
     }

@@ -76,8 +76,19 @@ pub struct Camera {
     pub distance: f64,
     /// How much higher the body starts than it would stand, where target and distance were chosen to show both (m).
     pub rise: f64,
-    /// Whether the camera rises and draws back with the highest body shown, alike in all panels; without a level floor
-    /// it sinks with the lowest. What it does then
-    /// is a function of the frame alone, so that any frame can be drawn by itself.
-    pub follow: bool,
+    /// How it goes along with the bodies shown, alike in all panels.
+    pub follow: Follow,
+}
+
+/// How a camera goes along with the bodies shown. What it does is a function of the frame alone, so that any frame can
+/// be drawn by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Follow {
+    /// It stays where it is.
+    #[default]
+    Nothing,
+    /// It rises and draws back with the highest body; without a level floor it sinks with the lowest.
+    Height,
+    /// It does that, and goes along level with the common middle of the bodies.
+    Body,
 }

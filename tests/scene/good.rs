@@ -2,7 +2,7 @@
 
 use super::{WORLD, good, shipped};
 use glam::DVec3;
-use localshape::scene::{Limits, Scene, SceneError, Theme};
+use localshape::scene::{Follow, Limits, Scene, SceneError, Theme};
 use localshape::sim::body::{Dimension, ElementKind};
 use localshape::sim::contact::Shape;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!(scene.runs[1].step, cycle / 50.0);
     assert_eq!(scene.obstacles.len(), 1);
     assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
-    assert!(scene.view.camera.follow);
+    assert_eq!(scene.view.camera.follow, Follow::Height);
     assert_eq!((scene.view.columns, scene.view.side, scene.view.theme), (2, 0.1, Theme::Light));
 }
 

@@ -1,7 +1,7 @@
 //! The view as typed.
 
 use super::Coordinates;
-use crate::scene::view::Theme;
+use crate::scene::view::{Follow, Theme};
 use crate::sim::field::Field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -99,21 +99,61 @@ pub(in crate::scene) struct CameraFile {
     /// Turn to the right around the vertical, from looking along −z (rad). Default: 0.541, which is 31°. Not in the
     /// plane.
     pub(in crate::scene) azimuth: Option<f64>,
-    /// Height above the horizon (rad), less than a quarter turn (1.57) either way. Default: 0.297, which is 17°. Not in
-    /// the plane.
+    /// Height above the horizon (rad), less than a quarter turn (1.57) either way. Default: 0.297, which is 17°; under
+    /// a plate that faces down 0.227, which is 13°. Not in the plane.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(in crate::scene) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
     #[schemars(range(min = 0.001, max = 3.0))]
     pub(in crate::scene) field_of_view: Option<f64>,
     /// The point looked at (m). Default: the middle of the body as it would stand on the first floor below it, or
-    /// where it starts if there is none.
+    /// where it starts if there is none. If `distance` is not given either, it moves aside for plates, spheres,
+    /// capsules, boxes and grips that come near, so that they are in the picture, too.
     pub(in crate::scene) target: Option<Coordinates>,
     /// Distance from that point (m). Default: 8.5 times the largest side of the box around the body at the start, and
-    /// more if the body starts higher than that shows.
+    /// more if the body starts higher than that shows. If `target` is not given either, it is also so large that the
+    /// picture shows whatever of plates, spheres, capsules, boxes and grips is at any time within 1.25 body sizes of
+    /// where the body starts and stands; what is farther away moves nothing.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) distance: Option<f64>,
-    /// Whether the camera rises and draws back with the highest body shown, alike in all panels. Where there is no
-    /// floor to stand on, it sinks with the lowest.
-    pub(in crate::scene) follow: bool,
+    /// Whether the camera goes along with the bodies shown, alike in all panels. With `true` or `"height"` it rises and
+    /// draws back with the highest body; where there is no floor to stand on, it sinks with the lowest. With `"body"` it
+    /// does that and also goes along level with the common middle of the bodies.
+    pub(in crate::scene) follow: FollowFile,
+}
+
+/// How the camera follows, as typed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum FollowFile {
+    /// `true` for the height, `false` for nothing.
+    Switch(bool),
+    /// What it follows.
+    What(FollowedFile),
+}
+
+/// What the camera follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum FollowedFile {
+    /// The height of the bodies.
+    Height,
+    /// Their height, and level their common middle.
+    Body,
+}
+
+impl Default for FollowFile {
+    fn default() -> Self {
+        Self::Switch(false)
+    }
+}
+
+impl From<FollowFile> for Follow {
+    fn from(typed: FollowFile) -> Self {
+        match typed {
+            FollowFile::Switch(false) => Self::Nothing,
+            FollowFile::Switch(true) | FollowFile::What(FollowedFile::Height) => Self::Height,
+            FollowFile::What(FollowedFile::Body) => Self::Body,
+        }
+    }
 }

@@ -7,6 +7,7 @@ mod grips;
 mod lists;
 mod motion;
 mod obstacles;
+mod reach;
 mod runs;
 mod view;
 
@@ -133,7 +134,14 @@ pub(super) fn resolve(
     let view = match (&parts.view, &body, &obstacles) {
         (Some(view), Some(body), Some(obstacles)) => {
             let runs = runs.as_deref().unwrap_or_default();
-            let around = view::Around { body, gravity: gravity.unwrap_or_default(), obstacles, runs };
+            let around = view::Around {
+                body,
+                gravity: gravity.unwrap_or_default(),
+                obstacles,
+                grips: grips.as_deref().unwrap_or_default(),
+                duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
+                runs,
+            };
             view::resolve(view, &around, report)
         }
         _ => None,

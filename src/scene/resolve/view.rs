@@ -1,21 +1,24 @@
 //! How the scene is looked at.
 
 use super::body::ResolvedBody;
-use super::vector;
+use super::{reach, vector};
 use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, ColourFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, ColourScale, View, Visible};
+use crate::scene::view::{Camera, ColourScale, Follow, View, Visible};
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{self, Obstacle};
+use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
+use crate::sim::grip::Grip;
 use crate::sim::world::cycle;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
 const AZIMUTH: f64 = 31.0 / 180.0 * std::f64::consts::PI;
 const ELEVATION: f64 = 17.0 / 180.0 * std::f64::consts::PI;
+/// Elevation under a plate, which would hide the body from higher up (rad).
+const UNDER_PLATE: f64 = 13.0 / 180.0 * std::f64::consts::PI;
 const FIELD_OF_VIEW: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 
 /// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
@@ -41,7 +44,10 @@ pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<
     }
     let (azimuth, elevation) = match dimension {
         Dimension::Plane => (0.0, 0.0),
-        Dimension::Space => (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(ELEVATION)),
+        Dimension::Space => {
+            let elevation = if is_under_plate(obstacles) { UNDER_PLATE } else { ELEVATION };
+            (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(elevation))
+        }
     };
     let start = &body.initial.position;
     let standing = standing(start, obstacles);
@@ -52,13 +58,16 @@ pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<
         target: standing,
         distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body)),
         rise: 0.0,
-        follow: typed.camera.follow,
+        follow: typed.camera.follow.into(),
     };
     match &typed.camera.target {
         Some(target) => chosen.target = vector(target, dimension, &camera("target"), report)?,
         // A camera that follows shows by itself how high a body is.
-        None if chosen.follow => {}
+        None if chosen.follow != Follow::Nothing => {}
         None => show_start(&mut chosen, start, dimension, typed.camera.distance.is_some()),
+    }
+    if typed.camera.target.is_none() && typed.camera.distance.is_none() {
+        show_reach(&mut chosen, start, standing, scene);
     }
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
@@ -123,6 +132,9 @@ pub(super) struct Around<'a> {
     pub(super) body: &'a ResolvedBody,
     pub(super) gravity: DVec3,
     pub(super) obstacles: &'a [Obstacle],
+    pub(super) grips: &'a [Grip],
+    /// Simulated time (s).
+    pub(super) duration: f64,
     pub(super) runs: &'a [Run],
 }
 
@@ -182,6 +194,55 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
     if !keep_distance {
         camera.distance = camera.distance.max(least_distance(camera, &shown, dimension));
     }
+}
+
+/// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
+/// already, or if there is nothing, nothing changes.
+fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Around<'_>) {
+    let (low, high) = bounds(start);
+    let (dimension, drop) = (scene.body.body.dimension, standing - (low + high) / 2.0);
+    let body: Vec<_> = match camera.follow {
+        Follow::Nothing => start.iter().flat_map(|&at| [at, at + drop]).collect(),
+        Follow::Height | Follow::Body => start.iter().map(|&at| at + drop).collect(),
+    };
+    let mut shown = reach::near(scene, &body, size(scene.body));
+    if shown.is_empty() || least_distance(camera, &shown, dimension) <= camera.distance {
+        return;
+    }
+    shown.extend(body);
+    // Each distance shows another middle, but hardly.
+    for _ in 0..4 {
+        let step = middle_of(camera, &shown, dimension);
+        camera.target += step;
+        camera.distance = camera.distance.max(least_distance(camera, &shown, dimension));
+    }
+}
+
+/// The way (m) from the point that a camera looks at to the one in whose picture points stand in the middle of the room.
+fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
+    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    let up = towards.cross(right);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for from_target in points.iter().map(|&point| point - camera.target) {
+        let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
+        let scale = camera.distance / (camera.distance - depth).max(0.1 * camera.distance);
+        let at = scale * DVec2::new(from_target.dot(right), from_target.dot(up));
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let [_, above, below] = ROOM;
+    let aside = 0.5 * (low.x + high.x);
+    let upward = (low.y * above + high.y * below) / (above + below);
+    // Upwards in the world, unless that is hardly to be seen.
+    let upward = if level > 0.3 { upward / level * DVec3::Y } else { upward * up };
+    aside * right + upward
+}
+
+/// Whether a plate presses from above.
+fn is_under_plate(obstacles: &[Obstacle]) -> bool {
+    let above = |obstacle: &Obstacle| matches!(obstacle.shape, Shape::Plate { normal, .. } if normal.y < -0.5);
+    obstacles.iter().any(above)
 }
 
 /// The least distance at which a camera has points in the picture (m).

@@ -1,0 +1,75 @@
+//! Arrows that say where obstacles and hands are going.
+
+use super::camera::Lens;
+use super::layout::{Rectangle, Scale};
+use super::narrow::narrow;
+use super::palette::Palette;
+use super::{Mark, MarkShape};
+use glam::{DVec2, DVec3};
+
+/// Length of the arrow of what moves at its greatest speed, and of the shortest one drawn (px in the reference picture).
+const LENGTH: f64 = 74.0;
+const SHORTEST: f64 = 11.0;
+/// Height of the mark that holds an arrow: its head with room for a halo (px in the reference picture).
+const HEIGHT: f64 = 23.0;
+
+/// How something moves at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Going {
+    /// Its velocity (m/s).
+    pub(super) velocity: DVec3,
+    /// The greatest speed that it reaches (m/s).
+    pub(super) greatest: f64,
+}
+
+/// Draws arrows into one panel.
+pub(super) struct Arrows<'a> {
+    pub(super) lens: &'a Lens,
+    pub(super) viewport: Rectangle,
+    pub(super) scale: Scale,
+    pub(super) palette: &'a Palette,
+}
+
+impl Arrows<'_> {
+    /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
+    /// of the speed, so that it comes and goes gently; nothing is drawn of what rests, and nothing outside the panel.
+    pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
+        let speed = going.velocity.length();
+        let share = (speed / going.greatest).min(1.0);
+        if !(share > 0.0 && speed.is_finite()) {
+            return;
+        }
+        let Some((from, distance)) = self.lens.project(point) else { return };
+        let pixels = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
+        // So short a way that perspective hardly bends it.
+        let way = going.velocity / speed;
+        let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
+        let step = DVec2::from(to) - DVec2::from(from);
+        let unit = self.scale.line();
+        // What comes straight at the viewer has a short arrow.
+        let length = LENGTH * unit * share.sqrt() * step.length().min(1.0);
+        let Some(along) = step.try_normalize().filter(|_| length >= SHORTEST * unit) else { return };
+        let tail = if arriving { -gap * unit - length } else { gap * unit };
+        self.mark(DVec2::from(from) + tail * along, along, length, marks);
+    }
+
+    fn mark(&self, tail: DVec2, along: DVec2, length: f64, marks: &mut Vec<Mark>) {
+        let height = HEIGHT * self.scale.line();
+        let [left, top, width, depth] = self.viewport.map(f64::from);
+        let inside = |at: DVec2| {
+            let room = height / 2.0;
+            (left + room..=left + width - room).contains(&at.x) && (top + room..=top + depth - room).contains(&at.y)
+        };
+        if !inside(tail) || !inside(tail + length * along) {
+            return;
+        }
+        let corner = tail - 0.5 * height * along.perp();
+        marks.push(Mark {
+            rectangle: [corner.x, corner.y, length, height].map(narrow),
+            along: along.to_array().map(narrow),
+            colour: self.palette.pointer,
+            second: self.palette.background,
+            shape: MarkShape::Arrow,
+        });
+    }
+}

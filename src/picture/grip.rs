@@ -1,0 +1,110 @@
+//! Marks on nodes that a hand holds or drags: nothing where no hand is at work.
+
+use super::arrow::{Arrows, Going};
+use super::layout::{Rectangle, Scale};
+use super::narrow::narrow;
+use super::palette::Palette;
+use super::{Mark, MarkShape};
+use crate::sim::grip::Grip;
+use crate::sim::motion::Motion;
+use glam::DVec3;
+
+/// Half the width of a pin, and of the ring around a node that is dragged (px in the reference picture), in space and
+/// in the plane, where nodes are discs.
+const PIN: [f64; 2] = [6.5, 9.0];
+const HAND: [f64; 2] = [9.5, 12.0];
+/// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
+const SHARE: f64 = 0.45;
+const NARROWEST: f64 = 3.0;
+
+/// What is needed to mark the nodes of one panel.
+pub(super) struct Hands<'a> {
+    pub(super) grips: &'a [Grip],
+    /// The time of the panel's state (s).
+    pub(super) time: f64,
+    /// The time between two frames (s).
+    pub(super) frame: f64,
+    /// The nodes (m).
+    pub(super) position: &'a [DVec3],
+    /// The outer triangles of the body, as places in a list of nodes, and that list.
+    pub(super) skin: (&'a [[u32; 3]], &'a [u32]),
+    /// Length of an element's edge (px).
+    pub(super) element: f64,
+    pub(super) viewport: Rectangle,
+    pub(super) scale: Scale,
+    pub(super) palette: &'a Palette,
+    pub(super) arrows: &'a Arrows<'a>,
+}
+
+impl Hands<'_> {
+    /// Marks all nodes that are held at the panel's time.
+    pub(super) fn draw(&self, marks: &mut Vec<Mark>) {
+        let held: Vec<_> = self.grips.iter().filter(|grip| grip.holds(self.time)).collect();
+        if held.is_empty() || self.position.is_empty() {
+            return;
+        }
+        let visible = self.visible();
+        for grip in held {
+            let nodes = || grip.nodes.iter().filter(|&&node| (node as usize) < self.position.len());
+            for &node in nodes() {
+                self.mark(self.position[node as usize], visible[node as usize], grip.motion != Motion::Still, marks);
+            }
+            if grip.motion != Motion::Still {
+                let points: Vec<_> = nodes().map(|&node| self.position[node as usize]).collect();
+                let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+                let gap = HAND[usize::from(self.arrows.lens.orthographic)] + 3.0;
+                self.arrows.draw(middle, self.going(grip), false, gap, marks);
+            }
+        }
+    }
+
+    /// How the middle of what a hand drags goes.
+    fn going(&self, grip: &Grip) -> Going {
+        let half = 0.25 * self.frame;
+        let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;
+        let [before, after] = [self.time - half, self.time + half].map(shift);
+        Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }
+    }
+
+    /// Whether each node lies on a side of the body that is turned towards the viewer.
+    fn visible(&self) -> Vec<bool> {
+        let lens = self.arrows.lens;
+        if lens.orthographic {
+            return vec![true; self.position.len()];
+        }
+        let (triangles, nodes) = self.skin;
+        let mut visible = vec![false; self.position.len()];
+        for triangle in triangles {
+            let nodes = triangle.map(|at| nodes[at as usize] as usize);
+            let [a, b, c] = nodes.map(|node| self.position[node]);
+            if lens.sees(a, (b - a).cross(c - a)) {
+                nodes.iter().for_each(|&node| visible[node] = true);
+            }
+        }
+        visible
+    }
+
+    fn mark(&self, point: DVec3, visible: bool, dragged: bool, marks: &mut Vec<Mark>) {
+        let sizes = if dragged { HAND } else { PIN };
+        let flat = self.arrows.lens.orthographic;
+        let radius = (sizes[usize::from(flat)] * self.scale.line()).min(SHARE * self.element);
+        let Some((pixel, _)) = self.arrows.lens.project(point).filter(|_| radius >= NARROWEST / 2.0) else { return };
+        let [left, top, width, height] = self.viewport.map(f64::from);
+        let inside = |at: f64, low: f64, length: f64| (low + radius..=low + length - radius).contains(&at);
+        if !inside(pixel[0], left, width) || !inside(pixel[1], top, height) {
+            return;
+        }
+        marks.push(Mark {
+            rectangle: [pixel[0] - radius, pixel[1] - radius, 2.0 * radius, 2.0 * radius].map(narrow),
+            along: Mark::UPRIGHT,
+            colour: self.palette.pointer,
+            second: self.palette.background,
+            shape: match (dragged, visible) {
+                (false, true) => MarkShape::Pin,
+                (false, false) => MarkShape::HiddenPin,
+                (true, true) => MarkShape::Hand,
+                (true, false) => MarkShape::HiddenHand,
+            },
+        });
+    }
+}

@@ -1,0 +1,276 @@
+//! Solid obstacles among the bodies, and transparent ones below and above them. Made when the first one is drawn.
+
+use super::panel::{Panels, is_visible, limit, linear};
+use super::pipeline::{BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::target::Bodies;
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{Pane, Picture, Rectangle};
+use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/obstacle.wgsl");
+pub(super) const PANE_SHADER: &str = include_str!("../../shaders/pane.wgsl");
+
+/// A corner of a solid as the shader reads it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct SolidVertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+    colour: [f32; 3],
+}
+
+const SOLID: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+
+/// A corner of a pane as the shader reads it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct PaneVertex {
+    position: [f32; 3],
+    /// 0 at the border and 1 in the middle.
+    inward: f32,
+    grid: [f32; 2],
+    from_middle: [f32; 2],
+    /// With opacity.
+    colour: [f32; 4],
+    /// Colour of the grid, and 1 if there is one.
+    lined: [f32; 4],
+}
+
+const PANE: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+    0 => Float32x3, 1 => Float32, 2 => Float32x2, 3 => Float32x2, 4 => Float32x4, 5 => Float32x4
+];
+
+/// An edge of a slab as the shader reads it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct EdgePiece {
+    from: [f32; 3],
+    to: [f32; 3],
+    colour: [f32; 3],
+    /// Size of the panel (px), and its left and top in the picture (px).
+    size: [f32; 2],
+    viewport: [f32; 2],
+}
+
+const EDGE: [wgpu::VertexAttribute; 5] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x2, 4 => Float32x2];
+
+/// The solid obstacles of one picture.
+#[derive(Debug)]
+pub(super) struct Solids {
+    pipeline: wgpu::RenderPipeline,
+    vertices: GrowingBuffer<SolidVertex>,
+    indices: GrowingBuffer<u32>,
+    ranges: Vec<Range<u32>>,
+}
+
+impl Solids {
+    /// Whether a picture has any.
+    pub(super) fn are_in(picture: &Picture) -> bool {
+        picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty())
+    }
+
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+        // The light is that on bodies.
+        let module = shader(gpu, "obstacle", &[super::PANEL_SHADER, super::surface::SHADER, SHADER]);
+        let recipe = Recipe {
+            label: "obstacle",
+            shader: &module,
+            entries: ["solid_corner", "solid_surface"],
+            groups: &[&panels.layout],
+            vertices: &[Some(layout::<SolidVertex>(&SOLID, wgpu::VertexStepMode::Vertex))],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            target: BODY_FORMAT,
+            blend: None,
+            depth: true,
+            samples,
+        };
+        Self {
+            pipeline: recipe.build(gpu),
+            vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
+            indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
+            ranges: Vec::new(),
+        }
+    }
+
+    /// Uploads the solids of a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+        self.ranges.clear();
+        for panel in &picture.panels {
+            let start = indices.len() as u32;
+            for solid in &panel.obstacles.solids {
+                let (base, colour) = (vertices.len() as u32, linear(solid.colour).to_array());
+                let vertex = |&crate::picture::Vertex { position, normal, .. }| SolidVertex { position, normal, colour };
+                vertices.extend(solid.mesh.vertices.iter().map(vertex));
+                indices.extend(solid.mesh.triangles.iter().flatten().map(|at| base + at));
+            }
+            self.ranges.push(start..indices.len() as u32);
+        }
+        self.vertices.write(gpu, &vertices);
+        self.indices.write(gpu, &indices);
+    }
+
+    /// Draws the solids of all panels, in the pass and after the bodies.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
+        pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
+        for (panel, (range, &place)) in self.ranges.iter().zip(places).enumerate() {
+            if is_visible(place) && !range.is_empty() {
+                limit(pass, place);
+                panels.bind_region(pass, panel);
+                pass.draw_indexed(range.clone(), 0, 0..1);
+            }
+        }
+    }
+}
+
+/// What is seen through in one picture.
+#[derive(Debug)]
+pub(super) struct Slabs {
+    /// Below and above the bodies.
+    panes: [wgpu::RenderPipeline; 2],
+    edges: [wgpu::RenderPipeline; 2],
+    layout: wgpu::BindGroupLayout,
+    textures: Option<wgpu::BindGroup>,
+    corners: GrowingBuffer<PaneVertex>,
+    pieces: GrowingBuffer<EdgePiece>,
+    /// For each panel and slab, its corners and its edges.
+    ranges: Vec<Vec<[Range<u32>; 2]>>,
+}
+
+impl Slabs {
+    /// Whether a picture has any.
+    pub(super) fn are_in(picture: &Picture) -> bool {
+        picture.panels.iter().any(|panel| !panel.obstacles.slabs.is_empty())
+    }
+
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+        let module = shader(gpu, "pane", &[super::PANEL_SHADER, super::reading_shader(samples), PANE_SHADER]);
+        let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
+        let group = group_layout(gpu, "pane", &entries);
+        let build = |entries, vertices, topology| {
+            let recipe = Recipe {
+                label: "pane",
+                shader: &module,
+                entries,
+                groups: &[&panels.layout, &group],
+                vertices: &[Some(vertices)],
+                topology,
+                target: PICTURE_FORMAT,
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                depth: false,
+                samples: 1,
+            };
+            recipe.build(gpu)
+        };
+        let pane = |fragment| {
+            let corners = layout::<PaneVertex>(&PANE, wgpu::VertexStepMode::Vertex);
+            build(["pane_corner", fragment], corners, wgpu::PrimitiveTopology::TriangleList)
+        };
+        let edge = |fragment| {
+            let pieces = layout::<EdgePiece>(&EDGE, wgpu::VertexStepMode::Instance);
+            build(["edge_corner", fragment], pieces, wgpu::PrimitiveTopology::TriangleStrip)
+        };
+        Self {
+            panes: [pane("pane_below"), pane("pane_above")],
+            edges: [edge("edge_below"), edge("edge_above")],
+            textures: None,
+            corners: GrowingBuffer::new(gpu, "panes", wgpu::BufferUsages::VERTEX, 256),
+            pieces: GrowingBuffer::new(gpu, "edges of panes", wgpu::BufferUsages::VERTEX, 256),
+            ranges: Vec::new(),
+            layout: group,
+        }
+    }
+
+    /// Takes note of new textures.
+    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
+        let views = [(1, &bodies.depth), (2, &bodies.lines)];
+        self.textures = Some(bind_textures(gpu, "pane", &self.layout, &views));
+    }
+
+    /// Uploads the slabs of a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let (mut corners, mut pieces) = (Vec::new(), Vec::new());
+        self.ranges.clear();
+        let colour = linear(picture.palette.pane_edge).to_array();
+        let grid = linear(picture.palette.grid);
+        for panel in &picture.panels {
+            let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+            let mut ranges = Vec::new();
+            for slab in &panel.obstacles.slabs {
+                let start = [corners.len() as u32, pieces.len() as u32];
+                slab.panes.iter().for_each(|pane| add_fan(pane, grid, &mut corners));
+                pieces.extend(slab.edges.iter().map(|&[from, to]| EdgePiece {
+                    from,
+                    to,
+                    colour,
+                    size: [width, height],
+                    viewport: [left, top],
+                }));
+                ranges.push([start[0]..corners.len() as u32, start[1]..pieces.len() as u32]);
+            }
+            self.ranges.push(ranges);
+        }
+        self.corners.write(gpu, &corners);
+        self.pieces.write(gpu, &pieces);
+    }
+
+    /// Draws the slabs of all panels below the bodies, or above them where they are nearer.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture, above: bool) {
+        pass.set_bind_group(1, self.textures.as_ref(), &[]);
+        for (at, (panel, slabs)) in picture.panels.iter().zip(&self.ranges).enumerate() {
+            let touched = if above { panel.region } else { panel.viewport };
+            if slabs.is_empty() || !is_visible(touched) {
+                continue;
+            }
+            limit(pass, panel.viewport);
+            let [left, top, width, height] = touched;
+            pass.set_scissor_rect(left, top, width, height);
+            panels.bind_whole(pass, at);
+            for [corners, pieces] in slabs {
+                if !corners.is_empty() {
+                    pass.set_pipeline(&self.panes[usize::from(above)]);
+                    pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
+                    pass.draw(corners.clone(), 0..1);
+                }
+                if !pieces.is_empty() {
+                    pass.set_pipeline(&self.edges[usize::from(above)]);
+                    pass.set_vertex_buffer(0, self.pieces.buffer().slice(..));
+                    pass.draw(0..4, pieces.clone());
+                }
+            }
+        }
+    }
+}
+
+/// Adds the triangles of a pane, around its middle.
+fn add_fan(pane: &Pane, grid: glam::Vec3, corners: &mut Vec<PaneVertex>) {
+    let count = pane.corners.len() as f32;
+    let mean = |of: fn(&crate::picture::PaneCorner) -> glam::Vec3| {
+        pane.corners.iter().map(of).sum::<glam::Vec3>() / count.max(1.0)
+    };
+    let position = mean(|corner| corner.position.into()).to_array();
+    let on_grid = mean(|corner| glam::Vec2::from(corner.grid).extend(0.0)).truncate().to_array();
+    let from_middle = mean(|corner| glam::Vec2::from(corner.from_middle).extend(0.0)).truncate().to_array();
+    let colour = linear(pane.colour).extend(pane.alpha).to_array();
+    let lined = grid.extend(if pane.grid { 1.0 } else { 0.0 }).to_array();
+    let middle = PaneVertex { position, inward: 1.0, grid: on_grid, from_middle, colour, lined };
+    let next = pane.corners.iter().cycle().skip(1);
+    for (one, other) in pane.corners.iter().zip(next) {
+        corners.push(middle);
+        corners.extend([one, other].map(|corner| PaneVertex {
+            position: corner.position,
+            inward: 0.0,
+            grid: corner.grid,
+            from_middle: corner.from_middle,
+            ..middle
+        }));
+    }
+}
+
+fn layout<T>(attributes: &[wgpu::VertexAttribute], step_mode: wgpu::VertexStepMode) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
+}

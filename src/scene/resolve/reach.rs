@@ -1,0 +1,139 @@
+//! What comes near the body in the course of a scene, so that the picture can show it.
+
+use super::view::Around;
+use crate::sim::body::{Dimension, bounds};
+use crate::sim::contact::{Motion, Obstacle, Pose, Shape};
+use crate::sim::grip::Grip;
+use glam::DVec3;
+
+/// What is farther from the body than this (body sizes) moves no camera: bodies stay large however far away the
+/// obstacles come from.
+const NEAR: f64 = 1.25;
+/// Half the side of what is shown of a plate (body sizes).
+const PLATE: f64 = 0.85;
+/// Into how many parts the way between two keys, and a swing, is cut.
+const PARTS: usize = 24;
+/// Longer paths are looked at in their keys alone.
+const MANY_KEYS: usize = 500;
+
+/// The points (m) of obstacles and grips that are at any time near the points of a body of a size (m).
+pub(super) fn near(scene: &Around<'_>, body: &[DVec3], size: f64) -> Vec<DVec3> {
+    let (low, high) = bounds(body);
+    let (low, high) = (low - NEAR * size, high + NEAR * size);
+    let around = Neighbourhood { scene, size, middle: (low + high) / 2.0, corners: [low, high] };
+    let mut points = Vec::new();
+    scene.obstacles.iter().for_each(|obstacle| around.add_obstacle(obstacle, &mut points));
+    scene.grips.iter().for_each(|grip| around.add_grip(grip, &mut points));
+    points
+}
+
+struct Neighbourhood<'a> {
+    scene: &'a Around<'a>,
+    size: f64,
+    middle: DVec3,
+    corners: [DVec3; 2],
+}
+
+impl Neighbourhood<'_> {
+    fn add(&self, point: DVec3, points: &mut Vec<DVec3>) {
+        let [low, high] = self.corners;
+        let in_plane = self.scene.body.body.dimension == Dimension::Plane;
+        let point = if in_plane { point.truncate().extend(0.0) } else { point };
+        if point.cmpge(low).all() && point.cmple(high).all() {
+            points.push(point);
+        }
+    }
+
+    fn add_obstacle(&self, obstacle: &Obstacle, points: &mut Vec<DVec3>) {
+        let outermost = self.outermost(&obstacle.shape);
+        if outermost.is_empty() {
+            return;
+        }
+        let pivot = obstacle.shape.pivot();
+        for time in times(&obstacle.motion, [0.0, self.scene.duration]) {
+            let pose = obstacle.pose(time);
+            outermost.iter().for_each(|&point| self.add(pose.apply(pivot, point), points));
+            // Of something large the part that is nearest may be all that there is to see.
+            let nearest = nearest(&obstacle.shape, pose.undo(pivot, self.middle));
+            nearest.into_iter().for_each(|point| self.add(pose.apply(pivot, point), points));
+        }
+    }
+
+    /// The outermost points of an obstacle before it moves; none for floors, which are everywhere.
+    fn outermost(&self, shape: &Shape) -> Vec<DVec3> {
+        let around = |middle: DVec3, radius: f64| {
+            DVec3::AXES.into_iter().flat_map(move |axis| [middle - radius * axis, middle + radius * axis])
+        };
+        match *shape {
+            Shape::Floor { .. } => Vec::new(),
+            Shape::Plate { point, normal } => {
+                let first = (DVec3::X - normal.x * normal).try_normalize().unwrap_or(DVec3::Z);
+                let second = first.cross(normal);
+                let half = PLATE * self.size;
+                [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]]
+                    .map(|[a, b]| point + half * (a * first + b * second))
+                    .to_vec()
+            }
+            Shape::Sphere { centre, radius } => around(centre, radius).collect(),
+            Shape::Capsule { from, to, radius } => around(from, radius).chain(around(to, radius)).collect(),
+            Shape::Box { centre, half, turn } => {
+                let half = DVec3::select(half.is_finite_mask(), half, DVec3::ZERO);
+                let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+                let corner = |at: u32| half * DVec3::new(sign(at, 0), sign(at, 1), sign(at, 2));
+                (0..8).map(|at| centre + turn * corner(at)).collect()
+            }
+        }
+    }
+
+    fn add_grip(&self, grip: &Grip, points: &mut Vec<DVec3>) {
+        let start: Vec<_> =
+            grip.nodes.iter().filter_map(|&node| self.scene.body.initial.position.get(node as usize).copied()).collect();
+        let (low, high) = bounds(&start);
+        let middle = start.iter().sum::<DVec3>() / start.len().max(1) as f64;
+        let first = grip.motion.pose(grip.from);
+        for time in times(&grip.motion, [grip.from, grip.until.min(self.scene.duration)]) {
+            let now = grip.motion.pose(time);
+            let way = Pose { shift: now.shift - first.shift, turn: now.turn * first.turn.conjugate() };
+            let corner = |at: u32| {
+                let pick = |axis: usize| if at >> axis & 1 == 1 { high[axis] } else { low[axis] };
+                DVec3::new(pick(0), pick(1), pick(2))
+            };
+            (0..8).for_each(|at| self.add(way.apply(middle, corner(at)), points));
+        }
+    }
+}
+
+/// The point of an obstacle that is nearest to another point; `None` for half-spaces.
+fn nearest(shape: &Shape, to: DVec3) -> Option<DVec3> {
+    let ball = |middle: DVec3, radius: f64| middle + (to - middle).clamp_length_max(radius);
+    match *shape {
+        Shape::Floor { .. } | Shape::Plate { .. } => None,
+        Shape::Sphere { centre, radius } => Some(ball(centre, radius)),
+        Shape::Capsule { from, to: end, radius } => {
+            let along = end - from;
+            let squared = along.length_squared();
+            let share = if squared > 0.0 { ((to - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            Some(ball(from + share * along, radius))
+        }
+        Shape::Box { centre, half, turn } => {
+            let local = turn.conjugate() * (to - centre);
+            Some(centre + turn * local.clamp(-half, half))
+        }
+    }
+}
+
+/// Times between two others (s) that between them show everywhere that a motion leads.
+fn times(motion: &Motion, [from, until]: [f64; 2]) -> Vec<f64> {
+    let between = |from: f64, to: f64, parts: usize| {
+        (0..=parts).map(move |part| from + (to - from) * part as f64 / parts as f64)
+    };
+    let times: Vec<_> = match motion {
+        Motion::Still => vec![from],
+        Motion::Keys { keys, .. } if keys.len() > MANY_KEYS => keys.iter().map(|key| key.time).collect(),
+        Motion::Keys { keys, .. } => {
+            keys.windows(2).flat_map(|two| between(two[0].time, two[1].time, PARTS)).chain([from]).collect()
+        }
+        Motion::Swing { period, .. } => between(from, until.min(from + period), 2 * PARTS).collect(),
+    };
+    times.into_iter().filter(|time| (from..=until).contains(time)).collect()
+}
