@@ -24,6 +24,8 @@ const NEARER = 0.02;
 const OFFSET = 0.0016;
 // From this step of depth on, a contour inside the body is drawn (soft units).
 const STEP = 0.22;
+// By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
+const ROUND_STEP = 0.8;
 // Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
 const SMALL_ELEMENT = 26.0;
 
@@ -132,7 +134,13 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
     // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
-    let shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
+    var shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
+    let obstacles = vec2(is_obstacle(pixel_of(middle + across)), is_obstacle(pixel_of(middle - across)));
+    if segment.kind == OBSTACLE_CONTOUR {
+        // Round ones come nearer still: only what is not of their kind hides them at once.
+        let before_it = vec2(distance_of(depth)) - vec2(distance_of(sides.x), distance_of(sides.y));
+        shown = any(obstacles) && all(before_it < panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles));
+    }
     // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
     let close = normal * 0.9;
     let open = min(depth_at(middle + close), depth_at(middle - close)) <= 0.0;
@@ -140,7 +148,7 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
         return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
     }
     // Where one thing ends before another, a contour is drawn however close they are.
-    let meets = is_obstacle(pixel_of(middle + across)) != is_obstacle(pixel_of(middle - across));
+    let meets = obstacles.x != obstacles.y;
     if shown && (meets || distance_of(farther) - distance_of(nearer) > STEP * panel.soft) {
         let step = 0.85 * covered(distance, 1.5 * scale);
         return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);

@@ -16,19 +16,23 @@ struct PaneCorner {
 }
 
 // The circle in which a wall fades out begins to do so here.
-const FADE = 0.35;
+const FADE = 0.45;
 // The parts of the panel's width and height in which walls fade out at its sides, below, and above, where words stand.
 const SIDE_FADE = 0.14;
 const LOWER_FADE = 0.13;
 const UPPER_FADE = vec2<f32>(0.11, 0.20);
 // The opacity of a grid on a wall, and of the line in which it meets the floor.
 const GRID_ALPHA = 0.85;
-const CREASE_ALPHA = 0.55;
+const CREASE_ALPHA = 0.85;
 // Below this height above the floor (soft units) a wall is this much darker.
 const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
 // Edges: thickness (px in the reference picture) and opacity.
 const EDGE = vec2<f32>(1.35, 0.86);
+// Before bodies a pane is this part as opaque: what they show matters more.
+const OVER_BODIES = 0.6;
+// A wall that stands before bodies hides even less of them.
+const WALL_OVER_BODIES = 0.35;
 // As for other lines: so much nearer than its faces is an edge, as a part of the distance.
 const OFFSET = 0.0016;
 
@@ -60,9 +64,12 @@ fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
     if drawn > share {
         let low = vec2<i32>(panel.region.xy);
         let high = low + vec2<i32>(panel.region.zw) - 1;
+        let reach = i32(ceil(1.1 * panel.line_scale)) + 1;
         var nearest = 0.0;
         for (var step = 0; step < 9; step++) {
-            nearest = max(nearest, load_depth(clamp(at + vec2(step % 3 - 1, step / 3 - 1), low, high)));
+            let way = vec2(step % 3 - 1, step / 3 - 1);
+            nearest = max(nearest, load_depth(clamp(at + way, low, high)));
+            nearest = max(nearest, load_depth(clamp(at + reach * way, low, high)));
         }
         if nearest > 0.0 && nearest < depth {
             share = drawn;
@@ -112,7 +119,8 @@ fn pane_below(corner: PaneCorner) -> @location(0) vec4<f32> {
 @fragment
 fn pane_above(corner: PaneCorner) -> @location(0) vec4<f32> {
     let colour = pane_colour(corner);
-    return vec4(colour.rgb, colour.a * before_bodies(corner.place.xy, corner.place.z));
+    let left = select(OVER_BODIES, WALL_OVER_BODIES, corner.lined.a > 0.5);
+    return vec4(colour.rgb, left * colour.a * before_bodies(corner.place.xy, corner.place.z));
 }
 
 struct EdgePiece {

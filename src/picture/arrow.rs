@@ -7,9 +7,11 @@ use super::palette::Palette;
 use super::{Mark, MarkShape};
 use glam::{DVec2, DVec3};
 
-/// Length of the arrow of what moves at its greatest speed, and of the shortest one drawn (px in the reference picture).
+/// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).
 const LENGTH: f64 = 74.0;
 const SHORTEST: f64 = 11.0;
+/// The part of the greatest speed from which on the arrow has its full length.
+const FAST: f64 = 0.25;
 /// Height of the mark that holds an arrow: its head with room for a halo (px in the reference picture).
 const HEIGHT: f64 = 23.0;
 
@@ -35,7 +37,7 @@ impl Arrows<'_> {
     /// of the speed, so that it comes and goes gently; nothing is drawn of what rests, and nothing outside the panel.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
         let speed = going.velocity.length();
-        let share = (speed / going.greatest).min(1.0);
+        let share = (speed / (FAST * going.greatest)).min(1.0);
         if !(share > 0.0 && speed.is_finite()) {
             return;
         }

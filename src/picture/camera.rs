@@ -97,12 +97,7 @@ pub fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing 
     let slope = 2.0 * libm::tan(camera.field_of_view / 2.0);
     let back = risen * libm::cos(camera.elevation) / (slope * USABLE_HEIGHT);
     let aside = pull(apart, GENTLE_RISE, HIGHEST_RISE) / (slope * USABLE_WIDTH);
-    Framing {
-        target: base + 0.5 * risen * DVec3::Y,
-        base,
-        distance: distance + back + aside,
-        rise: rise + risen,
-    }
+    Framing { target: base + 0.5 * risen * DVec3::Y, base, distance: distance + back + aside, rise: rise + risen }
 }
 
 /// A camera at work on one panel: maps points of the world (m) to pixels of the picture.
@@ -204,7 +199,6 @@ mod tests {
         let [low, high] = heights.map(|height| height * DVec3::Y);
         Middles { low, high, start: DVec3::ZERO }
     }
-
 
     const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
 

@@ -254,6 +254,7 @@ impl<'a> Composer<'a> {
                 start: self.start_box,
             };
             staging.arrows(&arrows, above);
+            staging.pierced(&[&sound, &turned_over], &mut lines);
             staging.draw(&mut lines)
         };
         if !diverged {

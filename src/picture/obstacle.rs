@@ -30,9 +30,9 @@ const FARTHEST_EDGE: f64 = 4.0;
 /// Opacity of the faces of a plate: those of its two sides, and the small ones around it.
 const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
 /// How far walls and slopes are drawn around the point looked at (body sizes).
-const WALL: f64 = 1.9;
+const WALL: f64 = 2.1;
 /// Opacity of a wall, seen from the side of the body and through what is solid.
-const WALL_ALPHA: [f32; 2] = [0.62, 0.16];
+const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
 /// Above so many slabs they are sorted by distance alone.
 const MANY_SLABS: usize = 64;
 
@@ -150,6 +150,58 @@ impl Staging<'_> {
         }
     }
 
+    /// The lines in which surfaces of the body go into solid obstacles: only nodes bounce off, faces may be pierced.
+    pub(super) fn pierced(&self, meshes: &[&Mesh], lines: &mut Vec<Line>) {
+        for obstacle in self.obstacles {
+            let (pose, pivot, reach) = (obstacle.pose(self.time), obstacle.shape.pivot(), obstacle.shape.reach());
+            if !reach.is_finite() {
+                continue;
+            }
+            let inside = |point: DVec3| -height(&obstacle.shape, pose.undo(pivot, point));
+            let middle = pose.apply(pivot, pivot);
+            for mesh in meshes {
+                let points: Vec<_> = mesh
+                    .vertices
+                    .iter()
+                    .map(|vertex| self.origin + self.side * DVec3::from(vertex.position.map(f64::from)))
+                    .collect();
+                for triangle in &mesh.triangles {
+                    let [a, b, c] = triangle.map(|at| points[at as usize]);
+                    let centroid = (a + b + c) / 3.0;
+                    let size = [a, b, c].iter().map(|at| at.distance(centroid)).fold(0.0, f64::max);
+                    if middle.distance(centroid) < reach + size && inside(centroid) > -size {
+                        self.pierce([a, b, c], &inside, lines);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The lines in a triangle along which something changes its sign.
+    fn pierce(&self, [a, b, c]: [DVec3; 3], inside: impl Fn(DVec3) -> f64, lines: &mut Vec<Line>) {
+        const CUT: usize = 10;
+        let part = |at: usize| at as f64 / CUT as f64;
+        let point = |i: usize, j: usize| a + part(i) * (b - a) + part(j) * (c - a);
+        let rows: Vec<Vec<_>> =
+            (0..=CUT).map(|i| (0..=CUT - i).map(|j| (point(i, j), inside(point(i, j)))).collect()).collect();
+        let mut cut = |corners: [(DVec3, f64); 3]| {
+            let sides = [(0, 1), (1, 2), (2, 0)].map(|(one, other)| (corners[one], corners[other]));
+            let crossed = sides.into_iter().filter(|((_, x), (_, y))| (*x < 0.0) != (*y < 0.0));
+            let crossed: Vec<_> = crossed.map(|((a, x), (b, y))| a.lerp(b, x / (x - y))).collect();
+            if let [from, to] = crossed[..] {
+                self.line([from, to], LineKind::ObstacleEdge, lines);
+            }
+        };
+        for i in 0..CUT {
+            for j in 0..CUT - i {
+                cut([rows[i][j], rows[i + 1][j], rows[i][j + 1]]);
+                if i + j + 1 < CUT {
+                    cut([rows[i + 1][j], rows[i + 1][j + 1], rows[i][j + 1]]);
+                }
+            }
+        }
+    }
+
     fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()
     }
@@ -220,9 +272,8 @@ impl Staging<'_> {
             }
         }
         for ring in 1..lathe.rings.len() {
-            for segment in 0..count {
-                let quad =
-                    [at(ring - 1, segment), at(ring - 1, segment + 1), at(ring, segment + 1), at(ring, segment)];
+            for segment in (0..count).filter(|&segment| seen[ring - 1][segment]) {
+                let quad = [at(ring - 1, segment), at(ring - 1, segment + 1), at(ring, segment + 1), at(ring, segment)];
                 self.ground_line(&quad, lines);
             }
         }
@@ -284,7 +335,9 @@ impl Staging<'_> {
             }));
             mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|triangle: [u32; 3]| triangle.map(|at| base + at)));
             seen[face] = self.lens.sees(polygon[0], normal);
-            self.ground_line(&polygon, lines);
+            if seen[face] {
+                self.ground_line(&polygon, lines);
+            }
         }
         for ([a, b], [one, other]) in edges() {
             let line = [corners[a], corners[b]];
@@ -295,8 +348,11 @@ impl Staging<'_> {
             }
         }
         staged.outermost.extend(corners);
-        let triangles: Vec<_> =
-            FACES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|three| three.map(|at| at as u32)).collect();
+        let triangles: Vec<_> = FACES
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .map(|three| three.map(|at| at as u32))
+            .collect();
         staged.add(corners, &triangles);
         solids.push(Solid { mesh, colour: self.palette.obstacle });
     }
@@ -315,7 +371,10 @@ impl Staging<'_> {
         };
         let [from, to] = self.start;
         let start = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from)).map(|corner| place(&before, corner).0);
-        let (from, to) = (start.iter().copied().fold(DVec2::INFINITY, DVec2::min), start.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max));
+        let (from, to) = (
+            start.iter().copied().fold(DVec2::INFINITY, DVec2::min),
+            start.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
+        );
         if from.max_element() < farthest && to.min_element() > -farthest {
             let margin = START_MARGIN * self.extent;
             low = low.min(from - margin).max(DVec2::splat(-farthest));
@@ -377,7 +436,15 @@ impl Staging<'_> {
         const CORNERS: usize = 16;
         let (out, height) = floor;
         let pose = obstacle.pose(self.time);
-        let middle = self.origin + (height - out.dot(self.origin)) * out;
+        let mut middle = self.origin + (height - out.dot(self.origin)) * out;
+        // Along the slope up to where it comes out of the others.
+        for &(other, level) in others {
+            let depth = level - other.dot(middle);
+            let along = other - other.dot(out) * out;
+            if depth > 0.0 && along.length_squared() > 0.01 {
+                middle += depth / along.length_squared() * along;
+            }
+        }
         let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
         let reach = WALL * self.extent * self.widening;
         // Circumscribed: the circle in which it fades lies within.
@@ -488,13 +555,7 @@ impl Lathe {
 }
 
 /// A round surface: rings at angles above the equator, each moved along the axis by a length (m).
-fn lathe(
-    middle: DVec3,
-    axis: DVec3,
-    radius: f64,
-    profile: impl Iterator<Item = (f64, f64)>,
-    segments: usize,
-) -> Lathe {
+fn lathe(middle: DVec3, axis: DVec3, radius: f64, profile: impl Iterator<Item = (f64, f64)>, segments: usize) -> Lathe {
     let [second, first] = Plane::new(axis, 0.0).axes;
     let around: Vec<_> = (0..segments)
         .map(|at| {
@@ -523,6 +584,25 @@ fn rod([from, to]: [DVec3; 2], radius: f64, segments: usize) -> Lathe {
     let low = (0..=quarter).map(|ring| (angle(ring) - FRAC_PI_2, -half));
     let high = (0..=quarter).map(|ring| (angle(ring), half));
     lathe(from.midpoint(to), axis, radius, low.chain(high), segments)
+}
+
+/// How far a point is from a solid shape before it moves (m); negative inside.
+fn height(shape: &Shape, point: DVec3) -> f64 {
+    match *shape {
+        Shape::Floor { normal, height } => normal.dot(point) - height,
+        Shape::Plate { point: surface, normal } => normal.dot(point - surface),
+        Shape::Sphere { centre, radius } => point.distance(centre) - radius,
+        Shape::Capsule { from, to, radius } => {
+            let along = to - from;
+            let squared = along.length_squared();
+            let share = if squared > 0.0 { ((point - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            point.distance(from + share * along) - radius
+        }
+        Shape::Box { centre, half, turn } => {
+            let beyond = (turn.conjugate() * (point - centre)).abs() - half;
+            beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
+        }
+    }
 }
 
 /// The nodes of the faces of a box whose corners have a bit for each axis: low and high side of the first axis, and so

@@ -102,7 +102,8 @@ impl Solids {
             let start = indices.len() as u32;
             for solid in &panel.obstacles.solids {
                 let (base, colour) = (vertices.len() as u32, linear(solid.colour).to_array());
-                let vertex = |&crate::picture::Vertex { position, normal, .. }| SolidVertex { position, normal, colour };
+                let vertex =
+                    |&crate::picture::Vertex { position, normal, .. }| SolidVertex { position, normal, colour };
                 vertices.extend(solid.mesh.vertices.iter().map(vertex));
                 indices.extend(solid.mesh.triangles.iter().flatten().map(|at| base + at));
             }

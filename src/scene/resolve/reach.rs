@@ -86,8 +86,11 @@ impl Neighbourhood<'_> {
     }
 
     fn add_grip(&self, grip: &Grip, points: &mut Vec<DVec3>) {
-        let start: Vec<_> =
-            grip.nodes.iter().filter_map(|&node| self.scene.body.initial.position.get(node as usize).copied()).collect();
+        let start: Vec<_> = grip
+            .nodes
+            .iter()
+            .filter_map(|&node| self.scene.body.initial.position.get(node as usize).copied())
+            .collect();
         let (low, high) = bounds(&start);
         let middle = start.iter().sum::<DVec3>() / start.len().max(1) as f64;
         let first = grip.motion.pose(grip.from);
@@ -124,9 +127,8 @@ fn nearest(shape: &Shape, to: DVec3) -> Option<DVec3> {
 
 /// Times between two others (s) that between them show everywhere that a motion leads.
 fn times(motion: &Motion, [from, until]: [f64; 2]) -> Vec<f64> {
-    let between = |from: f64, to: f64, parts: usize| {
-        (0..=parts).map(move |part| from + (to - from) * part as f64 / parts as f64)
-    };
+    let between =
+        |from: f64, to: f64, parts: usize| (0..=parts).map(move |part| from + (to - from) * part as f64 / parts as f64);
     let times: Vec<_> = match motion {
         Motion::Still => vec![from],
         Motion::Keys { keys, .. } if keys.len() > MANY_KEYS => keys.iter().map(|key| key.time).collect(),
