@@ -1,8 +1,10 @@
 //! Starts from which the shape model must come back and mass-spring need not (paper, section 3).
 
-use crate::support::{free, lattice, mass_spring, shape_based};
+use crate::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::State;
+use localshape::sim::body::{Dimension, State};
+use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::snapshot::Status;
 use localshape::sim::topology::Springs;
 use std::f64::consts::TAU;
 
@@ -10,7 +12,7 @@ use std::f64::consts::TAU;
 /// equilibrium.
 fn start(map: impl Fn(DVec3) -> DVec3, disorder: f64) -> State {
     let body = lattice(1, 1.0);
-    let mut noise = crate::support::Noise(21);
+    let mut noise = Noise(21);
     State::at_rest(body.rest.iter().map(|&rest| map(rest - DVec3::splat(0.5)) + noise.vector() * disorder).collect())
 }
 
@@ -55,4 +57,52 @@ fn a_half_turn_at_the_start_has_no_force() {
     let half_turn = start(|r| r * DVec3::new(-1.0, -1.0, 1.0), 0.0);
     let force = crate::support::forces(&lattice(1, 1.0), &shape_based(1e4, 0.0), &half_turn);
     assert!(force.iter().all(|f| f.length() < 1e-10));
+}
+
+/// In the plane: Eq. (9) with both sums zero keeps the last angle, and everything comes back.
+#[test]
+fn polygons_recover_from_a_point_a_line_a_mirror_image_and_half_a_turn() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 0.9, 0.0], [0.4, 1.5, 0.0], [-0.3, 0.8, 0.0]];
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    type Map = fn(DVec3) -> DVec3;
+    let starts: [(&str, Map); 4] = [
+        ("a point", |_| DVec3::ZERO),
+        ("a line", |r| DVec3::X * r.x),
+        ("a mirror image", |r| r * DVec3::new(-1.0, 1.0, 1.0)),
+        ("half a turn", |r| -r),
+    ];
+    for body in [
+        body(Dimension::Plane, &corners, &[&[0, 1, 2, 3, 4]]),
+        body(Dimension::Plane, &corners, &[&[0, 1, 2], &[0, 2, 3, 4]]),
+        body(Dimension::Plane, &square, &[&[0, 1, 2, 3]]),
+    ] {
+        for (name, map) in starts {
+            for disorder in [0.0, 1e-3] {
+                let mut noise = Noise(8);
+                let start = body.rest.iter().map(|&rest| map(rest) + noise.vector().with_z(0.0) * disorder).collect();
+                let model = shape_based(1e4, 40.0);
+                let mut world = free(&body, State::at_rest(start), &model, TAU / 100.0 / 50.0);
+                world.advance(5000);
+                let d = world.snapshot().diagnostics;
+                assert!(d.shape_error < 1e-9 && d.turned_over == 0, "{name} ({disorder}): {d:?}");
+            }
+        }
+    }
+}
+
+/// The readings kept for study: no start gives NaN, and a body flattened to a line or a point is not lost.
+#[test]
+fn no_reading_fails_at_a_degenerate_start() {
+    let maps: [fn(DVec3) -> DVec3; 4] =
+        [|_| DVec3::ZERO, |r| DVec3::X * r.x, |r| r.with_z(0.0), |r| r * DVec3::new(1.0, 1.0, -1.0)];
+    for rotation in [RotationReading::VectorLength, RotationReading::LinearUpdate] {
+        for damping_of in [DampingReading::RelativeMotion, DampingReading::Deformation] {
+            let model = ShapeBased { rotation, damping_of, ..shape_based(1e4, 40.0) };
+            for map in maps {
+                let end = after_long(&model, start(map, 1e-3));
+                assert!(end.position.iter().chain(&end.velocity).all(|v| v.is_finite()), "{model:?}");
+                assert_eq!(end.status, Status::Ok, "{model:?}");
+            }
+        }
+    }
 }
