@@ -19,7 +19,6 @@ use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
-use crate::sim::topology::edges_of;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -311,7 +310,7 @@ impl<'a> Composer<'a> {
             let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
             let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind });
             let at = |node: u32| position[node as usize];
-            let edges = edges_of(body.kinds[element], nodes);
+            let edges = body.topology().edges_of(element);
             for &[a, b] in &edges {
                 line(at(a), at(b));
             }

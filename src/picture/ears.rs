@@ -1,7 +1,6 @@
 //! Triangles for polygons that are not convex.
 
 use crate::sim::body::Body;
-use crate::sim::topology::for_each_face;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -84,7 +83,7 @@ pub(super) fn bare_elements(body: &Body) -> Vec<usize> {
     // Faces given by hand are drawn instead of the elements' own, and then elements inside need not be seen.
     let own = (0..body.elements.len()).all(|element| {
         let mut expected = false;
-        for_each_face(body.kinds[element], &body.elements[element], |_| expected = true);
+        body.topology().for_each_face(element, |_| expected = true);
         expected == has_face[element]
     });
     if own || body.faces.nodes.is_empty() {

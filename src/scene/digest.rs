@@ -10,9 +10,14 @@ use sha2::{Digest, Sha256};
 /// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
 /// whose value is its default. So neither comments, layout and order count, nor whether a number was written as
 /// `1e4` or `10000.0`, nor a default that was typed; and a key added to the format later changes no digest.
-pub(super) fn digest(scene: &SceneFile) -> String {
+///
+/// Where the scene names a file, the digest of what is in it stands for the name: `body` for that of the body.
+pub(super) fn digest(mut scene: SceneFile, body: Option<String>) -> String {
+    if body.is_some() {
+        scene.body.file = body;
+    }
     // The types hold nothing that JSON cannot: finite numbers, text keys.
-    let mut value = serde_json::to_value(scene).unwrap_or_default();
+    let mut value = serde_json::to_value(&scene).unwrap_or_default();
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
     let mut text = String::new();

@@ -11,7 +11,7 @@ pub struct Limits {
     pub nodes: u64,
     /// Memory for the body and its runs (bytes), estimated.
     pub memory: u64,
-    /// Length of the scene file (bytes).
+    /// Length of the scene file (bytes); a body's own file has as many arrays as `memory` holds.
     pub file: u64,
 }
 
@@ -39,6 +39,8 @@ pub(super) struct Demand {
     pub(super) body: Census,
     /// What the model of each run needs.
     pub(super) runs: Vec<Needs>,
+    /// What makes the body smaller.
+    pub(super) less: &'static str,
 }
 
 /// More than is allowed.
@@ -54,8 +56,8 @@ pub(super) struct Excess {
 
 impl Demand {
     /// What models ask for on a body.
-    pub(super) fn new<'m>(body: Census, models: impl Iterator<Item = &'m ModelParameters>) -> Self {
-        Self { runs: models.map(|model| model.needs(&body)).collect(), body }
+    pub(super) fn new<'m>(body: Census, less: &'static str, models: impl Iterator<Item = &'m ModelParameters>) -> Self {
+        Self { runs: models.map(|model| model.needs(&body)).collect(), body, less }
     }
 
     /// Memory (bytes), a rough estimate, some tenths above what was measured on a million cubes: the body with its
@@ -113,10 +115,9 @@ impl Demand {
         let run = (springs > 0 && other.beyond(limits).is_none())
             .then(|| (0..self.runs.len()).max_by_key(|&run| self.runs[run].springs))
             .flatten();
-        let less = match (run, self.body.lattice) {
-            (Some(_), _) => "put fewer springs on each element, such as springs = \"edges\"",
-            (None, true) => "use fewer cells",
-            (None, false) => "use fewer nodes",
+        let less = match run {
+            Some(_) => "put fewer springs on each element, such as springs = \"edges\"",
+            None => self.less,
         };
         let help = if indices { less.to_owned() } else { format!("{less}, or allow it with --allow-large") };
         Some(Excess { message, help, run })
@@ -144,14 +145,14 @@ mod tests {
     }
 
     fn block(cells: &[u32], models: &[ModelParameters]) -> Demand {
-        Demand::new(Census::of_lattice(cells), models.iter())
+        Demand::new(Census::of_lattice(cells), "use fewer cells", models.iter())
     }
 
     /// Listed elements, each with this many nodes.
     fn listed(dimension: Dimension, corners: usize, count: u128, model: ModelParameters) -> Demand {
         let elements = BTreeMap::from([(corners, count)]);
         let body = Census { dimension, nodes: corners as u128, elements, lattice: false, springs: None };
-        Demand::new(body, [model].iter())
+        Demand::new(body, "use fewer nodes", [model].iter())
     }
 
     #[test]

@@ -27,10 +27,11 @@ impl Scene {
         }
         let file = path.display().to_string();
         let text = as_text(&bytes, &file)?;
-        Self::parse(text, &file, limits)
+        Self::read(text, &file, path.parent().unwrap_or(Path::new("")), limits)
     }
 
-    /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene.
+    /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's
+    /// own file is looked for from the current directory on, for a text lies in no folder.
     ///
     /// # Errors
     /// A text that is empty, no TOML, or no scene, with all mistakes in it.
@@ -53,6 +54,11 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
+        Self::read(text, name, Path::new(""), limits)
+    }
+
+    /// Reads a scene from a text; a body's own file is looked for in `folder`.
+    fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = || name.to_owned();
         if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
@@ -65,15 +71,15 @@ impl Scene {
         }
         let mut report = Report::new(&source, root.get_ref());
         let checked = structure::check(&SCHEMA, root.get_ref(), &mut report);
-        let parts = Parts::new(&checked, &mut report);
+        let parts = Parts::new(&checked, folder, limits, &mut report);
         let digest = match report.total() {
             0 => SceneFile::deserialize(Value::Object(checked.sound))
-                .map(|scene| digest::digest(&scene))
+                .map(|scene| digest::digest(scene, parts.digest_of_file()))
                 .unwrap_or_default(),
             _ => String::new(),
         };
         let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
-        let scene = resolve::resolve(&parts, &name_of_scene, &digest, limits, &mut report);
+        let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, &mut report);
         match (scene, report) {
             (Some(scene), report) if report.total() == 0 => Ok(scene),
             (_, report) => Err(SceneError::Mistakes(report.finish(name))),

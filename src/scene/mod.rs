@@ -5,13 +5,16 @@
 
 //!
 //! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
-//! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`.
+//! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`. Bodies
+//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads.
 
 mod digest;
 mod error;
 mod file;
+mod generate;
 mod limits;
 mod load;
+mod npz;
 mod report;
 mod resolve;
 mod schema;

@@ -23,6 +23,8 @@ pub struct Summary {
     pub digest: String,
     /// Number of nodes.
     pub nodes: usize,
+    /// Number of elements.
+    pub element_count: usize,
     /// Number of elements of each kind that there is, such as `27 cubes`.
     pub elements: Vec<String>,
     /// Sides of the box around the body at rest (m): three in space, two in the plane.
@@ -87,6 +89,7 @@ impl Scene {
             name: self.name.clone(),
             digest: self.digest.clone(),
             nodes: body.len(),
+            element_count: body.elements.len(),
             elements: words::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low),
             mass: body.mass.iter().sum(),
@@ -196,7 +199,11 @@ impl fmt::Display for Summary {
         line("scene", &format!("{} ({})", self.title, self.name))?;
         let extent: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
         let (extent, nodes) = (extent.join(" × "), count(self.nodes as u128));
-        let elements = list(&self.elements, "and", |words| words.into());
+        let kinds = list(&self.elements, "and", |words| words.into());
+        let elements = match self.elements.len() {
+            1 => kinds,
+            _ => format!("{} elements ({kinds})", count(self.element_count as u128)),
+        };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));

@@ -1,5 +1,6 @@
 //! What is simulated: a [`Body`], which never changes, and its [`State`], which does.
 
+use super::hull::Hulls;
 pub use super::lists::IndexLists;
 use super::topology;
 pub use super::topology::{Dimension, ElementKind, Faces};
@@ -18,15 +19,18 @@ pub struct Body {
     pub elements: IndexLists,
     /// What each element is.
     pub kinds: Vec<ElementKind>,
+    /// The faces at rest of those elements that are of no particular kind.
+    pub hulls: Hulls,
     /// What can be drawn.
     pub faces: Faces,
 }
 
 impl Body {
-    /// Builds a body from its nodes and elements; kinds and faces follow from the number of nodes of each element.
+    /// Builds a body from its nodes and elements; kinds and faces follow from the number of nodes of each element, and
+    /// where that says nothing from the hull of its nodes.
     ///
-    /// `faces`, when given, are drawn instead of the elements' own; each belongs to the first element that
-    /// holds all its nodes.
+    /// `faces`, when given, are drawn instead of the elements' own; each lies between the element out of which it looks
+    /// and the one into which it looks, of those that hold all its nodes.
     ///
     /// # Panics
     /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has checked its input.
@@ -40,11 +44,19 @@ impl Body {
         assert_eq!(rest.len(), mass.len(), "one mass per node");
         assert!(elements.indices().iter().all(|&node| (node as usize) < rest.len()), "node indices in range");
         let kinds: Vec<_> = elements.iter().map(|nodes| topology::kind(dimension, nodes.len())).collect();
+        let hulls = Hulls::new(&elements, &kinds, &rest);
         let faces = match faces {
-            Some(given) => topology::assign_faces(given, &elements),
-            None => topology::shared_faces(&elements, &kinds),
+            Some(given) => topology::assign_faces(given, &elements, |face, element| {
+                looks_out(face, &elements[element as usize], &rest)
+            }),
+            None => topology::Elements { nodes: &elements, kinds: &kinds, hulls: &hulls }.shared_faces(),
         };
-        Self { dimension, rest, mass, elements, kinds, faces }
+        Self { dimension, rest, mass, elements, kinds, hulls, faces }
+    }
+
+    /// The elements with their faces, edges and named springs.
+    pub fn topology(&self) -> topology::Elements<'_> {
+        topology::Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls }
     }
 
     /// The number of nodes.
@@ -62,6 +74,16 @@ impl Body {
         let (low, high) = bounds(&self.rest);
         (high - low).max_element()
     }
+}
+
+/// Whether a face looks out of an element at rest; so it does of one that lies in the plane of the face.
+fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
+    let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+    let middle = mean(face);
+    let at = |node: u32| rest[node as usize] - middle;
+    let area: DVec3 = topology::around(face).map(|[a, b]| at(a).cross(at(b))).sum();
+    let inwards = mean(element) - middle;
+    area.dot(inwards) <= 1e-9 * area.length() * inwards.length()
 }
 
 /// The corners of the box around `points`, low and high; zero for no points.
@@ -84,5 +106,62 @@ impl State {
     pub fn at_rest(position: Vec<DVec3>) -> Self {
         let velocity = vec![DVec3::ZERO; position.len()];
         Self { position, velocity }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::topology::Springs;
+
+    /// Layers of regular pentagons, one unit apart.
+    fn pentagons(layers: u32) -> Vec<DVec3> {
+        let corner = |at: u32| {
+            let angle = std::f64::consts::TAU / 5.0 * f64::from(at % 5);
+            DVec3::new(angle.cos(), angle.sin(), f64::from(at / 5))
+        };
+        (0..5 * layers).map(corner).collect()
+    }
+
+    /// Two prisms, one on the other, with their nodes in any order.
+    fn two_prisms(faces: Option<&IndexLists>) -> Body {
+        let elements =
+            [&[3, 1, 4, 0, 2, 9, 5, 7, 6, 8][..], &[5, 6, 7, 8, 9, 10, 11, 12, 13, 14]].into_iter().collect();
+        Body::new(Dimension::Space, pentagons(3), vec![1.0; 15], elements, faces)
+    }
+
+    #[test]
+    fn elements_of_any_shape_have_faces_edges_and_springs() {
+        let body = two_prisms(None);
+        assert_eq!(body.kinds, [ElementKind::Other; 2]);
+        assert_eq!(body.faces.nodes.len(), 13);
+        let inner: Vec<_> = (0..13).filter(|&face| body.faces.outer[face].is_some()).collect();
+        assert_eq!(inner.iter().map(|&face| &body.faces.nodes[face]).collect::<Vec<_>>(), [&[9, 5, 6, 7, 8]]);
+        assert_eq!((body.faces.inner[inner[0]], body.faces.outer[inner[0]]), (Some(0), Some(1)));
+        assert_eq!(body.topology().edges_of(0).len(), 15);
+        let springs = |named| body.topology().springs(named).len();
+        assert_eq!(springs(Springs::Edges), 25);
+        assert_eq!(springs(Springs::EdgesOneDiagonal), 25 + 10 + 3 * 2);
+        assert_eq!(springs(Springs::EdgesFaceDiagonals), 25 + 20 + 3 * 5);
+        assert_eq!(springs(Springs::EdgesBodyDiagonals), 25 + 2 * 10);
+        assert_eq!(springs(Springs::All), 2 * 45 - 10);
+    }
+
+    #[test]
+    fn a_flat_element_is_a_face_of_its_own_that_bounds_nothing() {
+        let rest: Vec<_> = (0..7).map(f64::from).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
+        let elements = [&[0, 1, 2, 3, 4, 5, 6][..]; 2].into_iter().collect();
+        let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, None);
+        assert_eq!(body.faces.inner, [Some(0), Some(1)]);
+        assert_eq!(body.faces.outer, [None, None]);
+        assert_eq!(body.topology().springs(Springs::Edges).len(), 7);
+    }
+
+    #[test]
+    fn listed_faces_lie_between_the_elements_that_hold_them() {
+        let listed = [&[9, 8, 7, 6, 5][..], &[5, 6, 7, 8, 9], &[4, 3, 2, 1, 0], &[0, 1, 2], &[0, 1, 11, 10]];
+        let faces = two_prisms(Some(&listed.into_iter().collect())).faces;
+        assert_eq!(faces.inner, [Some(1), Some(0), Some(0), None, None]);
+        assert_eq!(faces.outer, [Some(0), Some(1), None, Some(0), None]);
     }
 }

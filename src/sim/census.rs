@@ -37,10 +37,13 @@ impl Census {
         self.sum(|_, nodes| nodes as u128)
     }
 
-    /// Entries in the lists of all elements' faces together, before faces shared by two are made one.
+    /// Entries in the lists of all elements' faces together, before faces shared by two are made one; at most that many
+    /// for elements of no particular kind.
     pub fn face_corners(&self) -> u128 {
         self.sum(|kind, nodes| match kind {
-            ElementKind::Segment | ElementKind::Other => 0,
+            ElementKind::Segment => 0,
+            // Twice the 3n − 6 edges that a convex solid has at most.
+            ElementKind::Other => (6 * nodes as u128).saturating_sub(12),
             ElementKind::Polygon | ElementKind::Triangle => nodes as u128,
             ElementKind::Tetrahedron => 12,
             ElementKind::Pyramid => 16,
@@ -60,6 +63,9 @@ impl Census {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::hull::Hulls;
+    use crate::sim::lists::IndexLists;
+    use glam::DVec3;
 
     #[test]
     fn face_corners_are_those_of_the_faces() {
@@ -68,7 +74,12 @@ mod tests {
                 let elements = BTreeMap::from([(nodes, 1)]);
                 let census = Census { dimension, nodes: nodes as u128, elements, lattice: false, springs: None };
                 let own: Vec<u32> = (0..nodes as u32).collect();
-                let faces = topology::faces_of(topology::kind(dimension, nodes), &own);
+                let lists: IndexLists = [own.as_slice()].into_iter().collect();
+                let kinds = [topology::kind(dimension, nodes)];
+                // On this curve every face of the hull is a triangle: as many as there can be.
+                let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
+                let hulls = Hulls::new(&lists, &kinds, &rest);
+                let faces = topology::Elements { nodes: &lists, kinds: &kinds, hulls: &hulls }.faces_of(0);
                 assert_eq!(census.face_corners(), faces.iter().map(|face| face.len() as u128).sum::<u128>(), "{nodes}");
             }
         }

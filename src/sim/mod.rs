@@ -8,6 +8,7 @@ pub mod contact;
 pub mod diagnose;
 pub mod field;
 pub mod grip;
+pub mod hull;
 pub mod integrate;
 pub mod lists;
 pub mod model;

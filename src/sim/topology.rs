@@ -1,5 +1,6 @@
 //! The kinds of elements, their faces and edges, and the springs made from them.
 
+use super::hull::Hulls;
 use super::lists::IndexLists;
 use std::collections::HashMap;
 
@@ -31,7 +32,8 @@ pub enum ElementKind {
     Wedge,
     /// Eight nodes in space in bit order: x fastest, then y, then z.
     Hexahedron,
-    /// Any other number of nodes in space. It has elasticity, but no faces and no edges of its own.
+    /// Any other number of nodes in space, in any order. Its faces are those of its convex hull at rest, and so are its
+    /// edges. Nodes within the hull are on none of them: of the named springs only those through the element hold them.
     Other,
 }
 
@@ -62,7 +64,7 @@ pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
 
 /// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
 ///
-/// A polygon is its own single face and has no entry here; see [`faces_of`].
+/// A polygon is its own single face and has no entry here, nor has what no table can hold; see [`Elements`].
 fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     match kind {
         ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
@@ -91,89 +93,180 @@ pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u
     }
 }
 
-/// The faces of one element as lists of nodes; see [`for_each_face`].
-pub fn faces_of(kind: ElementKind, nodes: &[u32]) -> Vec<Vec<u32>> {
-    let mut faces = Vec::new();
-    for_each_face(kind, nodes, |face| faces.push(face.to_vec()));
-    faces
+/// The elements of a body with the faces of each.
+#[derive(Clone, Copy, Debug)]
+pub struct Elements<'a> {
+    /// The nodes of each element.
+    pub nodes: &'a IndexLists,
+    /// What each element is.
+    pub kinds: &'a [ElementKind],
+    /// The faces of those of no particular kind.
+    pub hulls: &'a Hulls,
 }
 
-/// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
-pub fn shared_faces(elements: &IndexLists, kinds: &[ElementKind]) -> Faces {
-    let mut all = IndexLists::default();
-    let mut owner = Vec::new();
-    for (element, (nodes, &kind)) in (0u32..).zip(elements.iter().zip(kinds)) {
-        for_each_face(kind, nodes, |face| {
-            all.push(face);
-            owner.push(element);
-        });
-    }
-    let is_flat = |face: usize| matches!(kinds[owner[face] as usize], ElementKind::Polygon | ElementKind::Triangle);
-    let partner = partners(&all, is_flat);
-    let mut faces = Faces::default();
-    for (at, face) in all.iter().enumerate() {
-        // The second of two equal faces is only named by the first.
-        if partner[at].is_none_or(|other| other > at) {
-            faces.nodes.push(face);
-            faces.inner.push(Some(owner[at]));
-            faces.outer.push(partner[at].map(|other| owner[other]));
+impl Elements<'_> {
+    /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside.
+    pub fn for_each_face(&self, element: usize, visit: impl FnMut(&[u32])) {
+        match self.kinds[element] {
+            ElementKind::Other => self.hulls.of(element).for_each(visit),
+            kind => for_each_face(kind, &self.nodes[element], visit),
         }
     }
-    faces
+
+    /// The faces of one element as lists of nodes.
+    pub fn faces_of(&self, element: usize) -> Vec<Vec<u32>> {
+        let mut faces = Vec::new();
+        self.for_each_face(element, |face| faces.push(face.to_vec()));
+        faces
+    }
+
+    /// The edges of one element as pairs of nodes, smaller node first, in rising order.
+    pub fn edges_of(&self, element: usize) -> Vec<[u32; 2]> {
+        let mut edges = Vec::new();
+        match (self.kinds[element], &self.nodes[element]) {
+            (ElementKind::Segment, &[a, b]) => edges.push(ordered([a, b])),
+            _ => self.for_each_face(element, |face| edges.extend(around(face).map(ordered))),
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Whether an element is a face itself, with two equal sides, so that it bounds nothing.
+    fn is_flat(&self, element: usize) -> bool {
+        match self.kinds[element] {
+            ElementKind::Polygon | ElementKind::Triangle => true,
+            ElementKind::Other => self.hulls.of(element).len() == 1,
+            _ => false,
+        }
+    }
+
+    /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
+    pub fn shared_faces(&self) -> Faces {
+        let mut all = IndexLists::default();
+        let mut owner = Vec::new();
+        for element in 0..self.nodes.len() {
+            self.for_each_face(element, |face| {
+                all.push(face);
+                owner.push(element as u32);
+            });
+        }
+        let partner = partners(&all, |face| self.is_flat(owner[face] as usize));
+        let mut faces = Faces::default();
+        for (at, face) in all.iter().enumerate() {
+            // The second of two equal faces is only named by the first.
+            if partner[at].is_none_or(|other| other > at) {
+                faces.nodes.push(face);
+                faces.inner.push(Some(owner[at]));
+                faces.outer.push(partner[at].map(|other| owner[other]));
+            }
+        }
+        faces
+    }
+
+    /// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
+    pub fn springs(&self, topology: Springs) -> Vec<[u32; 2]> {
+        let mut pairs = Vec::new();
+        for element in 0..self.nodes.len() {
+            self.add_springs(topology, element, &mut pairs);
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// Adds the springs of one element, some of them more than once.
+    fn add_springs(&self, topology: Springs, element: usize, pairs: &mut Vec<[u32; 2]>) {
+        let (nodes, kind) = (&self.nodes[element], self.kinds[element]);
+        if topology == Springs::All {
+            return pairs.extend(every_pair(nodes));
+        }
+        pairs.extend(self.edges_of(element));
+        match topology {
+            Springs::Edges | Springs::All => {}
+            Springs::EdgesOneDiagonal if kind == ElementKind::Hexahedron => {
+                // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
+                pairs.extend(every_pair(&[0, 3, 5, 6].map(|at: usize| nodes[at])));
+            }
+            Springs::EdgesOneDiagonal => self.for_each_face(element, |face| pairs.extend(fan(face))),
+            Springs::EdgesFaceDiagonals => self.for_each_face(element, |face| pairs.extend(every_pair(face))),
+            // All corners of a polygon share its one face.
+            Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
+            Springs::EdgesBodyDiagonals => {
+                let mut in_faces = Vec::new();
+                self.for_each_face(element, |face| in_faces.extend(every_pair(face)));
+                in_faces.sort_unstable();
+                pairs.extend(every_pair(nodes).filter(|pair| in_faces.binary_search(pair).is_err()));
+            }
+        }
+    }
+}
+
+/// Every pair of a list, smaller node first.
+fn every_pair(nodes: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])))
 }
 
 /// For each face the one other face with the same corners. Elements that are faces themselves stay single, and so does
 /// the last of an odd number.
 fn partners(faces: &IndexLists, is_single: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     // Sorting finds equal faces several times faster than hashing at a million elements.
-    let mut keyed: Vec<([u32; 4], usize)> = Vec::with_capacity(faces.len());
+    let mut small: Vec<([u32; 4], usize)> = Vec::with_capacity(faces.len());
+    let mut large: Vec<(Vec<u32>, usize)> = Vec::new();
     for (at, face) in faces.iter().enumerate().filter(|(at, _)| !is_single(*at)) {
-        let mut key = [u32::MAX; 4];
-        key[..face.len()].copy_from_slice(face);
-        key.sort_unstable();
-        keyed.push((key, at));
+        if face.len() <= 4 {
+            let mut key = [u32::MAX; 4];
+            key[..face.len()].copy_from_slice(face);
+            key.sort_unstable();
+            small.push((key, at));
+        } else {
+            let mut key = face.to_vec();
+            key.sort_unstable();
+            large.push((key, at));
+        }
     }
-    keyed.sort_unstable();
     let mut partner = vec![None; faces.len()];
+    pair_up(small, &mut partner);
+    pair_up(large, &mut partner);
+    partner
+}
+
+/// Makes two and two with the same key partners.
+fn pair_up<K: Ord>(mut keyed: Vec<(K, usize)>, partner: &mut [Option<usize>]) {
+    keyed.sort_unstable();
     let mut at = 0;
     while at + 1 < keyed.len() {
-        let ((key, first), (next, second)) = (keyed[at], keyed[at + 1]);
+        let ((key, first), (next, second)) = (&keyed[at], &keyed[at + 1]);
         if key == next {
-            partner[first] = Some(second);
-            partner[second] = Some(first);
+            partner[*first] = Some(*second);
+            partner[*second] = Some(*first);
             at += 1;
         }
         at += 1;
     }
-    partner
 }
 
-/// Faces given by hand; each belongs to the first element that holds all its nodes, if there is one.
-pub fn assign_faces(given: &IndexLists, elements: &IndexLists) -> Faces {
+/// Faces given by hand, each with the elements that hold all its nodes: the first one out of which it looks, and the
+/// first one into which it looks. `looks_out` says which of them an element is.
+pub fn assign_faces(given: &IndexLists, elements: &IndexLists, looks_out: impl Fn(&[u32], u32) -> bool) -> Faces {
     let mut elements_of_node: HashMap<u32, Vec<u32>> = HashMap::new();
     for (element, nodes) in (0u32..).zip(elements.iter()) {
         for &node in nodes {
             elements_of_node.entry(node).or_default().push(element);
         }
     }
-    let holder = |face: &[u32]| {
-        let candidates = elements_of_node.get(face.first()?)?;
-        candidates.iter().copied().find(|&e| face.iter().all(|node| elements[e as usize].contains(node)))
-    };
-    let inner: Vec<_> = given.iter().map(holder).collect();
-    Faces { nodes: given.clone(), outer: vec![None; inner.len()], inner }
-}
-
-/// The edges of one element as pairs of nodes.
-pub fn edges_of(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 2]> {
-    if kind == ElementKind::Segment {
-        return vec![[nodes[0], nodes[1]]];
+    let mut faces = Faces { nodes: given.clone(), ..Faces::default() };
+    for face in given.iter() {
+        let (mut inner, mut outer) = (None, None);
+        let candidates = face.first().and_then(|node| elements_of_node.get(node)).into_iter().flatten();
+        for &element in candidates.filter(|&&e| face.iter().all(|node| elements[e as usize].contains(node))) {
+            let side = if looks_out(face, element) { &mut inner } else { &mut outer };
+            side.get_or_insert(element);
+        }
+        faces.inner.push(inner);
+        faces.outer.push(outer);
     }
-    let mut edges = Vec::new();
-    for_each_face(kind, nodes, |face| edges.extend(around(face).map(ordered)));
-    edges.sort_unstable();
-    edges.dedup();
-    edges
+    faces
 }
 
 /// The sides of a polygon: each node with the next.
@@ -221,50 +314,6 @@ impl Springs {
     }
 }
 
-/// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
-pub fn springs(topology: Springs, elements: &IndexLists, kinds: &[ElementKind]) -> Vec<[u32; 2]> {
-    let mut pairs = Vec::new();
-    for (nodes, &kind) in elements.iter().zip(kinds) {
-        add_springs(topology, kind, nodes, &mut pairs);
-    }
-    pairs.sort_unstable();
-    pairs.dedup();
-    pairs
-}
-
-/// Adds the springs of one element, some of them more than once.
-fn add_springs(topology: Springs, kind: ElementKind, nodes: &[u32], pairs: &mut Vec<[u32; 2]>) {
-    let every = || (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])));
-    if topology == Springs::All {
-        pairs.extend(every());
-        return;
-    }
-    pairs.extend(edges_of(kind, nodes).into_iter().map(ordered));
-    let faces = faces_of(kind, nodes);
-    match topology {
-        Springs::Edges | Springs::All => {}
-        Springs::EdgesOneDiagonal if kind == ElementKind::Hexahedron => {
-            // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
-            let tetrahedron = [0, 3, 5, 6].map(|at: usize| nodes[at]);
-            pairs.extend((0..4).flat_map(|a| (0..a).map(move |b| ordered([tetrahedron[a], tetrahedron[b]]))));
-        }
-        Springs::EdgesOneDiagonal => pairs.extend(faces.iter().flat_map(|face| fan(face))),
-        Springs::EdgesFaceDiagonals => {
-            pairs.extend(
-                faces.iter().flat_map(|face| {
-                    (0..face.len()).flat_map(move |a| (0..a).map(move |b| ordered([face[a], face[b]])))
-                }),
-            );
-        }
-        // All corners of a polygon share its one face.
-        Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
-        Springs::EdgesBodyDiagonals => {
-            let share_a_face = |pair: &[u32; 2]| faces.iter().any(|face| pair.iter().all(|node| face.contains(node)));
-            pairs.extend(every().filter(|pair| !share_a_face(pair)));
-        }
-    }
-}
-
 /// The diagonals of a polygon from its lowest-numbered node: one for a quadrilateral, none for a triangle.
 fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     let hub = (0..face.len()).min_by_key(|&at| face[at]).unwrap_or(0);
@@ -274,17 +323,18 @@ fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::LazyLock;
 
-    fn hexahedron() -> (IndexLists, Vec<ElementKind>) {
-        let mut elements = IndexLists::default();
-        elements.push(&[0, 1, 2, 3, 4, 5, 6, 7]);
-        (elements, vec![ElementKind::Hexahedron])
+    /// Elements that need no hull.
+    fn elements<'a>(nodes: &'a IndexLists, kinds: &'a [ElementKind]) -> Elements<'a> {
+        static NONE: LazyLock<Hulls> = LazyLock::new(Hulls::default);
+        Elements { nodes, kinds, hulls: &NONE }
     }
 
     #[test]
     fn a_cube_has_the_springs_that_each_name_says() {
-        let (elements, kinds) = hexahedron();
-        let count = |topology| springs(topology, &elements, &kinds).len();
+        let nodes: IndexLists = [&[0, 1, 2, 3, 4, 5, 6, 7][..]].into_iter().collect();
+        let count = |topology| elements(&nodes, &[ElementKind::Hexahedron]).springs(topology).len();
         assert_eq!(count(Springs::Edges), 12);
         assert_eq!(count(Springs::EdgesOneDiagonal), 12 + 6);
         assert_eq!(count(Springs::EdgesFaceDiagonals), 12 + 12);
@@ -313,24 +363,24 @@ mod tests {
             (ElementKind::Wedge, 6),
             (ElementKind::Hexahedron, 8),
         ] {
-            let nodes: Vec<u32> = (0..nodes).collect();
-            let directed: Vec<_> =
-                faces_of(kind, &nodes).iter().flat_map(|face| around(face).collect::<Vec<_>>()).collect();
+            let own: Vec<u32> = (0..nodes).collect();
+            let lists = [own.as_slice()].into_iter().collect();
+            let kinds = [kind];
+            let element = elements(&lists, &kinds);
+            let faces = element.faces_of(0);
+            let directed: Vec<_> = faces.iter().flat_map(|face| around(face)).collect();
             for &[a, b] in &directed {
                 assert_eq!(directed.iter().filter(|&&edge| edge == [b, a]).count(), 1, "{kind:?} {a}-{b}");
             }
             // Euler: nodes − edges + faces = 2 for anything that closes like a ball.
-            let edges = edges_of(kind, &nodes).len();
-            assert_eq!(nodes.len() + faces_of(kind, &nodes).len(), edges + 2, "{kind:?}");
+            assert_eq!(own.len() + faces.len(), element.edges_of(0).len() + 2, "{kind:?}");
         }
     }
 
     #[test]
     fn neighbours_share_one_face() {
-        let mut elements = IndexLists::default();
-        elements.push(&[0, 1, 3, 4, 6, 7, 9, 10]);
-        elements.push(&[1, 2, 4, 5, 7, 8, 10, 11]);
-        let faces = shared_faces(&elements, &[ElementKind::Hexahedron; 2]);
+        let two = [&[0, 1, 3, 4, 6, 7, 9, 10][..], &[1, 2, 4, 5, 7, 8, 10, 11]].into_iter().collect();
+        let faces = elements(&two, &[ElementKind::Hexahedron; 2]).shared_faces();
         assert_eq!(faces.nodes.len(), 11);
         assert_eq!(faces.outer.iter().flatten().collect::<Vec<_>>(), [&1]);
     }

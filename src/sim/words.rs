@@ -3,27 +3,49 @@
 use super::body::{Body, ElementKind};
 use glam::DVec3;
 
-/// How many elements of each kind a body has, and what a reader calls that many: triangles when all polygons are
-/// ones, cubes when all hexahedra are.
+/// How many elements of each kind a body has, and what a reader calls that many: polygons by the number of their sides,
+/// cubes when all hexahedra are ones, and squares when all quadrilaterals are.
 pub fn elements(body: &Body) -> Vec<(usize, &'static str)> {
     use ElementKind::*;
-    let of = |kind| body.elements.iter().zip(&body.kinds).filter(move |&(_, &other)| other == kind);
-    let names = |kind| match kind {
-        Segment => ["segment", "segments"],
-        Polygon if of(kind).all(|(nodes, _)| nodes.len() == 3) => ["triangle", "triangles"],
-        Polygon => ["polygon", "polygons"],
-        Triangle => ["triangle", "triangles"],
-        Tetrahedron => ["tetrahedron", "tetrahedra"],
-        Pyramid => ["pyramid", "pyramids"],
-        Wedge => ["wedge", "wedges"],
-        Hexahedron if of(kind).all(|(nodes, _)| is_cube(nodes, &body.rest)) => ["cube", "cubes"],
-        Hexahedron => ["hexahedron", "hexahedra"],
-        Other if of(kind).count() == body.elements.len() => ["element", "elements"],
-        Other => ["other element", "other elements"],
+    // A polygon by its sides, whatever is beyond hexagons being one; others by their kind alone.
+    let group = |nodes: &[u32], kind| if kind == Polygon { (kind, nodes.len().min(7)) } else { (kind, 0) };
+    let of = |wanted| {
+        body.elements
+            .iter()
+            .zip(&body.kinds)
+            .map(|(nodes, &kind)| (nodes, group(nodes, kind)))
+            .filter(move |one| one.1 == wanted)
     };
-    let kinds = [Segment, Polygon, Triangle, Tetrahedron, Pyramid, Wedge, Hexahedron, Other];
-    let counted = kinds.into_iter().map(|kind| (of(kind).count(), kind)).filter(|(count, _)| *count > 0);
-    counted.map(|(count, kind)| (count, names(kind)[usize::from(count > 1)])).collect()
+    let names = |wanted: (ElementKind, usize)| match wanted {
+        (Segment, _) => ["segment", "segments"],
+        (Polygon, 3) | (Triangle, _) => ["triangle", "triangles"],
+        (Polygon, 4) if of(wanted).all(|(nodes, _)| is_square(nodes, &body.rest)) => ["square", "squares"],
+        (Polygon, 4) => ["quadrilateral", "quadrilaterals"],
+        (Polygon, 5) => ["pentagon", "pentagons"],
+        (Polygon, 6) => ["hexagon", "hexagons"],
+        (Polygon, _) => ["polygon", "polygons"],
+        (Tetrahedron, _) => ["tetrahedron", "tetrahedra"],
+        (Pyramid, _) => ["pyramid", "pyramids"],
+        (Wedge, _) => ["wedge", "wedges"],
+        (Hexahedron, _) if of(wanted).all(|(nodes, _)| is_cube(nodes, &body.rest)) => ["cube", "cubes"],
+        (Hexahedron, _) => ["hexahedron", "hexahedra"],
+        (Other, _) if of(wanted).count() == body.elements.len() => ["element", "elements"],
+        (Other, _) => ["other element", "other elements"],
+    };
+    let polygons = (3..=7).map(|sides| (Polygon, sides));
+    let others = [Triangle, Tetrahedron, Pyramid, Wedge, Hexahedron, Other].map(|kind| (kind, 0));
+    let groups = [(Segment, 0)].into_iter().chain(polygons).chain(others);
+    let counted = groups.map(|group| (of(group).count(), group)).filter(|(count, _)| *count > 0);
+    counted.map(|(count, group)| (count, names(group)[usize::from(count > 1)])).collect()
+}
+
+/// Whether a quadrilateral in the plane has equal sides and right angles at rest, up to rounding.
+fn is_square(nodes: &[u32], rest: &[DVec3]) -> bool {
+    let corner = |at: usize| rest[nodes[at] as usize] - rest[nodes[0] as usize];
+    let [one, other] = [corner(1), corner(3)];
+    let size = one.length();
+    let slack = 1e-9 * size.max(rest[nodes[0] as usize].length());
+    (corner(2) - (one + other)).length() <= slack && (DVec3::new(-one.y, one.x, 0.0) - other).length() <= slack
 }
 
 /// Whether a hexahedron has equal edges and right angles at rest, up to rounding.
@@ -79,7 +101,9 @@ mod tests {
         let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let words = |lists: &[&[u32]]| elements(&body(Dimension::Plane, &plane, lists));
         assert_eq!(words(&[&[0, 1, 2], &[0, 2, 3]]), [(2, "triangles")]);
-        assert_eq!(words(&[&[0, 1, 2, 3], &[0, 1, 2]]), [(2, "polygons")]);
+        assert_eq!(words(&[&[0, 1, 2, 3], &[0, 1, 2]]), [(1, "triangle"), (1, "square")]);
+        let trapezium = [plane[0], plane[1], [0.9, 1.0, 0.0], plane[3]];
+        assert_eq!(elements(&body(Dimension::Plane, &trapezium, &[&[0, 1, 2, 3]])), [(1, "quadrilateral")]);
     }
 
     #[test]

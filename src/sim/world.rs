@@ -119,9 +119,7 @@ impl World {
         // Collisions.
         let mut disturbed = false;
         for obstacle in surroundings.obstacles.iter().map(|obstacle| obstacle.at(time, step)) {
-            for (position, velocity) in state.position.iter_mut().zip(&mut state.velocity) {
-                disturbed |= obstacle.rebound(position, velocity);
-            }
+            disturbed |= obstacle.rebound_all(state);
         }
         // Hands.
         for hand in hands {

@@ -1,4 +1,5 @@
-//! Golden images: the last frame of each scene in this folder, against the picture of the same name beside it.
+//! Golden images: the last frame of each scene in this folder, against the picture of the same name beside it; and that
+//! of each scene that ships, drawn small, against the picture of the same name in `scenes/` here.
 //!
 //! A golden is a frame as the program writes it, so it carries the digest of the state it shows. A failure can say
 //! whether the physics moved or only the drawing.
@@ -29,13 +30,28 @@ const AT_LEAST: usize = 8;
 /// The largest golden (bytes): small pictures say as much and keep the store small.
 const LARGEST_FILE: u64 = 40 * 1024;
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+/// Width and height of the pictures of scenes that ship (px).
+const SMALL: [u32; 2] = [400, 225];
+
+/// A folder of scenes, the folder of their goldens, and the size of these if it is not that of the scene.
+struct Set {
+    scenes: PathBuf,
+    goldens: PathBuf,
+    size: Option<[u32; 2]>,
+}
+
+fn sets() -> [Set; 2] {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let here = root.join("tests/golden");
+    [
+        Set { scenes: here.clone(), goldens: here.clone(), size: None },
+        Set { scenes: root.join("scenes"), goldens: here.join("scenes"), size: Some(SMALL) },
+    ]
 }
 
 /// The stems of the files with an ending.
-fn stems(ending: &str) -> BTreeSet<String> {
-    let entries = std::fs::read_dir(folder()).expect("the folder of goldens");
+fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder of scenes or goldens");
     let paths = entries.map(|entry| entry.expect("a readable folder").path());
     let matching = paths.filter(|path| path.extension().is_some_and(|found| found == ending));
     matching.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect()
@@ -105,24 +121,28 @@ fn every_scene_looks_as_it_did() {
     let failed = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     std::fs::create_dir_all(&failed).expect("a folder for failures");
     let mut complaints = Vec::new();
-    for stem in stems("toml") {
-        let scene = Scene::load(&folder().join(&stem).with_extension("toml"), &Limits::default());
-        let (image, tags) = draw(&gpu, &scene.unwrap_or_else(|error| panic!("{error}")));
-        let golden = folder().join(&stem).with_extension("png");
-        let Some(complaint) = judge(&golden, &image, &tags) else { continue };
-        let bytes = encode(image.dimensions().into(), image.as_raw(), &tags);
-        if update {
-            assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
-            std::fs::write(&golden, bytes).expect("a golden");
-            eprintln!("{stem}: renewed ({complaint})");
-        } else {
-            let actual = failed.join(&stem).with_extension("png");
-            std::fs::write(&actual, bytes).expect("the picture of a failure");
-            complaints.push(format!(
-                "{stem}: {complaint}\n  expected {}\n  actual   {}",
-                golden.display(),
-                actual.display()
-            ));
+    for Set { scenes, goldens, size } in sets() {
+        for stem in stems(&scenes, "toml") {
+            let scene = Scene::load(&scenes.join(&stem).with_extension("toml"), &Limits::default());
+            let mut scene = scene.unwrap_or_else(|error| panic!("{error}"));
+            scene.view.size = size.unwrap_or(scene.view.size);
+            let (image, tags) = draw(&gpu, &scene);
+            let golden = goldens.join(&stem).with_extension("png");
+            let Some(complaint) = judge(&golden, &image, &tags) else { continue };
+            let bytes = encode(image.dimensions().into(), image.as_raw(), &tags);
+            if update {
+                assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
+                std::fs::write(&golden, bytes).expect("a golden");
+                eprintln!("{stem}: renewed ({complaint})");
+            } else {
+                let actual = failed.join(&stem).with_extension("png");
+                std::fs::write(&actual, bytes).expect("the picture of a failure");
+                complaints.push(format!(
+                    "{stem}: {complaint}\n  expected {}\n  actual   {}",
+                    golden.display(),
+                    actual.display()
+                ));
+            }
         }
     }
     assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
@@ -130,12 +150,15 @@ fn every_scene_looks_as_it_did() {
 
 #[test]
 fn every_golden_has_a_scene_and_is_small() {
-    assert!(!stems("toml").is_empty());
-    let dead: Vec<_> = stems("png").difference(&stems("toml")).cloned().collect();
-    assert_eq!(dead, [""; 0], "goldens without a scene");
-    for stem in stems("png") {
-        let size = std::fs::metadata(folder().join(&stem).with_extension("png")).expect("a golden").len();
-        assert!(size <= LARGEST_FILE, "{stem}: {size} bytes");
+    for Set { scenes, goldens, .. } in sets() {
+        assert!(!stems(&scenes, "toml").is_empty());
+        let pictures = stems(&goldens, "png");
+        let dead: Vec<_> = pictures.difference(&stems(&scenes, "toml")).cloned().collect();
+        assert_eq!(dead, [""; 0], "goldens without a scene");
+        for stem in pictures {
+            let size = std::fs::metadata(goldens.join(&stem).with_extension("png")).expect("a golden").len();
+            assert!(size <= LARGEST_FILE, "{stem}: {size} bytes");
+        }
     }
 }
 

@@ -1,31 +1,11 @@
 //! Fig. 4(b): 3×3×3 cubes hit the floor with the speed of a fall of 5 m, by the scene that ships.
 
-use localshape::scene::{Limits, Scene};
-use localshape::sim::Snapshot;
+use crate::support::{after, shipped};
 use localshape::sim::snapshot::Status;
-
-/// The shipped scene with some of its text replaced.
-fn scene(changes: &[(&str, &str)]) -> Scene {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/fig4b.toml");
-    let mut text = std::fs::read_to_string(path).expect("the scene ships");
-    for (old, new) in changes {
-        assert!(text.contains(old), "the scene holds `{old}`");
-        text = text.replace(old, new);
-    }
-    Scene::parse(&text, "fig4b.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// A run of the scene after some seconds.
-fn after(scene: &Scene, run: &str, seconds: f64) -> Snapshot {
-    let at = scene.runs.iter().position(|known| known.name == run).expect("the scene has this run");
-    let mut world = scene.world(at);
-    world.advance((seconds / scene.runs[at].step).round() as u64);
-    world.snapshot()
-}
 
 #[test]
 fn springs_turn_over_exactly_the_lowest_nine_cubes_and_the_shape_model_none() {
-    let scene = scene(&[]);
+    let scene = shipped("fig4b", &[]);
     let shape = after(&scene, "Local shape", 3.0).diagnostics;
     assert_eq!(shape.turned_over, 0);
     assert!((shape.volume_ratio - 0.98).abs() < 0.005, "{}", shape.volume_ratio);
@@ -46,7 +26,7 @@ fn springs_turn_over_exactly_the_lowest_nine_cubes_and_the_shape_model_none() {
 
 #[test]
 fn at_ten_times_the_stiffness_nothing_turns_over() {
-    let scene = scene(&[("stiffness = 1e4", "stiffness = 1e5")]);
+    let scene = shipped("fig4b", &[("stiffness = 1e4", "stiffness = 1e5")]);
     for run in ["Local shape", "Mass-spring"] {
         assert_eq!(after(&scene, run, 1.0).diagnostics.turned_over, 0, "{run}");
     }
@@ -54,7 +34,7 @@ fn at_ten_times_the_stiffness_nothing_turns_over() {
 
 #[test]
 fn a_step_beyond_the_limit_of_stability_is_a_result_with_a_time() {
-    let scene = scene(&[("step = \"T/50\"", "step = 0.02")]);
+    let scene = shipped("fig4b", &[("step = \"T/50\"", "step = 0.02")]);
     let end = after(&scene, "Mass-spring", 3.0);
     let Status::Diverged(at) = end.status else { panic!("it must diverge") };
     assert!(at.step > 1 && (at.time - at.step as f64 * 0.02).abs() < 1e-12 && at.element.is_some(), "{at:?}");

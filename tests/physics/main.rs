@@ -2,8 +2,14 @@
 
 mod closed_forms;
 mod conformance;
+mod contact;
 mod degenerate_starts;
+mod fig4a;
 mod fig4b;
+mod fig4c;
 mod figures;
+mod grips;
+mod integrators;
+mod readings;
 mod support;
 mod threads;

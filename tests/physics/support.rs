@@ -1,13 +1,15 @@
 //! Small bodies and worlds for the tests.
 
 use glam::{DQuat, DVec3};
+use localshape::scene::{Limits, Scene};
+use localshape::sim::Snapshot;
 use localshape::sim::body::{Body, Dimension, IndexLists, State};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::topology::{self, Springs};
+use localshape::sim::topology::Springs;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
 
@@ -43,7 +45,7 @@ pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
 }
 
 pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {
-    MassSpring { stiffness, damping, springs: topology::springs(named, &body.elements, &body.kinds) }
+    MassSpring { stiffness, damping, springs: body.topology().springs(named) }
 }
 
 pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {
@@ -65,11 +67,41 @@ pub(crate) fn world(
     World::new(body, initial, model, around, Stepping { integrator: Integrator::SemiImplicitEuler, step })
 }
 
+/// A world without gravity and obstacles, stepped by some integrator.
+pub(crate) fn stepped(
+    body: &Arc<Body>,
+    initial: State,
+    model: &dyn ElasticModel,
+    integrator: Integrator,
+    step: f64,
+) -> World {
+    World::new(body, initial, model, Surroundings::default(), Stepping { integrator, step })
+}
+
 /// Internal forces (N) at a state.
 pub(crate) fn forces(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> Vec<DVec3> {
     let mut forces = vec![DVec3::ZERO; body.len()];
     model.prepare(body, state).add_forces(state, &mut forces);
     forces
+}
+
+/// A scene that ships, with some of its text replaced.
+pub(crate) fn shipped(name: &str, changes: &[(&str, &str)]) -> Scene {
+    let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut text = std::fs::read_to_string(path).expect("the scene ships");
+    for (old, new) in changes {
+        assert!(text.contains(old), "the scene holds `{old}`");
+        text = text.replace(old, new);
+    }
+    Scene::parse(&text, name, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A run of a scene after some seconds.
+pub(crate) fn after(scene: &Scene, run: &str, seconds: f64) -> Snapshot {
+    let at = scene.runs.iter().position(|known| known.name == run).expect("the scene has this run");
+    let mut world = scene.world(at);
+    world.advance((seconds / scene.runs[at].step).round() as u64);
+    world.snapshot()
 }
 
 /// Numbers between −1 and 1 that look random and are the same everywhere.

@@ -374,8 +374,19 @@ fn a_concave_polygon_is_filled_to_its_own_sides() {
 }
 
 #[test]
-fn an_element_without_faces_is_drawn_from_its_middle() {
+fn an_element_of_any_shape_is_drawn_by_its_hull() {
+    // A cube without one corner: three squares and four triangles.
     let nodes = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1]]";
+    let (scene, picture) = one_element(nodes, 7);
+    assert_eq!(scene.body.faces.nodes.len(), 7);
+    let panel = &picture.panels[0];
+    assert_eq!(panel.sound.triangles.len(), 3 * 2 + 4);
+    assert_eq!(panel.lines.iter().filter(|line| line.kind == LineKind::Edge).count(), 12);
+}
+
+#[test]
+fn an_element_without_faces_is_drawn_from_its_middle() {
+    let nodes = "[[0,0,0],[1,1,1],[2,2,2],[3,3,3],[4,4,4],[5,5,5],[7,7,7]]";
     let (_, picture) = one_element(nodes, 7);
     let panel = &picture.panels[0];
     assert_eq!(panel.lines.len(), 7);

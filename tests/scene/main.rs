@@ -1,7 +1,10 @@
 //! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
 
+mod archives;
+mod bodies;
 mod digest;
 mod good;
+mod manipulators;
 mod mistakes;
 mod robust;
 mod schema;

@@ -68,7 +68,12 @@ fn unknown_keys() {
     case(PLANE, "nodes =", "node =", &[(6, 1, "did you mean `nodes`?")]);
     case(PLANE, "[view]", "[viev]", &[(19, 2, "unknown key `viev` did you mean `view`?")]);
     case(PLANE, "[time]", "[tiem]", &[(2, 2, "did you mean `time`?")]);
-    case(PLANE, "mass = 1", "hue = 1", &[(9, 1, "unknown key `hue` in `body` known here: lattice, nodes,")]);
+    case(
+        PLANE,
+        "mass = 1",
+        "hue = 1",
+        &[(9, 1, "unknown key `hue` in `body` known here: lattice, polygon, fan, disc, bars, nodes,")],
+    );
     case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `view`")]);
     case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
     case(PLANE, "mass = 1", "azimuth = 1", &[(9, 1, "`azimuth` belongs to `view.camera`")]);
@@ -99,7 +104,11 @@ fn missing_keys() {
         SPACE,
         "lattice = { cells = [1, 1, 1], side = 0.1 }",
         "mass = 1",
-        &[(4, 1, "`body` has neither `lattice` nor `nodes` and `elements`; one is needed")],
+        &[(
+            4,
+            1,
+            "`body` has neither `lattice`, `polygon`, `fan`, `disc`, `bars`, `nodes` and `elements` nor `file`; one",
+        )],
     );
     case(PLANE, "elements = [[0, 1, 2], [0, 2, 3]]\n", "", &[(5, 1, "`body` has `nodes` but no `elements`")]);
     let nothing = bad("title = 'nothing'");
@@ -538,4 +547,100 @@ fn a_mistake_is_shown_with_its_line_and_a_mark() {
     assert_eq!(text.matches("expected a finite number").count() + text.matches("no `elements`").count(), 20);
     assert!(text.ends_with("test.toml: and 32 more"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() < 130), "{text}");
+}
+
+#[test]
+fn bodies_that_no_rule_makes() {
+    let lattice = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+    let body = |to: &str, expected: &[(usize, usize, &str)]| case(SPACE, lattice, to, expected);
+    let plane = |to: &str, expected: &[(usize, usize, &str)]| {
+        case(&SPACE.replace("[0, -9.8, 0]", "[0, -9.8]"), lattice, to, expected);
+    };
+    // Exactly one of them.
+    body(
+        "polygon = { sides = 6, radius = 1 }\nlattice = { cells = [1, 1, 1], side = 0.1 }",
+        &[(6, 1, "`body` has both `lattice` and `polygon`, which exclude each other keep one")],
+    );
+    plane(
+        "fan = { sides = 6, radius = 1 }\nfile = 'body.npz'",
+        &[(6, 1, "`body` has both `fan` and `file`, which exclude each other keep one")],
+    );
+    plane(
+        "polygons = { sides = 6, radius = 1 }",
+        &[(5, 1, "unknown key `polygons` in `body` did you mean `polygon`?")],
+    );
+    plane("fan = { sides = 6, radius = 1 }\nmasses = [1, 2]", &[(6, 1, "`body.masses` needs `nodes`")]);
+    // Blocks.
+    body(
+        "lattice = { cells = [1, 1, 1], side = 0.1, elements = 'triangles' }",
+        &[(
+            5,
+            55,
+            "`body.lattice.elements` is \"triangles\", but the block is in space: it has 3 `cells` take \"tetrahedra\"",
+        )],
+    );
+    plane(
+        "lattice = { cells = [1, 1], side = 0.1, elements = 'tetrahedra' }",
+        &[(5, 52, "is \"tetrahedra\", but the block is in the plane: it has 2 `cells` take \"triangles\"")],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = 0.1, elements = 'tetraeder' }",
+        &[(5, 55, "expected \"cells\", \"triangles\", \"tetrahedra\" or \"mixed\" did you mean \"tetrahedra\"?")],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = [0.1, 0.1] }",
+        &[(
+            5,
+            39,
+            "`body.lattice.side` has 2 entries, and `cells` has 3; expected one for each axis or one number for all",
+        )],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = [0.1] }",
+        &[(5, 39, "`body.lattice.side` has 1 entry; expected 2 or 3")],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = [0.1, 0, 0.1] }",
+        &[(5, 45, "`body.lattice.side[1]` is 0; expected a number greater than 0")],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = -1 }",
+        &[(5, 39, "`body.lattice.side` is -1; expected a number greater")],
+    );
+    body("lattice = { cells = [1, 1, 1], side = '1' }", &[(5, 39, "the string \"1\"; expected a number or an array")]);
+    body(
+        "lattice = { cells = [1, 1, 1], side = 1, irregular = 0.5 }",
+        &[(5, 54, "`body.lattice.irregular` is 0.5; expected a number from 0 to 0.4")],
+    );
+    body(
+        "lattice = { cells = [1, 1, 1], side = 1, seed = -1 }",
+        &[(5, 49, "`body.lattice.seed` is -1; expected a whole")],
+    );
+    // Polygons and discs.
+    plane("polygon = { sides = 2, radius = 1 }", &[(5, 21, "`body.polygon.sides` is 2; expected a whole number")]);
+    plane("polygon = { sides = 5, radius = 0 }", &[(5, 33, "`body.polygon.radius` is 0; expected a number greater")]);
+    plane("fan = { sides = 5 }", &[(5, 7, "`body.fan` has no `radius`")]);
+    plane(
+        "disc = { radius = 1, rings = 0, sectors = 2 }",
+        &[(5, 30, "`body.disc.rings` is 0"), (5, 43, "`body.disc.sectors` is 2")],
+    );
+    // They are in the plane, and so is everything else.
+    body(
+        "polygon = { sides = 6, radius = 1 }",
+        &[(1, 11, "`gravity` has 3 coordinates; expected 2, because the body is in the plane")],
+    );
+    // Bars.
+    body(
+        "bars = { count = 3, length = 1, direction = [0, 0, 0] }",
+        &[(5, 45, "`body.bars.direction` is zero, so it has no direction")],
+    );
+    body(
+        "bars = { count = 0, length = 1, direction = [0, 1, 0] }",
+        &[(5, 18, "`body.bars.count` is 0; expected a whole")],
+    );
+    body(
+        "bars = { count = 3, length = 1, direction = [1] }",
+        &[(5, 45, "`body.bars.direction` has 1 entry; expected 2 or 3")],
+    );
+    body("file = ''", &[(5, 8, "`body.file` is empty; expected at least 1")]);
 }

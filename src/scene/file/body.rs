@@ -4,14 +4,18 @@ use super::{Coordinates, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The body: either a `lattice`, or `nodes` and `elements` listed one by one.
+/// The body: a `lattice`, a `polygon`, a `fan`, a `disc` or `bars`, or `nodes` and `elements` listed one by one, here or in
+/// a `file`.
 ///
 /// It starts as given, is turned by `rotation`, moved by `offset`, set down by `lowest` and thrown with `velocity`,
 /// in this order. At rest it is never turned nor moved.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
-    "oneOf" = [{ "required": ["lattice"] }, { "required": ["nodes", "elements"] }],
+    "oneOf" = [
+        { "required": ["lattice"] }, { "required": ["polygon"] }, { "required": ["fan"] }, { "required": ["disc"] },
+        { "required": ["bars"] }, { "required": ["nodes", "elements"] }, { "required": ["file"] }
+    ],
     "allOf" = [{ "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } }],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
@@ -19,13 +23,22 @@ use serde::{Deserialize, Serialize};
     }
 ))]
 pub(in crate::scene) struct BodyFile {
-    /// A block of equal cubes, or of equal squares in the plane.
+    /// A block of equal cubes, or of equal squares in the plane, whole or cut into other elements.
     pub(in crate::scene) lattice: Option<LatticeFile>,
+    /// One regular polygon in the plane as a single element, with a side down on the level of the origin.
+    pub(in crate::scene) polygon: Option<PolygonFile>,
+    /// A regular polygon in the plane, cut into triangles around a node in its middle.
+    pub(in crate::scene) fan: Option<PolygonFile>,
+    /// A disc in the plane: triangles around its middle, and rings of quadrilaterals around them.
+    pub(in crate::scene) disc: Option<DiscFile>,
+    /// Two-node elements end to end, beginning at the origin.
+    pub(in crate::scene) bars: Option<BarsFile>,
     /// Rest position of each node (m). Two coordinates make a body in the plane, three one in space.
     #[schemars(length(min = 1))]
     pub(in crate::scene) nodes: Option<Vec<Coordinates>>,
     /// The nodes of each element, two or more, counted from 0. In the plane polygons, counter-clockwise; in space
-    /// tetrahedra, pyramids, wedges, hexahedra (corners in bit order: x fastest, then y, then z) or anything else.
+    /// tetrahedra, pyramids, wedges, hexahedra (corners in bit order: x fastest, then y, then z) or, with any other
+    /// number of nodes in any order, whatever their convex hull is.
     #[schemars(length(min = 1), inner(length(min = 2)))]
     pub(in crate::scene) elements: Option<Vec<Vec<u32>>>,
     /// Pairs of nodes, for mass-spring models without a named topology.
@@ -40,6 +53,11 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass` for all.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
+    /// A NumPy archive (.npz) beside the scene, with the arrays `nodes` and `elements` and, if wanted, `springs`, `faces`,
+    /// `positions`, `velocities` and `masses`, which mean what these keys do. Coordinates and masses are float64 or
+    /// float32; the indices are whole numbers, with -1 in places that a short element or face does not use.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) file: Option<String>,
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
@@ -51,6 +69,19 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) lowest: Option<f64>,
     /// Initial velocity of all nodes (m/s). Default: at rest.
     pub(in crate::scene) velocity: Option<Coordinates>,
+    /// A rigid spin at the start about the mean of the nodes, on top of all other velocities. Default: none.
+    pub(in crate::scene) spin: Option<SpinFile>,
+}
+
+/// A rigid spin.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SpinFile {
+    /// The axis, of any length but zero, about which the spin is counter-clockwise when it points at the viewer. In
+    /// the plane there is none.
+    pub(in crate::scene) axis: Option<Coordinates>,
+    /// The angular velocity (rad/s).
+    pub(in crate::scene) rate: f64,
 }
 
 /// A block of equal cells standing on the level of the origin, its middle above (in the plane: at) the origin.
@@ -61,9 +92,89 @@ pub(in crate::scene) struct LatticeFile {
     /// How many cells along x, y and z; two numbers make squares in the plane.
     #[schemars(length(min = 2, max = 3), inner(range(min = 1, max = 4_000_000_000_u32)))]
     pub(in crate::scene) cells: Vec<u32>,
-    /// Length of a cell's edge (m).
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(in crate::scene) side: f64,
+    /// Length of a cell's edge (m): one number, or one for each axis.
+    pub(in crate::scene) side: SideFile,
+    /// What the cells are: the elements themselves, or cut or joined to others.
+    #[serde(default)]
+    pub(in crate::scene) elements: CellsFile,
+    /// Nodes are moved at random by up to this part of a cell's shortest side. Those on the outside move only within it
+    /// and the corners not at all, so that the block keeps its shape; less far where an element would come out flat.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 0.4))]
+    pub(in crate::scene) irregular: f64,
+    /// Chooses among the random blocks that `irregular` and `mixed` allow. The same seed makes the same block everywhere.
+    #[serde(default = "first")]
+    pub(in crate::scene) seed: u32,
+}
+
+fn first() -> u32 {
+    1
+}
+
+/// The sides of a cell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum SideFile {
+    /// All alike (m).
+    Equal(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// One for each axis (m).
+    PerAxis(#[schemars(length(min = 2, max = 3))] Vec<Positive>),
+}
+
+/// What becomes of the cells of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum CellsFile {
+    /// Each is an element.
+    #[default]
+    Cells,
+    /// In the plane: each is cut in two, with diagonals that alternate.
+    Triangles,
+    /// In space: each is cut in five, and neighbours match.
+    Tetrahedra,
+    /// Elements of many kinds in a random order: triangles, quadrilaterals, pentagons and hexagons in the plane;
+    /// hexahedra, wedges, pyramids and tetrahedra in space.
+    Mixed,
+}
+
+/// A regular polygon. Its lowest side lies on the level of the origin, its middle above it; its corners are numbered
+/// counter-clockwise from the left end of that side, after the node in the middle if there is one.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct PolygonFile {
+    /// How many sides it has.
+    #[schemars(range(min = 3, max = 4_000_000_000_u32))]
+    pub(in crate::scene) sides: u32,
+    /// Distance of its corners from its middle (m).
+    pub(in crate::scene) radius: Positive,
+}
+
+/// A disc. It stands like a polygon of as many sides as it has sectors; its nodes are numbered from the middle outwards,
+/// in each ring like those of a polygon.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct DiscFile {
+    /// Distance of the outermost nodes from the middle (m).
+    pub(in crate::scene) radius: Positive,
+    /// How many rings of elements there are, all of the same width: the inner one triangles, the others quadrilaterals.
+    #[schemars(range(min = 1, max = 4_000_000_000_u32))]
+    pub(in crate::scene) rings: u32,
+    /// How many elements there are in each ring.
+    #[schemars(range(min = 3, max = 4_000_000_000_u32))]
+    pub(in crate::scene) sectors: u32,
+}
+
+/// A straight chain.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct BarsFile {
+    /// How many bars there are.
+    #[schemars(range(min = 1, max = 4_000_000_000_u32))]
+    pub(in crate::scene) count: u32,
+    /// Length of one bar (m).
+    pub(in crate::scene) length: Positive,
+    /// Where the chain leads, at any length but zero. Two coordinates make it one in the plane, three one in space.
+    pub(in crate::scene) direction: Coordinates,
 }
 
 /// A turn.

@@ -9,7 +9,9 @@ mod motion;
 mod obstacle;
 mod view;
 
-pub(in crate::scene) use body::{BodyFile, RotationFile};
+pub(in crate::scene) use body::{
+    BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile,
+};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
 pub(in crate::scene) use obstacle::ObstacleFile;
 pub(in crate::scene) use view::{ArrangementFile, ColourFile, ShowFile, ViewFile};

@@ -1,11 +1,14 @@
 //! The body and how it starts.
 
+use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
-use super::{elements, lattice, vector};
-use crate::scene::file::{BodyFile, Coordinates, Positive, RunFile};
+use super::{direction, elements, vector};
+use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile};
+use crate::scene::generate::{Generator, Made};
 use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
-use crate::sim::body::{Body, Dimension, IndexLists, State};
+use crate::scene::words::quoted;
+use crate::sim::body::{Body, Dimension, State};
 use crate::sim::census::Census;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -24,75 +27,166 @@ pub(super) struct ResolvedBody {
 }
 
 /// Whether a body is meant to be in the plane or in space, from the first coordinates that say so.
-pub(super) fn dimension(file: &BodyFile) -> Option<Dimension> {
-    let count = match (&file.lattice, &file.nodes) {
-        (Some(lattice), _) => lattice.cells.len(),
-        (None, nodes) => nodes.as_ref()?.first()?.0.len(),
-    };
-    Some(if count == 2 { Dimension::Plane } else { Dimension::Space })
+pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimension> {
+    if let Some(generator) = Generator::of(file) {
+        return Some(generator.dimension());
+    }
+    let listed = || Some(if file.nodes.as_ref()?.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space });
+    beside.map(|lists| lists.dimension).or_else(listed)
 }
 
-/// The body, or `None` after reporting every mistake in it. `flawed`: keys with mistakes have been left out.
+/// The body, or `None` after reporting every mistake in it. `flawed`: keys with mistakes have been left out. `beside` is
+/// what its file holds.
 pub(super) fn resolve(
     file: &BodyFile,
+    beside: Option<Lists>,
+    flawed: bool,
+    runs: &[Option<RunFile>],
+    limits: &Limits,
+    report: &mut Report<'_>,
+) -> Option<ResolvedBody> {
+    match Generator::of(file) {
+        Some(generator) => generated(file, generator, runs, limits, report),
+        None => {
+            let before = report.total();
+            let lists = if file.file.is_some() { beside? } else { Lists::typed(file, report)? };
+            let flawed = flawed || report.total() > before;
+            listed(file, lists, flawed, runs, limits, report)
+        }
+    }
+}
+
+/// A body made by a rule.
+fn generated(
+    file: &BodyFile,
+    generator: Generator<'_>,
+    runs: &[Option<RunFile>],
+    limits: &Limits,
+    report: &mut Report<'_>,
+) -> Option<ResolvedBody> {
+    let before = report.total();
+    let dimension = generator.dimension();
+    let along = check_generator(generator, report);
+    let (path, less): (&[Way<'_>], _) = match generator {
+        Generator::Lattice(_) => (&[Way::Key("body"), Way::Key("lattice"), Way::Key("cells")], "use fewer cells"),
+        Generator::Polygon(_) => (&[Way::Key("body"), Way::Key("polygon"), Way::Key("sides")], "use fewer sides"),
+        Generator::Fan(_) => (&[Way::Key("body"), Way::Key("fan"), Way::Key("sides")], "use fewer sides"),
+        Generator::Disc(_) => (&[Way::Key("body"), Way::Key("disc")], "use fewer rings or sectors"),
+        Generator::Bars(_) => (&[Way::Key("body"), Way::Key("bars"), Way::Key("count")], "use fewer bars"),
+    };
+    let census = generator.census(limits.nodes);
+    if let Some(Excess { message, help, run }) = beyond(census, less, runs, limits) {
+        match run {
+            Some(run) => report.at(&springs_of(run), message, help),
+            None => report.at(path, message, help),
+        }
+        check_start(file, dimension, report);
+        return None;
+    }
+    let Made { nodes: rest, elements } = generator.make(along?);
+    let mass = vec![file.mass.unwrap_or(1.0); rest.len()];
+    let initial = start(file, rest.clone(), None, dimension, report);
+    if report.total() > before {
+        return None;
+    }
+    let body = Body::new(dimension, rest, mass, elements, None);
+    let side = generator.side().unwrap_or_else(|| elements::mean_edge(&body));
+    Some(ResolvedBody { body, initial, springs: None, side })
+}
+
+/// What no other key shows to be wrong with a generator; the direction of bars, or any for others.
+fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
+    let at = |key, inner| [Way::Key("body"), Way::Key(key), Way::Key(inner)];
+    match generator {
+        Generator::Lattice(LatticeFile { cells, side, elements, .. }) => {
+            let axes = cells.len();
+            let wrong = match elements {
+                CellsFile::Triangles if axes == 3 => Some(("triangles", "in space", "tetrahedra")),
+                CellsFile::Tetrahedra if axes == 2 => Some(("tetrahedra", "in the plane", "triangles")),
+                _ => None,
+            };
+            if let Some((typed, place, other)) = wrong {
+                let [typed, other] = [typed, other].map(quoted);
+                let message =
+                    format!("`body.lattice.elements` is {typed}, but the block is {place}: it has {axes} `cells`");
+                report.at(&at("lattice", "elements"), message, format!("take {other}, or other `cells`"));
+            }
+            let sides = match side {
+                SideFile::PerAxis(sides) => sides.len(),
+                SideFile::Equal(_) => axes,
+            };
+            if sides != axes {
+                let message = format!(
+                    "`body.lattice.side` has {sides} entries, and `cells` has {axes}; expected one for each axis"
+                );
+                report.at(&at("lattice", "side"), message, "or one number for all".to_owned());
+            }
+            (wrong.is_none() && sides == axes).then_some(DVec3::X)
+        }
+        Generator::Bars(bars) => {
+            let path = at("bars", "direction");
+            let along = vector(&bars.direction, generator.dimension(), &path, report)?;
+            direction(along, &path, report)
+        }
+        Generator::Polygon(_) | Generator::Fan(_) | Generator::Disc(_) => Some(DVec3::X),
+    }
+}
+
+/// A body of listed nodes and elements.
+fn listed(
+    file: &BodyFile,
+    lists: Lists,
     flawed: bool,
     runs: &[Option<RunFile>],
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<ResolvedBody> {
     let before = report.total();
-    let dimension = dimension(file)?;
-    let at = |key| [Way::Key("body"), Way::Key(key)];
-    let (rest, elements) = match (&file.lattice, &file.nodes) {
-        (Some(typed), _) => {
-            if let Some(excess) = beyond(Census::of_lattice(&typed.cells), runs, limits) {
-                let Excess { message, help, run } = excess;
-                match run {
-                    Some(run) => report.at(&springs_of(run), message, help),
-                    None => report.at(&[at("lattice")[0], at("lattice")[1], Way::Key("cells")], message, help),
-                }
-                check_start(file, dimension, report);
-                return None;
+    let mut elements = BTreeMap::new();
+    lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
+    let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
+    let (dimension, nodes) = (lists.dimension, lists.nodes.len() as u128);
+    let census = Census { dimension, nodes, elements, lattice: false, springs };
+    if let Some(Excess { message, help, run }) = beyond(census, "use fewer nodes", runs, limits) {
+        match (run, &file.file) {
+            (Some(run), _) => report.at(&springs_of(run), message, help),
+            (None, None) => report.at_key(&[Way::Key("body"), Way::Key("nodes")], message, help),
+            (None, Some(name)) => {
+                report.at(&[Way::Key("body"), Way::Key("file")], format!("`{name}`: {message}"), help);
             }
-            (lattice::nodes(&typed.cells, typed.side), lattice::elements(&typed.cells))
         }
-        (None, Some(typed)) => {
-            let lists = file.elements.as_deref().unwrap_or_default();
-            let mut elements = BTreeMap::new();
-            lists.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
-            let springs = file.springs.as_ref().map(|springs| springs.len() as u128);
-            let census = Census { dimension, nodes: typed.len() as u128, elements, lattice: false, springs };
-            if let Some(excess) = beyond(census, runs, limits) {
-                let Excess { message, help, run } = excess;
-                match run {
-                    Some(run) => report.at(&springs_of(run), message, help),
-                    None => report.at_key(&at("nodes"), message, help),
-                }
-                return None;
-            }
-            let nodes = points(typed, "nodes", dimension, report);
-            let body = elements::Listed { dimension, nodes: &nodes, flawed: flawed || report.total() > before };
-            body.check(lists, file.springs.as_deref(), file.faces.as_deref(), report);
-            (nodes, lists.iter().map(Vec::as_slice).collect())
-        }
-        (None, None) => return None,
-    };
-    let mass = masses(file, rest.len(), report);
-    let initial = start(file, &rest, dimension, report);
-    if report.total() > before || elements.is_empty() {
         return None;
     }
-    let faces: Option<IndexLists> = file.faces.as_ref().map(|faces| faces.iter().map(Vec::as_slice).collect());
+    elements::check(&lists, flawed, report);
+    let count = lists.nodes.len();
+    for (key, length) in [
+        ("masses", lists.masses.as_ref().map(Vec::len)),
+        ("positions", lists.positions.as_ref().map(Vec::len)),
+        ("velocities", lists.velocities.as_ref().map(Vec::len)),
+    ] {
+        length.into_iter().for_each(|length| check_count(&lists.place, key, length, count, report));
+    }
+    if file.file.is_some() {
+        check_exclusive(&lists, lists.masses.is_some() && file.mass.is_some(), "mass", "masses", report);
+        let both = lists.velocities.is_some() && file.velocity.is_some();
+        check_exclusive(&lists, both, "velocity", "velocities", report);
+    }
+    let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
+    let mass = masses.unwrap_or_else(|| vec![file.mass.unwrap_or(1.0); count]);
+    let initial = start(file, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
+    if flawed || report.total() > before || elements.is_empty() {
+        return None;
+    }
     let body = Body::new(dimension, rest, mass, elements, faces.as_ref());
-    let side = file.lattice.as_ref().map_or_else(|| elements::mean_edge(&body), |lattice| lattice.side);
-    Some(ResolvedBody { body, initial, springs: file.springs.clone(), side })
+    let side = elements::mean_edge(&body);
+    Some(ResolvedBody { body, initial, springs, side })
 }
 
-/// Whether a body and its runs are too large. A run with a mistake counts as none.
-fn beyond(body: Census, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
+/// Whether a body and its runs are too large, and what would make it less. A run with a mistake counts as none.
+fn beyond(body: Census, less: &'static str, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
     let mut models: Vec<usize> = Vec::new();
     let known = runs.iter().enumerate().filter_map(|(at, run)| Some((at, &run.as_ref()?.model)));
-    let demand = Demand::new(body, known.map(|(at, model)| (models.push(at), model).1));
+    let demand = Demand::new(body, less, known.map(|(at, model)| (models.push(at), model).1));
     let mut excess = demand.beyond(limits).or_else(|| demand.denied())?;
     excess.run = excess.run.map(|run| models[run]);
     Some(excess)
@@ -103,47 +197,25 @@ fn springs_of(run: usize) -> [Way<'static>; 4] {
     [Way::Key("run"), Way::Index(run), Way::Key("model"), Way::Key("springs")]
 }
 
-/// Listed points as vectors, after reporting those with another number of coordinates.
-fn points(typed: &[Coordinates], key: &str, dimension: Dimension, report: &mut Report<'_>) -> Vec<DVec3> {
-    let mut points = Vec::with_capacity(typed.len());
-    for (at, coordinates) in typed.iter().enumerate() {
-        let path = [Way::Key("body"), Way::Key(key), Way::Index(at)];
-        points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
-    }
-    points
-}
-
-/// Reports a list that has not one entry for each node.
-fn check_count(key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
-    if length != nodes {
-        let entries = if length == 1 { "entry" } else { "entries" };
-        let message =
-            format!("`body.{key}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
-        report.at_key(&[Way::Key("body"), Way::Key(key)], message, None);
-    }
-}
-
-fn masses(file: &BodyFile, nodes: usize, report: &mut Report<'_>) -> Vec<f64> {
-    let Some(listed) = &file.masses else { return vec![file.mass.unwrap_or(1.0); nodes] };
-    check_count("masses", listed.len(), nodes, report);
-    listed.iter().map(|&Positive(mass)| mass).collect()
-}
-
-/// Where and how fast the body starts.
-fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Report<'_>) -> State {
-    let (turn, offset, velocity) = check_start(file, dimension, report);
-    let mut listed = |typed: &Option<Vec<Coordinates>>, key| {
-        let typed = typed.as_ref()?;
-        check_count(key, typed.len(), rest.len(), report);
-        Some(points(typed, key, dimension, report))
-    };
-    let mut position = listed(&file.positions, "positions").unwrap_or_else(|| rest.to_vec());
-    let velocity = listed(&file.velocities, "velocities").unwrap_or_else(|| vec![velocity; rest.len()]);
+/// Where and how fast the body starts, from its positions (m) and, if they are listed, velocities (m/s).
+fn start(
+    file: &BodyFile,
+    mut position: Vec<DVec3>,
+    velocities: Option<Vec<DVec3>>,
+    dimension: Dimension,
+    report: &mut Report<'_>,
+) -> State {
+    let (turn, spin, offset, velocity) = check_start(file, dimension, report);
+    let mut velocity = velocities.unwrap_or_else(|| vec![velocity; position.len()]);
     if let Some((axis, angle)) = turn {
         let centre = position.iter().sum::<DVec3>() / position.len() as f64;
         position.iter_mut().for_each(|point| *point = centre + turned(*point - centre, axis, angle));
     }
     position.iter_mut().for_each(|point| *point += offset);
+    if let Some(spin) = spin {
+        let centre = position.iter().sum::<DVec3>() / position.len() as f64;
+        velocity.iter_mut().zip(&position).for_each(|(velocity, &point)| *velocity += spin.cross(point - centre));
+    }
     if let Some(height) = file.lowest {
         let lowest = position.iter().fold(f64::INFINITY, |lowest, point| lowest.min(point.y));
         // In this order the lowest node stands at the very height that was typed.
@@ -152,17 +224,25 @@ fn start(file: &BodyFile, rest: &[DVec3], dimension: Dimension, report: &mut Rep
     State { position, velocity }
 }
 
-/// A turn (unit axis, angle), a shift and a velocity, each with its mistakes reported and then left out.
-fn check_start(file: &BodyFile, dimension: Dimension, report: &mut Report<'_>) -> (Option<(DVec3, f64)>, DVec3, DVec3) {
+/// A turn (unit axis, angle), a spin (rad/s), a shift and a velocity, each with its mistakes reported and then left out.
+fn check_start(
+    file: &BodyFile,
+    dimension: Dimension,
+    report: &mut Report<'_>,
+) -> (Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let turn = file.rotation.as_ref().and_then(|typed| {
         let path = [Way::Key("body"), Way::Key("rotation")];
-        Some((axis(typed, dimension, &path, report)?, typed.angle))
+        Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
+    });
+    let spin = file.spin.as_ref().and_then(|typed| {
+        let path = [Way::Key("body"), Way::Key("spin")];
+        Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
         Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
-    (turn, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
+    (turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.

@@ -1,6 +1,7 @@
-//! Checks of elements, springs and faces that a scene lists.
+//! Checks of elements, springs and faces that a body lists.
 
-use crate::scene::report::{Report, Way};
+use super::lists::{Lists, Place};
+use crate::scene::report::Report;
 use crate::sim::body::{Body, Dimension, ElementKind, bounds};
 use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
@@ -11,69 +12,54 @@ use std::collections::HashMap;
 /// none: rounding of coordinates leaves some 1e-16, and a needle a millionth as thick as long still has 1e-6.
 const FLAT: f64 = 1e-12;
 
-/// A body that a scene lists, as far as its elements are concerned.
-#[derive(Debug)]
-pub(super) struct Listed<'a> {
-    pub(super) dimension: Dimension,
-    pub(super) nodes: &'a [DVec3],
-    /// Whether there were mistakes before: nothing is said then that may follow from them.
-    pub(super) flawed: bool,
-}
-
-impl Listed<'_> {
-    /// Reports every wrong index, repeated node, repeated element or spring, element without extent or inside out,
-    /// and every node that nothing holds.
-    pub(super) fn check(
-        &self,
-        elements: &[Vec<u32>],
-        springs: Option<&[[u32; 2]]>,
-        faces: Option<&[Vec<u32>]>,
-        report: &mut Report<'_>,
-    ) {
-        let count = self.nodes.len();
-        let mut held = vec![false; count];
-        let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
-        let mut sound = !self.flawed;
-        for (at, element) in elements.iter().enumerate() {
-            if !check_indices("elements", at, element, count, report) {
-                sound = false;
-                continue;
-            }
-            element.iter().for_each(|&node| held[node as usize] = true);
-            if !repeated("elements", at, element, &mut known, report) && !self.flawed {
-                self.check_extent(at, element, report);
-            }
+/// Reports every wrong index, repeated node, repeated element or spring, element without extent or inside out, and every
+/// node that nothing holds. `flawed`: there were mistakes before, and nothing is said then that may follow from them.
+pub(super) fn check(lists: &Lists, flawed: bool, report: &mut Report<'_>) {
+    let Lists { place, nodes, elements, springs, faces, .. } = lists;
+    let count = nodes.len();
+    let mut held = vec![false; count];
+    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+    let mut sound = !flawed;
+    for (at, element) in elements.iter().enumerate() {
+        if !check_indices(place, "elements", at, element, count, report) {
+            sound = false;
+            continue;
         }
-        known.clear();
-        for (at, spring) in springs.unwrap_or_default().iter().enumerate() {
-            if check_indices("springs", at, spring, count, report) {
-                spring.iter().for_each(|&node| held[node as usize] = true);
-                repeated("springs", at, spring, &mut known, report);
-            } else {
-                sound = false;
-            }
-        }
-        for (at, face) in faces.unwrap_or_default().iter().enumerate() {
-            check_indices("faces", at, face, count, report);
-        }
-        // A wrong index leaves the node that was meant without an element: said once is enough.
-        for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
-            let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-            let help = "take it out, or list it in an element".to_owned();
-            report.at(&[Way::Key("body"), Way::Key("nodes"), Way::Index(node)], message, help);
+        element.iter().for_each(|&node| held[node as usize] = true);
+        if !repeated(place, "elements", at, element, &mut known, report) && !flawed {
+            lists.check_extent(at, element, report);
         }
     }
+    known.clear();
+    for (at, spring) in springs.iter().flatten().enumerate() {
+        if check_indices(place, "springs", at, spring, count, report) {
+            spring.iter().for_each(|&node| held[node as usize] = true);
+            repeated(place, "springs", at, spring, &mut known, report);
+        } else {
+            sound = false;
+        }
+    }
+    for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
+        check_indices(place, "faces", at, face, count, report);
+    }
+    // A wrong index leaves the node that was meant without an element: said once is enough.
+    for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
+        let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
+        place.tell(report, "nodes", &[node], message, "take it out, or list it in an element".to_owned());
+    }
+}
 
+impl Lists {
     /// Reports an element without extent, inside out or clockwise.
     fn check_extent(&self, at: usize, element: &[u32], report: &mut Report<'_>) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
-        let path = [Way::Key("body"), Way::Key("elements"), Way::Index(at)];
+        let name = self.place.name("elements", &[at]);
+        let mut tell = |message, help| self.place.tell(report, "elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
-            let message = format!("`body.elements[{at}]` has no extent: all its nodes are at {point}");
-            return report.at(&path, message, None);
+            return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
         }
         let kind = topology::kind(self.dimension, element.len());
         let (whole, flat) = match kind {
@@ -82,51 +68,59 @@ impl Listed<'_> {
             ElementKind::Polygon => (size * size, "no area: its nodes are on a line, or its sides cross"),
             _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
         };
-        let measure = volume_by_faces(kind, element, self.nodes);
+        let measure = volume_by_faces(kind, element, &self.nodes);
         if measure.abs() <= FLAT * whole {
             let help = match kind {
                 ElementKind::Hexahedron => Some("list the corners in bit order: x fastest, then y, then z".to_owned()),
                 _ => None,
             };
-            report.at(&path, format!("`body.elements[{at}]` has {flat}"), help);
+            tell(format!("`{name}` has {flat}"), help);
         } else if measure < 0.0 {
             let (what, turned) = mended(kind, element);
             let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
-            report.at(&path, format!("`body.elements[{at}]` is {what}"), help);
+            tell(format!("`{name}` is {what}"), Some(help));
         }
     }
 }
 
 /// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
-fn check_indices(key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
+fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
     let mut sound = true;
     // Positions in order of their node, so that long lists are compared quickly.
     let mut order: Vec<usize> = (0..list.len()).collect();
-    order.sort_by_key(|&place| (list[place], place));
+    order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
-        let message = format!("node {} stands twice in `body.{key}[{at}]`", list[pair[1]]);
-        report.at(&[Way::Key("body"), Way::Key(key), Way::Index(at), Way::Index(pair[1])], message, None);
+        let message = format!("node {} stands twice in `{}`", list[pair[1]], place.name(key, &[at]));
+        place.tell(report, key, &[at, pair[1]], message, None);
         sound = false;
     }
-    for (place, &node) in list.iter().enumerate().filter(|&(_, &node)| node as usize >= nodes) {
+    for (entry, &node) in list.iter().enumerate().filter(|&(_, &node)| node as usize >= nodes) {
         let message = match nodes {
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        report.at(&[Way::Key("body"), Way::Key(key), Way::Index(at), Way::Index(place)], message, None);
+        place.tell(report, key, &[at, entry], message, None);
         sound = false;
     }
     sound
 }
 
 /// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
-fn repeated(key: &str, at: usize, list: &[u32], known: &mut HashMap<Vec<u32>, usize>, report: &mut Report<'_>) -> bool {
+fn repeated(
+    place: &Place,
+    key: &str,
+    at: usize,
+    list: &[u32],
+    known: &mut HashMap<Vec<u32>, usize>,
+    report: &mut Report<'_>,
+) -> bool {
     let mut sorted = list.to_vec();
     sorted.sort_unstable();
     let first = *known.entry(sorted).or_insert(at);
     if first != at {
-        let message = format!("`body.{key}[{at}]` has the same nodes as `body.{key}[{first}]`");
-        report.at(&[Way::Key("body"), Way::Key(key), Way::Index(at)], message, "take one of them out".to_owned());
+        let [this, other] = [at, first].map(|at| place.name(key, &[at]));
+        let message = format!("`{this}` has the same nodes as `{other}`");
+        place.tell(report, key, &[at], message, "take one of them out".to_owned());
     }
     first != at
 }
@@ -146,8 +140,8 @@ fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
 /// Mean length of all elements' edges at rest (m); the size of the body if they have none.
 pub(super) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for (nodes, &kind) in body.elements.iter().zip(&body.kinds) {
-        for [a, b] in topology::edges_of(kind, nodes) {
+    for element in 0..body.elements.len() {
+        for [a, b] in body.topology().edges_of(element) {
             sum += body.rest[a as usize].distance(body.rest[b as usize]);
             count += 1.0;
         }

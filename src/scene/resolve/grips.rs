@@ -66,7 +66,7 @@ fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_
         // One node says it all: others of the same two hands follow from the same mistake.
         let clash = |first: usize| {
             let other = &named[first].2;
-            let together = grip.from.max(other.from) <= grip.until.min(other.until);
+            let together = grip.from.max(other.from) < grip.until.min(other.until);
             let shared = || grip.nodes.iter().find(|node| holders[node].contains(&first));
             together.then(shared).flatten().map(|&node| (first, node, other))
         };

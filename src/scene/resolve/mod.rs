@@ -4,7 +4,7 @@
 mod body;
 mod elements;
 mod grips;
-mod lattice;
+mod lists;
 mod motion;
 mod obstacles;
 mod reach;
@@ -13,15 +13,18 @@ mod view;
 
 use super::Scene;
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
+use super::generate::Generator;
 use super::limits::Limits;
 use super::report::{Report, Way, written};
 use super::structure::Checked;
 use super::words::count;
 use crate::sim::body::Dimension;
 use glam::DVec3;
+use lists::Lists;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The parts of a scene file without those that have a mistake in their structure.
@@ -31,6 +34,8 @@ pub(super) struct Parts {
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
+    /// What the body's own file holds, if it has one and that has no mistake.
+    beside: Option<Lists>,
     /// Keys of the top level below which something is left out because of mistakes.
     flawed: BTreeSet<String>,
     runs: Vec<Option<RunFile>>,
@@ -41,20 +46,25 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The sound parts of a checked file.
-    pub(super) fn new(checked: &Checked, report: &mut Report<'_>) -> Self {
+    /// The sound parts of a checked file. A body's own file is looked for in `folder`.
+    pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
         let file = &checked.sound;
-        let mut body: Option<BodyFile> = part(file, "body", report);
-        // Beside a lattice lists for each node are mistakes, which have been said.
-        if let Some(BodyFile { lattice: Some(lattice), mass, rotation, offset, lowest, velocity, .. }) = body {
-            let lattice = Some(lattice);
-            body = Some(BodyFile { lattice, mass, rotation, offset, lowest, velocity, ..BodyFile::default() });
-        }
+        let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
+            // Beside a generator or a file, lists for each node are mistakes, which have been said.
+            if body.file.is_some() || Generator::of(&body).is_some() {
+                (body.nodes, body.elements, body.springs, body.faces) = (None, None, None, None);
+                (body.positions, body.velocities, body.masses) = (None, None, None);
+            }
+            body
+        });
+        let read = |body: &BodyFile| Lists::read(folder, body.file.as_ref()?, limits, report);
+        let beside = body.as_ref().filter(|body| Generator::of(body).is_none()).and_then(read);
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
             time: part(file, "time", report),
             body,
+            beside,
             flawed: checked.flawed.clone(),
             runs: several(file, "run", report),
             obstacles: several(file, "obstacle", report),
@@ -62,6 +72,11 @@ impl Parts {
             grabs: several(file, "grab", report),
             view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
         }
+    }
+
+    /// The digest of what the body's own file holds.
+    pub(super) fn digest_of_file(&self) -> Option<String> {
+        self.beside.as_ref().map(Lists::digest)
     }
 }
 
@@ -95,18 +110,17 @@ const MOST_FRAMES: f64 = 1e7;
 
 /// The scene, or `None` if there is any mistake.
 pub(super) fn resolve(
-    parts: &Parts,
+    mut parts: Parts,
     name: &str,
     digest: &str,
     limits: &Limits,
     report: &mut Report<'_>,
 ) -> Option<Scene> {
-    let read_body = |file| body::resolve(file, parts.flawed.contains("body"), &parts.runs, limits, report);
+    let beside = parts.beside.take();
+    let parts = &parts;
+    let dimension = parts.body.as_ref().and_then(|file| body::dimension(file, beside.as_ref()));
+    let read_body = |file| body::resolve(file, beside, parts.flawed.contains("body"), &parts.runs, limits, report);
     let body = parts.body.as_ref().and_then(read_body);
-    let dimension = match &body {
-        Some(body) => Some(body.body.dimension),
-        None => parts.body.as_ref().and_then(body::dimension),
-    };
     let gravity = match (&parts.gravity, dimension) {
         (Some(typed), Some(dimension)) => vector(typed, dimension, &[Way::Key("gravity")], report),
         _ => Some(DVec3::ZERO),

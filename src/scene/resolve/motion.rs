@@ -9,14 +9,14 @@ use glam::DVec3;
 
 /// The unit axis of a turn; a mistake if there is one too few or too many.
 pub(super) fn axis(
-    typed: &RotationFile,
+    typed: Option<&Coordinates>,
     dimension: Dimension,
     path: &[Way<'_>],
     report: &mut Report<'_>,
 ) -> Option<DVec3> {
     let rotation = written(path);
     let path = [path, &[Way::Key("axis")]].concat();
-    match (&typed.axis, dimension) {
+    match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
             let message = format!("`{rotation}` has an `axis`, but the body is in the plane and turns within it");
@@ -48,7 +48,7 @@ fn place(
     };
     let turn = match rotation {
         Some(typed) => {
-            let axis = axis(typed, dimension, &[path, &[Way::Key("rotation")]].concat(), report);
+            let axis = axis(typed.axis.as_ref(), dimension, &[path, &[Way::Key("rotation")]].concat(), report);
             axis.map(|axis| axis * typed.angle)
         }
         None => Some(DVec3::ZERO),

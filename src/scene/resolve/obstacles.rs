@@ -69,7 +69,7 @@ fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &
                 [(&cuboid.centre, "centre"), (&cuboid.size, "size")].map(|(typed, key)| point(typed, key));
             let turn = match &cuboid.rotation {
                 Some(typed) => {
-                    let axis = axis(typed, dimension, &way("rotation"), report)?;
+                    let axis = axis(typed.axis.as_ref(), dimension, &way("rotation"), report)?;
                     let (sine, cosine) = libm::sincos(0.5 * typed.angle);
                     DQuat::from_xyzw(axis.x * sine, axis.y * sine, axis.z * sine, cosine)
                 }

@@ -15,7 +15,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The largest magnitude of any number (SI). Beyond it squares and volumes leave the range of double precision.
-const LARGEST: f64 = 1e30;
+pub(super) const LARGEST: f64 = 1e30;
 
 /// What is left of a file when whatever has a mistake in it is taken out.
 #[derive(Debug)]

@@ -5,6 +5,7 @@ mod shape;
 pub use super::motion::{Motion, Pose};
 pub use shape::{Contact, Shape};
 
+use super::body::State;
 use glam::DVec3;
 
 /// Something rigid that nodes bounce off.
@@ -88,14 +89,38 @@ impl Placed<'_> {
         Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
     }
 
+    /// The rebound of all nodes; see [`Self::rebound`]. Whether there was any.
+    pub fn rebound_all(&self, state: &mut State) -> bool {
+        let nodes = state.position.iter_mut().zip(&mut state.velocity);
+        match (&self.moving, &self.obstacle.shape) {
+            // Nearly every scene stands on one: asked of its shape only once, a floor costs half as much.
+            (None, &Shape::Floor { normal, height }) => nodes.fold(false, |any, (position, velocity)| {
+                let depth = height - normal.dot(*position);
+                if depth > 0.0 {
+                    self.obstacle.push_out(Contact { depth, normal }, DVec3::ZERO, position, velocity);
+                }
+                any | (depth > 0.0)
+            }),
+            _ => nodes.fold(false, |any, (position, velocity)| any | self.rebound(position, velocity)),
+        }
+    }
+
     /// The rebound of one node: mirrored out with restitution, its slip braked by friction. Whether there was one.
+    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3) -> bool {
+        let Some((contact, own)) = self.contact(*position) else { return false };
+        self.obstacle.push_out(contact, own, position, velocity);
+        true
+    }
+}
+
+impl Obstacle {
+    /// The rebound of a node inside.
     ///
     /// A node found at depth `d` is put at height `e d`; only if it is approaching, its normal velocity `v_n` becomes
     /// `−e v_n`. Friction comes from that change: it takes at most `μ |Δv_n|` from the velocity along the surface
-    /// and never reverses it. All velocities are relative to the obstacle's own.
-    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3) -> bool {
-        let Some((Contact { depth, normal }, own)) = self.contact(*position) else { return false };
-        let Obstacle { restitution, friction, .. } = *self.obstacle;
+    /// and never reverses it. All velocities are relative to the obstacle's own (m/s).
+    fn push_out(&self, Contact { depth, normal }: Contact, own: DVec3, position: &mut DVec3, velocity: &mut DVec3) {
+        let Self { restitution, friction, .. } = *self;
         *position += normal * (depth * (1.0 + restitution));
         let relative = *velocity - own;
         let approach = -normal.dot(relative);
@@ -106,6 +131,5 @@ impl Placed<'_> {
             let kept = if speed > 0.0 { (1.0 - friction * change / speed).max(0.0) } else { 0.0 };
             *velocity = slip * kept + normal * (restitution * approach) + own;
         }
-        true
     }
 }

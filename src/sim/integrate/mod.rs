@@ -23,17 +23,6 @@ pub enum Integrator {
     VelocityVerlet,
 }
 
-impl Integrator {
-    /// What a reader calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SemiImplicitEuler => "semi-implicit Euler",
-            Self::ExplicitEuler => "explicit Euler",
-            Self::VelocityVerlet => "velocity Verlet",
-        }
-    }
-}
-
 /// A node whose new velocity is no number or beyond all reason: the step is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Runaway {

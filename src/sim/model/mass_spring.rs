@@ -8,7 +8,7 @@
 use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, ElementKind, State};
 use crate::sim::census::Census;
-use crate::sim::topology::{self, Springs};
+use crate::sim::topology::Springs;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -50,7 +50,7 @@ impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
         let mut springs = match (self.springs, listed) {
             (None, Some(listed)) => listed.to_vec(),
-            (named, _) => topology::springs(named.unwrap_or(DEFAULT), &body.elements, &body.kinds),
+            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
         };
         // The doubles that were taken out are several times as many.
         springs.shrink_to_fit();
@@ -96,7 +96,12 @@ fn springs_at_most(topology: Springs, census: &Census) -> (u128, u128) {
             ElementKind::Pyramid => (8, 1, 18),
             ElementKind::Wedge => (9, 3, 24),
             ElementKind::Hexahedron => (12, 6, 36),
-            ElementKind::Other => (0, 0, 0),
+            // A convex solid has at most 3n − 6 edges and 2n − 8 diagonals in fans over its faces; its edges are in
+            // two faces, any other pair in one at most.
+            ElementKind::Other => {
+                let edges = (3 * nodes as u128).saturating_sub(6);
+                (edges, (2 * nodes as u128).saturating_sub(8), all(nodes).saturating_add(edges))
+            }
         };
         match topology {
             Springs::Edges => edges,
@@ -215,6 +220,8 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
 mod tests {
     use super::*;
     use crate::sim::body::IndexLists;
+    use crate::sim::hull::Hulls;
+    use crate::sim::topology::{self, Elements};
     use std::collections::BTreeMap;
 
     const NAMED: [Springs; 5] = [
@@ -238,10 +245,28 @@ mod tests {
                 lattice: false,
                 springs: None,
             };
-            for named in NAMED {
-                let (written, kept) = springs_at_most(named, &census);
-                let made = topology::springs(named, &elements, &kinds).len() as u128;
-                assert!(made <= kept && kept <= written, "{named:?} of {nodes}: {made}, {kept}, {written}");
+            // A solid with triangles only, a prism, a flat polygon, and what has no faces at all.
+            let corner = |shape: usize, at: usize| {
+                let (half, at) = (nodes / 2, at as f64);
+                match shape {
+                    0 => DVec3::new(at, at * at, at * at * at),
+                    1 => DVec3::new(
+                        (at as usize % half) as f64,
+                        ((at as usize % half) as f64).powi(2),
+                        (at as usize / half) as f64,
+                    ),
+                    2 => DVec3::new(at, at * at, 0.0),
+                    _ => DVec3::new(at, 0.0, 0.0),
+                }
+            };
+            for shape in 0..4 {
+                let rest: Vec<_> = (0..nodes).map(|at| corner(shape, at)).collect();
+                let hulls = Hulls::new(&elements, &kinds, &rest);
+                for named in NAMED {
+                    let (written, kept) = springs_at_most(named, &census);
+                    let made = Elements { nodes: &elements, kinds: &kinds, hulls: &hulls }.springs(named).len() as u128;
+                    assert!(made <= kept && kept <= written, "{named:?} of {nodes}: {made}, {kept}, {written}");
+                }
             }
         }
     }
@@ -264,7 +289,9 @@ mod tests {
         };
         for named in NAMED {
             let (written, kept) = springs_at_most(named, &census);
-            let made = topology::springs(named, &elements, &vec![ElementKind::Hexahedron; count]).len() as u128;
+            let kinds = vec![ElementKind::Hexahedron; count];
+            let made =
+                Elements { nodes: &elements, kinds: &kinds, hulls: &Hulls::default() }.springs(named).len() as u128;
             assert!(made <= kept && kept <= 2 * made && kept <= written, "{named:?}: {made}, {kept}, {written}");
         }
     }

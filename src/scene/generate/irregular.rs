@@ -1,0 +1,107 @@
+//! Blocks whose nodes are moved at random, and yet no element is turned inside out.
+
+use super::lattice::Grid;
+use super::random;
+use crate::sim::body::IndexLists;
+use glam::DVec3;
+
+/// An element is as good as flat when any of its corners has less than this part of its regular volume (area).
+const LEAST: f64 = 0.1;
+
+/// Appends the middles of cells to the nodes at their corners.
+pub(super) fn extend_to_middles(nodes: &mut Vec<DVec3>, middles: &[[u32; 8]]) {
+    for cell in middles {
+        nodes.push(middle(nodes, cell));
+    }
+}
+
+fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
+    cell.iter().map(|&node| nodes[node as usize]).sum::<DVec3>() / 8.0
+}
+
+/// Moves the nodes of a block at random, each by up to `part` of a cell's shortest side. Those on the outside move only
+/// within it, and the middles of cells stay there.
+///
+/// Where an element comes out flat or inside out, all its nodes move half as far, until none does: in the regular block,
+/// to which this leads, none is.
+pub(super) fn disturb(
+    grid: &Grid,
+    nodes: &mut [DVec3],
+    elements: &IndexLists,
+    middles: &[[u32; 8]],
+    part: f64,
+    seed: u32,
+) {
+    let regular = nodes.to_vec();
+    let corners = regular.len() - middles.len();
+    let mut shifts = shifts(grid, part, seed);
+    loop {
+        for (node, shift) in shifts.iter().enumerate() {
+            nodes[node] = regular[node] + *shift;
+        }
+        for (at, cell) in middles.iter().enumerate() {
+            nodes[corners + at] = middle(nodes, cell);
+        }
+        let mut is_bad = vec![false; corners];
+        for element in elements.iter().filter(|element| is_spoilt(element, &regular, nodes, grid.is_flat())) {
+            for &node in element {
+                match (node as usize).checked_sub(corners) {
+                    None => is_bad[node as usize] = true,
+                    Some(at) => middles[at].iter().for_each(|&corner| is_bad[corner as usize] = true),
+                }
+            }
+        }
+        let bad = || is_bad.iter().enumerate().filter(|&(_, &bad)| bad).map(|(node, _)| node);
+        // What has no shift left is regular; only numbers beyond double precision can seem spoilt then.
+        if bad().all(|node| shifts[node] == DVec3::ZERO) {
+            return;
+        }
+        bad().for_each(|node| shifts[node] *= 0.5);
+    }
+}
+
+/// How far each node at a corner moves (m).
+fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
+    let axes = if grid.is_flat() { 2 } else { 3 };
+    let shortest = grid.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
+    // The diagonal of the box in which a node moves is not longer than what was asked for.
+    let farthest = part * shortest / (axes as f64).sqrt();
+    let [nx, ny, nz] = grid.cells;
+    let mut shifts = Vec::with_capacity(grid.len() as usize);
+    for (z, y, x) in (0..=nz).flat_map(|z| (0..=ny).flat_map(move |y| (0..=nx).map(move |x| (z, y, x)))) {
+        let index = shifts.len() as u64;
+        let along = |axis: usize, at: u32| match at {
+            0 => 0.0,
+            at if at == grid.cells[axis] => 0.0,
+            _ => farthest * (2.0 * random::unit(seed, index, axis as u64) - 1.0),
+        };
+        shifts.push(DVec3::new(along(0, x), along(1, y), along(2, z)));
+    }
+    shifts
+}
+
+/// Whether any corner of an element lost most of the volume (area) that its edges span when regular.
+fn is_spoilt(element: &[u32], regular: &[DVec3], now: &[DVec3], is_flat: bool) -> bool {
+    let is_lost = |corner: [usize; 4]| {
+        let spanned = |nodes: &[DVec3]| {
+            let [o, a, b, c] = corner.map(|at| nodes[element[at] as usize]);
+            let area = (a - o).cross(b - o);
+            if is_flat { area.z } else { area.dot(c - o) }
+        };
+        spanned(now) / spanned(regular) < LEAST
+    };
+    // The first of each is the corner, and its neighbours follow in any order: only ratios count.
+    match (is_flat, element.len()) {
+        (true, 3) => is_lost([0, 1, 2, 0]),
+        (true, 4) => (0..4).any(|at| is_lost([at, (at + 1) % 4, (at + 3) % 4, at])),
+        // Larger polygons begin at a node that sees all their sides.
+        (true, count) => (2..count).any(|at| is_lost([0, at - 1, at, 0])),
+        (false, 4) => is_lost([0, 1, 2, 3]),
+        (false, 5) => (0..4).any(|at| is_lost([at, (at + 1) % 4, (at + 3) % 4, 4])),
+        (false, 6) => (0..6).any(|at| {
+            let first = at / 3 * 3;
+            is_lost([at, first + (at + 1) % 3, first + (at + 2) % 3, (at + 3) % 6])
+        }),
+        (false, _) => (0..8).any(|at| is_lost([at, at ^ 1, at ^ 2, at ^ 4])),
+    }
+}

@@ -1,0 +1,315 @@
+//! Blocks of cells, whole or cut into triangles, tetrahedra or whatever fits.
+
+use super::{Made, irregular, mixed};
+use crate::scene::file::{CellsFile, LatticeFile, SideFile};
+use crate::sim::body::IndexLists;
+use crate::sim::census::Census;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// The cells of a block and the nodes at their corners.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    /// Cells along x, y and z; none along z in the plane.
+    pub(super) cells: [u32; 3],
+    /// Sides of a cell (m).
+    pub(super) sides: DVec3,
+}
+
+impl Grid {
+    fn new(typed: &LatticeFile) -> Self {
+        let axis = |axis: usize| match &typed.side {
+            SideFile::Equal(side) => *side,
+            SideFile::PerAxis(sides) => sides.get(axis).map_or(1.0, |side| side.0),
+        };
+        let cells = std::array::from_fn(|axis| typed.cells.get(axis).copied().unwrap_or(0));
+        Self { cells, sides: DVec3::new(axis(0), axis(1), axis(2)) }
+    }
+
+    /// Whether the block is in the plane.
+    pub(super) fn is_flat(&self) -> bool {
+        self.cells[2] == 0
+    }
+
+    /// The number of nodes.
+    pub(super) fn len(&self) -> u64 {
+        self.cells.iter().fold(1, |all: u64, &cells| all.saturating_mul(u64::from(cells) + 1))
+    }
+
+    /// The node at the low corner of a cell: x fastest, then y, then z.
+    pub(super) fn node(&self, [x, y, z]: [u32; 3]) -> u32 {
+        let [nx, ny, _] = self.cells;
+        x + (nx + 1) * (y + (ny + 1) * z)
+    }
+
+    /// The nodes of a cell, in bit order in space.
+    pub(super) fn corners(&self, cell: [u32; 3]) -> [u32; 8] {
+        let first = self.node(cell);
+        let [row, layer] = [self.node([0, 1, 0]), self.node([0, 0, 1])];
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|bits: u32| first + (bits & 1) + row * (bits >> 1 & 1) + layer * (bits >> 2))
+    }
+
+    /// The nodes of a square, counter-clockwise.
+    pub(super) fn square(&self, cell: [u32; 3]) -> [u32; 4] {
+        let [a, b, d, c, ..] = self.corners(cell);
+        [a, b, c, d]
+    }
+
+    /// All cells: x fastest, then y, then z.
+    pub(super) fn each_cell(&self) -> impl Iterator<Item = [u32; 3]> {
+        let [nx, ny, nz] = self.cells;
+        (0..nz.max(1)).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
+    }
+
+    /// Positions of all nodes: standing on y = 0, the middle over the origin.
+    fn nodes(&self) -> Vec<DVec3> {
+        let [nx, ny, nz] = self.cells;
+        let mut nodes = Vec::with_capacity(self.len() as usize);
+        let centred = |at: u32, cells: u32, side: f64| (f64::from(at) - 0.5 * f64::from(cells)) * side;
+        for z in 0..=nz {
+            for y in 0..=ny {
+                let (height, depth) = (f64::from(y) * self.sides.y, centred(z, nz, self.sides.z));
+                nodes.extend((0..=nx).map(|x| DVec3::new(centred(x, nx, self.sides.x), height, depth)));
+            }
+        }
+        nodes
+    }
+}
+
+/// How large a block will be; see [`super::Generator::census`].
+pub(super) fn census(typed: &LatticeFile, most_nodes: u64) -> Census {
+    let whole = Census::of_lattice(&typed.cells);
+    let grid = Grid::new(typed);
+    let cells = whole.count();
+    let pieces = |nodes: u128, elements| Census { nodes, elements, lattice: false, ..whole.clone() };
+    let each = |corners: usize, number: u128| BTreeMap::from([(corners, cells.saturating_mul(number))]);
+    match typed.elements {
+        CellsFile::Cells => whole,
+        CellsFile::Triangles => pieces(whole.nodes, each(3, 2)),
+        CellsFile::Tetrahedra => pieces(whole.nodes, each(4, 5)),
+        CellsFile::Mixed if grid.len() <= most_nodes.min(u32::MAX.into()) => {
+            let (mut middles, mut elements) = (0, BTreeMap::new());
+            mixed::visit(
+                &grid,
+                typed.seed,
+                |_, _| {
+                    middles += 1;
+                    0
+                },
+                |nodes| *elements.entry(nodes.len()).or_insert(0) += 1,
+            );
+            pieces(whole.nodes + middles, elements)
+        }
+        // Twice as many triangles as squares, or twelve tetrahedra around the middle of each cube.
+        CellsFile::Mixed if grid.is_flat() => pieces(whole.nodes, each(3, 2)),
+        CellsFile::Mixed => pieces(whole.nodes.saturating_add(cells), each(4, 12)),
+    }
+}
+
+/// A block. In the plane its cells are squares or triangles, in space cubes or tetrahedra, whatever the other asks for.
+pub(super) fn make(typed: &LatticeFile) -> Made {
+    let grid = Grid::new(typed);
+    let mut elements = IndexLists::default();
+    // The cells that have a node in their middle; these nodes follow those at the corners.
+    let mut middles: Vec<[u32; 8]> = Vec::new();
+    let corners = grid.len() as u32;
+    match typed.elements {
+        CellsFile::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
+        CellsFile::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
+        CellsFile::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
+        CellsFile::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
+        CellsFile::Mixed => mixed::visit(
+            &grid,
+            typed.seed,
+            |number, cell| {
+                middles.push(grid.corners(cell));
+                corners + number
+            },
+            |nodes| elements.push(nodes),
+        ),
+    }
+    let mut nodes = grid.nodes();
+    irregular::extend_to_middles(&mut nodes, &middles);
+    if typed.irregular > 0.0 {
+        irregular::disturb(&grid, &mut nodes, &elements, &middles, typed.irregular, typed.seed);
+    }
+    Made { nodes, elements }
+}
+
+/// Cuts a square in two. The diagonals of neighbours meet, so that no direction is preferred.
+fn triangles(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
+    let [a, b, c, d] = grid.square(cell);
+    let halves = if (cell[0] + cell[1]).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+    halves.iter().for_each(|half| elements.push(half));
+}
+
+/// Cuts a cube in five: one tetrahedron on four corners, of which no two are neighbours, and one on each of the others.
+/// Neighbouring cubes take the other four corners, so that their faces have the same diagonals.
+fn tetrahedra(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
+    const EVEN: [[usize; 4]; 5] = [[0, 3, 6, 5], [1, 3, 0, 5], [2, 0, 3, 6], [4, 5, 0, 6], [7, 3, 5, 6]];
+    const ODD: [[usize; 4]; 5] = [[1, 2, 4, 7], [0, 1, 2, 4], [3, 2, 1, 7], [5, 1, 4, 7], [6, 4, 2, 7]];
+    let corners = grid.corners(cell);
+    let parts = if cell.iter().sum::<u32>().is_multiple_of(2) { EVEN } else { ODD };
+    parts.iter().for_each(|part| elements.push(&part.map(|at| corners[at])));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::Positive;
+    use crate::sim::body::{Body, Dimension, ElementKind, bounds};
+    use crate::sim::diagnose::volume_by_faces;
+    use crate::sim::topology::kind;
+
+    fn typed(cells: &[u32], elements: CellsFile, irregular: f64, seed: u32) -> LatticeFile {
+        LatticeFile { cells: cells.to_vec(), side: SideFile::Equal(0.5), elements, irregular, seed }
+    }
+
+    fn plain(cells: &[u32]) -> Made {
+        make(&typed(cells, CellsFile::Cells, 0.0, 1))
+    }
+
+    #[test]
+    fn a_block_is_numbered_x_fastest_and_stands_on_the_ground() {
+        let Made { nodes, elements } = plain(&[2, 1, 1]);
+        assert_eq!(nodes.len(), 12);
+        assert_eq!(nodes[0], DVec3::new(-0.5, 0.0, -0.25));
+        assert_eq!(nodes[1], DVec3::new(0.0, 0.0, -0.25));
+        assert_eq!(nodes[3], DVec3::new(-0.5, 0.5, -0.25));
+        assert_eq!(nodes[11], DVec3::new(0.5, 0.5, 0.25));
+        assert_eq!(&elements[1], [1, 2, 4, 5, 7, 8, 10, 11]);
+    }
+
+    #[test]
+    fn squares_are_counter_clockwise() {
+        let Made { nodes, elements } = plain(&[2, 1]);
+        assert_eq!(nodes.len(), 6);
+        assert_eq!(&elements[1], [1, 2, 5, 4]);
+    }
+
+    #[test]
+    fn each_axis_may_have_its_own_side() {
+        let sides = SideFile::PerAxis([0.1, 0.2, 0.4].map(Positive).to_vec());
+        let made = make(&LatticeFile { side: sides, ..typed(&[3, 2, 1], CellsFile::Cells, 0.0, 1) });
+        let (low, high) = bounds(&made.nodes);
+        assert!((low - DVec3::new(-0.15, 0.0, -0.2)).length() < 1e-15 && (high.y - 0.4).abs() < 1e-15);
+    }
+
+    /// Blocks of all kinds of pieces, even and uneven.
+    fn blocks() -> Vec<LatticeFile> {
+        let mut blocks = Vec::new();
+        for irregular in [0.0, 0.1, 0.4] {
+            for seed in [1, 2, 77] {
+                for cells in [&[1, 1][..], &[2, 1], &[7, 4], &[1, 9]] {
+                    for elements in [CellsFile::Cells, CellsFile::Triangles, CellsFile::Mixed] {
+                        blocks.push(typed(cells, elements, irregular, seed));
+                    }
+                }
+                for cells in [&[1, 1, 1][..], &[2, 1, 1], &[5, 4, 3], &[8, 8, 8]] {
+                    for elements in [CellsFile::Cells, CellsFile::Tetrahedra, CellsFile::Mixed] {
+                        blocks.push(typed(cells, elements, irregular, seed));
+                    }
+                }
+            }
+        }
+        let thin = SideFile::PerAxis([1.0, 0.01, 0.1].map(Positive).to_vec());
+        blocks.push(LatticeFile { side: thin, ..typed(&[6, 6, 6], CellsFile::Mixed, 0.4, 5) });
+        blocks
+    }
+
+    #[test]
+    fn the_pieces_fill_the_block_once_and_none_is_inside_out() {
+        for typed in blocks() {
+            let Made { nodes, elements } = make(&typed);
+            let dimension = if typed.cells.len() == 2 { Dimension::Plane } else { Dimension::Space };
+            let size = |element: &[u32]| volume_by_faces(kind(dimension, element.len()), element, &nodes);
+            let sizes: Vec<f64> = elements.iter().map(size).collect();
+            let sides = Grid::new(&typed).sides;
+            let cell = sides.x * sides.y * if dimension == Dimension::Space { sides.z } else { 1.0 };
+            let whole = cell * typed.cells.iter().map(|&cells| f64::from(cells)).product::<f64>();
+            assert!((sizes.iter().sum::<f64>() / whole - 1.0).abs() < 1e-12, "{typed:?}");
+            let least = sizes.iter().copied().fold(f64::INFINITY, f64::min) / cell;
+            assert!(least > 1e-3, "{typed:?}: {least}");
+            assert!(elements.iter().all(|nodes| kind(dimension, nodes.len()) != ElementKind::Other), "{typed:?}");
+        }
+    }
+
+    #[test]
+    fn the_pieces_fit_together_and_their_outside_is_that_of_the_block() {
+        for typed in blocks() {
+            let Made { nodes, elements } = make(&typed);
+            let mut used = vec![false; nodes.len()];
+            elements.indices().iter().for_each(|&node| used[node as usize] = true);
+            assert!(used.iter().all(|&used| used), "{typed:?}");
+            let (low, high) = bounds(&plain(&typed.cells).nodes);
+            let scale = Grid::new(&typed).sides / 0.5;
+            let (low, high) = (low * scale, high * scale);
+            let count = nodes.len();
+            if typed.cells.len() == 2 {
+                // Every side that only one element has lies on the outline.
+                let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::topology::around).collect();
+                sides.sort_unstable();
+                assert!(sides.windows(2).all(|two| two[0] != two[1]), "{typed:?}");
+                for &[a, b] in sides.iter().filter(|&&[a, b]| sides.binary_search(&[b, a]).is_err()) {
+                    assert!(
+                        on_the_outside([a, b].map(|node| nodes[node as usize]).as_slice(), low, high, 2),
+                        "{typed:?}"
+                    );
+                }
+            } else {
+                let body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, None);
+                for (face, outer) in body.faces.nodes.iter().zip(&body.faces.outer) {
+                    let corners: Vec<_> = face.iter().map(|&node| body.rest[node as usize]).collect();
+                    assert_eq!(on_the_outside(&corners, low, high, 3), outer.is_none(), "{typed:?}: {corners:?}");
+                }
+            }
+        }
+    }
+
+    /// Whether points lie on one side of a box.
+    fn on_the_outside(points: &[DVec3], low: DVec3, high: DVec3, axes: usize) -> bool {
+        let on = |axis: usize, at: f64| points.iter().all(|point| (point[axis] - at).abs() < 1e-12);
+        (0..axes).any(|axis| on(axis, low[axis]) || on(axis, high[axis]))
+    }
+
+    #[test]
+    fn a_block_is_as_large_as_was_said_before() {
+        for typed in blocks() {
+            let Made { nodes, elements } = make(&typed);
+            let mut counted = BTreeMap::new();
+            elements.iter().for_each(|nodes| *counted.entry(nodes.len()).or_insert(0) += 1);
+            let exact = census(&typed, u64::MAX);
+            assert_eq!((exact.nodes, &exact.elements), (nodes.len() as u128, &counted), "{typed:?}");
+            // And what is said of one that is too large to be gone through is no less.
+            let bound = census(&typed, 0);
+            assert!(bound.nodes >= exact.nodes && bound.count() >= exact.count() && bound.corners() >= exact.corners());
+        }
+    }
+
+    #[test]
+    fn mixed_blocks_have_elements_of_every_kind() {
+        let kinds = |cells: &[u32]| census(&typed(cells, CellsFile::Mixed, 0.0, 1), u64::MAX).elements;
+        let plane = kinds(&[12, 12]);
+        assert!((3..=6).all(|corners| plane[&corners] >= 8), "{plane:?}");
+        let space = kinds(&[6, 6, 6]);
+        assert!([4, 5, 6, 8].iter().all(|corners| space[corners] >= 30), "{space:?}");
+    }
+
+    #[test]
+    fn irregular_nodes_move_as_far_as_was_asked_for_and_no_farther() {
+        for cells in [&[9, 9][..], &[9, 9, 9]] {
+            let flat = plain(cells).nodes;
+            let distances = |seed| -> Vec<f64> {
+                let moved = make(&typed(cells, CellsFile::Cells, 0.2, seed)).nodes;
+                moved.iter().zip(&flat).map(|(a, b)| a.distance(*b) / 0.5).collect()
+            };
+            let one = distances(1);
+            let farthest = one.iter().copied().fold(0.0, f64::max);
+            assert!(farthest <= 0.2 && farthest > 0.15, "{farthest}");
+            assert_ne!(one, distances(2));
+            // Corners stay, and others along edges and sides do not.
+            assert_eq!((one[0], one[9], one[one.len() - 1]), (0.0, 0.0, 0.0));
+            assert!(one[1] > 0.0 && one[20] > 0.0);
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Blocks of elements of many kinds that fit together: the cells of a lattice cut or joined at random.
+
+use super::lattice::Grid;
+use super::random;
+
+/// Uses of random numbers, beside the axes 0 to 2 along which nodes move.
+const WISH: u64 = 3;
+const TURN: u64 = 4;
+
+/// Calls `visit` with the nodes of each element. `middle` is called for each cell that needs a node in its middle, with
+/// how many there were before and the cell, and gives that node.
+pub(super) fn visit(
+    grid: &Grid,
+    seed: u32,
+    mut middle: impl FnMut(u32, [u32; 3]) -> u32,
+    mut visit: impl FnMut(&[u32]),
+) {
+    if grid.is_flat() {
+        return visit_plane(grid, seed, visit);
+    }
+    let mut middles = 0;
+    for cell in grid.each_cell() {
+        let mut make_middle = || {
+            middles += 1;
+            middle(middles - 1, cell)
+        };
+        visit_cube(grid, seed, cell, &mut make_middle, &mut visit);
+    }
+}
+
+/// In the plane two squares side by side stay two, become a hexagon, or a pentagon and a triangle; a square that stays
+/// may be cut in two triangles. Pairs are staggered from row to row like bricks.
+fn visit_plane(grid: &Grid, seed: u32, mut visit: impl FnMut(&[u32])) {
+    let [nx, ny, _] = grid.cells;
+    for y in 0..ny {
+        let mut x = 0;
+        while x < nx {
+            let cell = [x, y, 0];
+            let is_first = x % 2 == y % 2 && x + 1 < nx;
+            let wish = random::unit(seed, grid.node(cell).into(), WISH);
+            if is_first && wish < 0.5 {
+                join(grid, seed, cell, wish < 0.2, &mut visit);
+                x += 2;
+            } else {
+                let [a, b, c, d] = grid.square(cell);
+                match random::hash(seed, grid.node(cell).into(), TURN) % 4 {
+                    0 => [[a, b, c], [a, c, d]].iter().for_each(|half| visit(half)),
+                    1 => [[a, b, d], [b, c, d]].iter().for_each(|half| visit(half)),
+                    _ => visit(&[a, b, c, d]),
+                }
+                x += 1;
+            }
+        }
+    }
+}
+
+/// Two squares side by side as a hexagon, or without one of their four corners as a pentagon and a triangle. Both begin
+/// at a node that sees all their sides, the middle one of the lower or upper row.
+fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, visit: &mut impl FnMut(&[u32])) {
+    let [a, b, e, f] = grid.square([x, y, z]);
+    let [_, c, d, _] = grid.square([x + 1, y, z]);
+    // Around: a b c below from left to right, d e f above from right to left.
+    match random::hash(seed, grid.node([x, y, z]).into(), TURN) % 4 {
+        _ if whole => visit(&[b, c, d, e, f, a]),
+        0 => [&[b, c, d, e, f][..], &[a, b, f]].iter().for_each(|part| visit(part)),
+        1 => [&[b, d, e, f, a][..], &[b, c, d]].iter().for_each(|part| visit(part)),
+        2 => [&[e, f, a, b, c][..], &[c, d, e]].iter().for_each(|part| visit(part)),
+        _ => [&[e, a, b, c, d][..], &[e, f, a]].iter().for_each(|part| visit(part)),
+    }
+}
+
+/// What a cube would be, if its neighbours let it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wish {
+    /// A hexahedron.
+    Whole,
+    /// Two wedges along an axis, with this one of the two diagonals across it.
+    Wedges(usize, bool),
+    /// Pyramids and tetrahedra about its middle.
+    Middle,
+}
+
+fn wish(grid: &Grid, seed: u32, cell: [u32; 3]) -> Wish {
+    let index = grid.node(cell).into();
+    let turn = random::hash(seed, index, TURN);
+    match random::unit(seed, index, WISH) {
+        whole if whole < 0.6 => Wish::Whole,
+        wedges if wedges < 0.9 => Wish::Wedges((turn >> 8) as usize % 3, turn.is_multiple_of(2)),
+        _ => Wish::Middle,
+    }
+}
+
+/// The diagonal of the face at the low end of a cell along an axis, if one of the two cells that share it has wished
+/// for wedges along that axis; the lower one comes first.
+fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool> {
+    let mut below = cell;
+    below[axis] = below[axis].wrapping_sub(1);
+    let sides = [(cell[axis] > 0).then_some(below), (cell[axis] < grid.cells[axis]).then_some(cell)];
+    sides.into_iter().flatten().find_map(|cell| match wish(grid, seed, cell) {
+        Wish::Wedges(along, diagonal) if along == axis => Some(diagonal),
+        _ => None,
+    })
+}
+
+/// The faces of a cube as places of its corners, counter-clockwise from outside: low and high along each axis. The
+/// first and the third corner are those of the diagonal `true`.
+const FACES: [[[usize; 4]; 2]; 3] =
+    [[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]];
+
+fn visit_cube(
+    grid: &Grid,
+    seed: u32,
+    cell: [u32; 3],
+    make_middle: &mut impl FnMut() -> u32,
+    visit: &mut impl FnMut(&[u32]),
+) {
+    let corners = grid.corners(cell);
+    let diagonals: [[Option<bool>; 2]; 3] = std::array::from_fn(|axis| {
+        let mut above = cell;
+        above[axis] += 1;
+        [cell, above].map(|cell| diagonal(grid, seed, axis, cell))
+    });
+    let is_square = |axis: usize| diagonals[axis] == [None, None];
+    if (0..3).all(is_square) && wish(grid, seed, cell) != Wish::Middle {
+        return visit(&corners);
+    }
+    for axis in 0..3 {
+        if let [Some(low), Some(high)] = diagonals[axis]
+            && low == high
+            && (0..3).all(|other| other == axis || is_square(other))
+        {
+            for triangle in halves(FACES[axis][0], low) {
+                // As seen from inside, and the same on the other side of the cube.
+                let [a, b, c] = [triangle[0], triangle[2], triangle[1]];
+                visit(&[a, b, c, a | 1 << axis, b | 1 << axis, c | 1 << axis].map(|at| corners[at]));
+            }
+            return;
+        }
+    }
+    let middle = make_middle();
+    for (faces, diagonals) in FACES.iter().zip(diagonals) {
+        for (&face, diagonal) in faces.iter().zip(diagonals) {
+            match diagonal {
+                None => {
+                    let [a, b, c, d] = face.map(|at| corners[at]);
+                    visit(&[a, d, c, b, middle]);
+                }
+                Some(diagonal) => {
+                    for triangle in halves(face, diagonal) {
+                        let [a, b, c] = triangle.map(|at| corners[at]);
+                        visit(&[a, c, b, middle]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A face cut along one of its diagonals: `true` from its first corner.
+fn halves([a, b, c, d]: [usize; 4], diagonal: bool) -> [[usize; 3]; 2] {
+    if diagonal { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+}

@@ -1,0 +1,90 @@
+//! Bodies made by a rule: blocks of cells, polygons, discs and chains of bars.
+//!
+//! Each says first how large it will be, then makes itself. What is typed has been checked before.
+
+mod irregular;
+mod lattice;
+mod mixed;
+mod random;
+mod shapes;
+
+use super::file::BodyFile;
+use super::file::{BarsFile, CellsFile, DiscFile, LatticeFile, PolygonFile, SideFile};
+use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::census::Census;
+use glam::DVec3;
+
+/// A body that a scene names by a rule.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Generator<'a> {
+    /// A block of cells.
+    Lattice(&'a LatticeFile),
+    /// One regular polygon.
+    Polygon(&'a PolygonFile),
+    /// Triangles around a middle node.
+    Fan(&'a PolygonFile),
+    /// Rings of quadrilaterals around a fan.
+    Disc(&'a DiscFile),
+    /// Two-node elements end to end.
+    Bars(&'a BarsFile),
+}
+
+/// The nodes (m) and elements of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Made {
+    pub(super) nodes: Vec<DVec3>,
+    pub(super) elements: IndexLists,
+}
+
+impl<'a> Generator<'a> {
+    /// The one that a scene names; the first, should there be several.
+    pub(super) fn of(file: &'a BodyFile) -> Option<Self> {
+        let lattice = file.lattice.as_ref().map(Self::Lattice);
+        let polygon = || file.polygon.as_ref().map(Self::Polygon);
+        let fan = || file.fan.as_ref().map(Self::Fan);
+        let disc = || file.disc.as_ref().map(Self::Disc);
+        let bars = || file.bars.as_ref().map(Self::Bars);
+        lattice.or_else(polygon).or_else(fan).or_else(disc).or_else(bars)
+    }
+
+    /// In the plane or in space.
+    pub(super) fn dimension(self) -> Dimension {
+        let coordinates = match self {
+            Self::Lattice(typed) => typed.cells.len(),
+            Self::Polygon(_) | Self::Fan(_) | Self::Disc(_) => 2,
+            Self::Bars(typed) => typed.direction.0.len(),
+        };
+        if coordinates == 2 { Dimension::Plane } else { Dimension::Space }
+    }
+
+    /// How large the body will be. A mixed block is gone through for that, if its corners alone are no more nodes than
+    /// `most_nodes`; else it is said to be as large as such a block can be.
+    pub(super) fn census(self, most_nodes: u64) -> Census {
+        match self {
+            Self::Lattice(typed) => lattice::census(typed, most_nodes),
+            Self::Polygon(typed) => shapes::polygon_census(typed),
+            Self::Fan(typed) => shapes::disc_census(1, typed.sides),
+            Self::Disc(typed) => shapes::disc_census(typed.rings, typed.sectors),
+            Self::Bars(typed) => shapes::bars_census(typed, self.dimension()),
+        }
+    }
+
+    /// The body. `direction` is that of bars at unit length.
+    pub(super) fn make(self, direction: DVec3) -> Made {
+        match self {
+            Self::Lattice(typed) => lattice::make(typed),
+            Self::Polygon(typed) => shapes::polygon(typed),
+            Self::Fan(typed) => shapes::disc(typed.radius.0, 1, typed.sides),
+            Self::Disc(typed) => shapes::disc(typed.radius.0, typed.rings, typed.sectors),
+            Self::Bars(typed) => shapes::bars(typed, direction),
+        }
+    }
+
+    /// The length of all edges (m), where that is what was typed.
+    pub(super) fn side(self) -> Option<f64> {
+        match self {
+            Self::Lattice(LatticeFile { side: SideFile::Equal(side), elements: CellsFile::Cells, .. }) => Some(*side),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Numbers that look random and are the same on every machine.
+//!
+//! Each follows from what it is for, not from those drawn before: so no order of drawing has to be kept.
+
+/// A number for an index and a use of it: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over one after the other.
+pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
+    [u64::from(seed), index, usage].into_iter().fold(0, |state, part| mix(state.wrapping_add(part)))
+}
+
+/// A number from 0 to below 1; see [`hash`].
+pub(super) fn unit(seed: u32, index: u64, usage: u64) -> f64 {
+    // The upper 53 bits are what a double holds.
+    (hash(seed, index, usage) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// One number of SplitMix64 from its state.
+fn mix(state: u64) -> u64 {
+    let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_split_mix_64() {
+        // The first number of the published generator with the seed 0, and with 1234567.
+        assert_eq!(mix(0), 0xe220_a839_7b1d_cdaf);
+        assert_eq!(mix(1_234_567), 6_457_827_717_110_365_317);
+    }
+
+    #[test]
+    fn numbers_fill_their_range_and_do_not_depend_on_each_other() {
+        let count = 30_000;
+        for usage in 0..3 {
+            let mean = |of: &dyn Fn(u64) -> f64| (0..count).map(of).sum::<f64>() / count as f64;
+            assert!((mean(&|index| unit(1, index, usage)) - 0.5).abs() < 0.01);
+            let product = mean(&|index| unit(1, index, usage) * unit(1, index + 1, usage));
+            assert!((product - 0.25).abs() < 0.01);
+            assert!((mean(&|index| unit(1, index, usage) * unit(2, index, usage)) - 0.25).abs() < 0.01);
+            assert!((mean(&|index| unit(1, index, usage) * unit(1, index, usage + 1)) - 0.25).abs() < 0.01);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Polygons, discs and chains of bars.
+
+use super::Made;
+use crate::scene::file::{BarsFile, PolygonFile};
+use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::census::Census;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+fn census(dimension: Dimension, nodes: u128, elements: impl IntoIterator<Item = (usize, u128)>) -> Census {
+    let elements: BTreeMap<_, _> = elements.into_iter().filter(|&(_, count)| count > 0).collect();
+    Census { dimension, nodes, elements, lattice: false, springs: None }
+}
+
+pub(super) fn polygon_census(typed: &PolygonFile) -> Census {
+    census(Dimension::Plane, typed.sides.into(), [(typed.sides as usize, 1)])
+}
+
+pub(super) fn disc_census(rings: u32, sectors: u32) -> Census {
+    let (rings, sectors) = (u128::from(rings), u128::from(sectors));
+    census(Dimension::Plane, 1 + rings * sectors, [(3, sectors), (4, (rings - 1) * sectors)])
+}
+
+pub(super) fn bars_census(typed: &BarsFile, dimension: Dimension) -> Census {
+    census(dimension, u128::from(typed.count) + 1, [(2, typed.count.into())])
+}
+
+/// The corner of a regular polygon, counted counter-clockwise from the left end of its lowest side, about its middle.
+fn corner(at: u32, sides: u32, radius: f64) -> DVec3 {
+    // From the lowest point on, so that what is left is right on its mirror image.
+    let angle = PI * (2.0 * f64::from(at) - 1.0) / f64::from(sides);
+    let (sine, cosine) = libm::sincos(angle);
+    DVec3::new(radius * sine, -radius * cosine, 0.0)
+}
+
+/// The height of a polygon's middle above its lowest side (m).
+fn height(sides: u32, radius: f64) -> f64 {
+    radius * libm::cos(PI / f64::from(sides))
+}
+
+/// A regular polygon as one element, standing on y = 0 with a side down.
+pub(super) fn polygon(typed: &PolygonFile) -> Made {
+    let (sides, radius) = (typed.sides, typed.radius.0);
+    let middle = DVec3::Y * height(sides, radius);
+    let nodes = (0..sides).map(|at| middle + corner(at, sides, radius)).collect();
+    let all: Vec<u32> = (0..sides).collect();
+    Made { nodes, elements: [all.as_slice()].into_iter().collect() }
+}
+
+/// Triangles around the middle, which is node 0, and rings of quadrilaterals around them, standing on y = 0.
+pub(super) fn disc(radius: f64, rings: u32, sectors: u32) -> Made {
+    let middle = DVec3::Y * height(sectors, radius);
+    let mut nodes = vec![middle];
+    let mut elements = IndexLists::default();
+    for ring in 1..=rings {
+        let radius = radius * f64::from(ring) / f64::from(rings);
+        nodes.extend((0..sectors).map(|at| middle + corner(at, sectors, radius)));
+        let first = 1 + (ring - 1) * sectors;
+        for at in 0..sectors {
+            let [a, b] = [first + at, first + (at + 1) % sectors];
+            match ring {
+                1 => elements.push(&[0, a, b]),
+                _ => elements.push(&[a - sectors, a, b, b - sectors]),
+            }
+        }
+    }
+    Made { nodes, elements }
+}
+
+/// Bars end to end from the origin on.
+pub(super) fn bars(typed: &BarsFile, direction: DVec3) -> Made {
+    let nodes = (0..=typed.count).map(|at| direction * (f64::from(at) * typed.length.0)).collect();
+    let mut elements = IndexLists::default();
+    (0..typed.count).for_each(|at| elements.push(&[at, at + 1]));
+    Made { nodes, elements }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::{Coordinates, Positive};
+    use crate::sim::body::ElementKind;
+    use crate::sim::diagnose::volume_by_faces;
+
+    fn assert_census(made: &Made, census: &Census) {
+        assert_eq!(made.nodes.len() as u128, census.nodes);
+        let mut counted = BTreeMap::new();
+        made.elements.iter().for_each(|nodes| *counted.entry(nodes.len()).or_insert(0) += 1);
+        assert_eq!(counted, census.elements);
+    }
+
+    fn area(made: &Made) -> f64 {
+        let areas = made.elements.iter().map(|nodes| volume_by_faces(ElementKind::Polygon, nodes, &made.nodes));
+        areas.inspect(|&area| assert!(area > 0.0)).sum()
+    }
+
+    #[test]
+    fn polygons_and_discs_stand_on_a_side_and_are_counter_clockwise() {
+        for sides in [3, 4, 5, 6, 12, 100] {
+            let typed = PolygonFile { sides, radius: Positive(0.5) };
+            let expected = 0.5 * f64::from(sides) * 0.25 * (2.0 * PI / f64::from(sides)).sin();
+            let (polygon, fan, disc) = (polygon(&typed), disc(0.5, 1, sides), disc(0.5, 4, sides));
+            assert_census(&polygon, &polygon_census(&typed));
+            assert_census(&fan, &disc_census(1, sides));
+            assert_census(&disc, &disc_census(4, sides));
+            for made in [&polygon, &fan, &disc] {
+                assert!((area(made) / expected - 1.0).abs() < 1e-12, "{sides}");
+                let lowest = made.nodes.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
+                assert!(lowest.abs() < 1e-15, "{sides}: {lowest:e}");
+            }
+            assert!((polygon.nodes[0] + DVec3::X * polygon.nodes[1].x).length() < 1e-15, "left end of the lowest side");
+        }
+    }
+
+    #[test]
+    fn bars_lie_end_to_end() {
+        let typed = BarsFile { count: 8, length: Positive(0.1), direction: Coordinates(vec![0.0, 3.0]) };
+        let made = bars(&typed, DVec3::Y);
+        assert_census(&made, &bars_census(&typed, Dimension::Plane));
+        assert_eq!((made.nodes[0], &made.elements[7]), (DVec3::ZERO, &[7, 8][..]));
+        assert!((made.nodes[8] - DVec3::Y * 0.8).length() < 1e-15);
+    }
+}

@@ -1,0 +1,344 @@
+//! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them.
+//!
+//! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
+//! only with what is really there.
+
+use super::limits::size;
+use super::words::{count, quoted};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+use zip::ZipArchive;
+
+/// The longest head of an array that is read (bytes); one of numbers has some hundred.
+const LONGEST_HEAD: usize = 4096;
+
+/// An archive that is open for reading.
+#[derive(Debug)]
+pub(super) struct Npz {
+    zip: ZipArchive<BufReader<File>>,
+}
+
+/// One array of an archive: what its head says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Array {
+    /// Where it stands in the archive.
+    index: usize,
+    number: Number,
+    /// Whether columns, not rows, lie in one piece.
+    by_columns: bool,
+    /// How long it is in each direction.
+    pub(super) shape: Vec<u64>,
+    /// Length of the head (bytes).
+    head: u64,
+}
+
+/// How a number is stored, little-endian.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    Float64,
+    Float32,
+    Signed(usize),
+    Unsigned(usize),
+}
+
+impl Number {
+    fn bytes(self) -> usize {
+        match self {
+            Self::Float64 => 8,
+            Self::Float32 => 4,
+            Self::Signed(bytes) | Self::Unsigned(bytes) => bytes,
+        }
+    }
+
+    /// From NumPy's name of a type; else what is wrong with it.
+    fn of(name: &str) -> Result<Self, String> {
+        const EXPECTED: &str = "expected float64, float32 or whole numbers";
+        let (order, rest) = name.split_at_checked(1).unwrap_or_default();
+        let (letter, bytes) = rest.split_at_checked(1).unwrap_or_default();
+        let number = match (letter, bytes) {
+            ("f", "8") => Self::Float64,
+            ("f", "4") => Self::Float32,
+            ("i" | "u", "1" | "2" | "4" | "8") => {
+                let bytes = bytes.parse().unwrap_or(8);
+                if letter == "i" { Self::Signed(bytes) } else { Self::Unsigned(bytes) }
+            }
+            ("O", _) => {
+                return Err(format!(
+                    "holds Python objects, as lists of different lengths make them; {EXPECTED}, with -1 in the places that a short list does not use"
+                ));
+            }
+            _ => return Err(format!("has numbers of the type {}; {EXPECTED}", quoted(name))),
+        };
+        match order {
+            "<" | "|" => Ok(number),
+            _ => Err("has big-endian numbers; expected little-endian ones, as by astype(\"<f8\")".to_owned()),
+        }
+    }
+}
+
+/// The numbers of an array with one or two directions, row by row.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers {
+    bytes: Vec<u8>,
+    number: Number,
+    by_columns: bool,
+    rows: usize,
+    columns: usize,
+}
+
+impl Numbers {
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    pub(super) fn columns(&self) -> usize {
+        self.columns
+    }
+
+    fn raw(&self, row: usize, column: usize) -> &[u8] {
+        let at = if self.by_columns { column * self.rows + row } else { row * self.columns + column };
+        let width = self.number.bytes();
+        &self.bytes[at * width..(at + 1) * width]
+    }
+
+    /// One number, as a whole one; those beyond 64 bits with a sign are at their end. Zero for a fraction.
+    pub(super) fn whole(&self, row: usize, column: usize) -> i64 {
+        let raw = self.raw(row, column);
+        match self.number {
+            Number::Float64 | Number::Float32 => 0,
+            Number::Signed(bytes) => {
+                let is_negative = raw[bytes - 1] >= 0x80;
+                let mut all = [if is_negative { 0xff } else { 0 }; 8];
+                all[..bytes].copy_from_slice(raw);
+                i64::from_le_bytes(all)
+            }
+            Number::Unsigned(bytes) => {
+                let mut all = [0; 8];
+                all[..bytes].copy_from_slice(raw);
+                i64::try_from(u64::from_le_bytes(all)).unwrap_or(i64::MAX)
+            }
+        }
+    }
+
+    /// One number in double precision.
+    pub(super) fn double(&self, row: usize, column: usize) -> f64 {
+        let raw = self.raw(row, column);
+        match self.number {
+            Number::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
+            Number::Float32 => f32::from_le_bytes(raw.try_into().unwrap_or_default()).into(),
+            _ => self.whole(row, column) as f64,
+        }
+    }
+}
+
+impl Npz {
+    /// Opens an archive.
+    ///
+    /// # Errors
+    /// In words, what keeps it from being one.
+    pub(super) fn open(path: &Path) -> Result<Self, String> {
+        if path.is_dir() {
+            return Err("is a folder; expected a NumPy archive (.npz)".to_owned());
+        }
+        let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let mut start = [0; 6];
+        let length = read_up_to(&mut file, &mut start).map_err(|error| format!("cannot be read: {error}"))?;
+        match &start[..length] {
+            [] => return Err("is empty; expected a NumPy archive (.npz)".to_owned()),
+            b"\x93NUMPY" => {
+                return Err(
+                    "is a single array (.npy); expected several in one archive, as numpy.savez writes them".to_owned()
+                );
+            }
+            [b'P', b'K', ..] => {}
+            _ => return Err("is no NumPy archive (.npz), as numpy.savez writes them".to_owned()),
+        }
+        let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
+        Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)? })
+    }
+
+    /// The names of the arrays, in their order.
+    pub(super) fn names(&self) -> Vec<String> {
+        let name = |name: Cow<'_, str>| name.strip_suffix(".npy").unwrap_or(&name).to_owned();
+        self.zip.file_names().map(|known| name(known.unwrap_or_default())).collect()
+    }
+
+    /// The head of an array, if the archive has it.
+    pub(super) fn array(&mut self, name: &str) -> Option<Result<Array, String>> {
+        let index = self.zip.index_for_name(&format!("{name}.npy"))?;
+        Some(self.head(index))
+    }
+
+    fn head(&mut self, index: usize) -> Result<Array, String> {
+        let mut entry = self.zip.by_index(index).map_err(|error| format!("cannot be read: {error}"))?;
+        let short = || "has no whole head: the file is damaged, or no array of NumPy".to_owned();
+        let mut fixed = [0; 12];
+        entry.read_exact(&mut fixed[..10]).map_err(|_| short())?;
+        if !fixed.starts_with(b"\x93NUMPY") {
+            return Err(short());
+        }
+        let (length, start) = match fixed[6] {
+            1 => (usize::from(u16::from_le_bytes([fixed[8], fixed[9]])), 10),
+            2 | 3 => {
+                entry.read_exact(&mut fixed[10..]).map_err(|_| short())?;
+                (u32::from_le_bytes([fixed[8], fixed[9], fixed[10], fixed[11]]) as usize, 12)
+            }
+            version => return Err(format!("is written in version {version} of NumPy's format; expected 1, 2 or 3")),
+        };
+        if length > LONGEST_HEAD {
+            return Err(short());
+        }
+        let mut text = vec![0; length];
+        entry.read_exact(&mut text).map_err(|_| short())?;
+        let text = String::from_utf8(text).map_err(|_| short())?;
+        let number = value(&text, "descr").ok_or_else(short)?;
+        if number.starts_with('[') {
+            return Err("has rows of several fields; expected plain numbers".to_owned());
+        }
+        let number = Number::of(quoted_text(number).ok_or_else(short)?)?;
+        let by_columns = match value(&text, "fortran_order").ok_or_else(short)? {
+            order if order.starts_with("True") => true,
+            order if order.starts_with("False") => false,
+            _ => return Err(short()),
+        };
+        let shape = value(&text, "shape").and_then(tuple).ok_or_else(short)?;
+        let array = Array { index, number, by_columns, shape, head: (start + length) as u64 };
+        let stored = entry.size();
+        if array.bytes().and_then(|bytes| bytes.checked_add(array.head)) != Some(stored) {
+            let (shape, stored) = (array.shape_in_words(), count(stored.saturating_sub(array.head).into()));
+            return Err(format!("has the shape {shape}, which does not fit the {stored} bytes that are stored"));
+        }
+        Ok(array)
+    }
+
+    /// The numbers of an array: of one with a single direction as one column.
+    pub(super) fn numbers(&mut self, array: &Array) -> Result<Numbers, String> {
+        let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
+        let expected = array.bytes().unwrap_or(u64::MAX);
+        let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
+        std::io::copy(&mut (&mut entry).take(array.head), &mut std::io::sink()).map_err(broken)?;
+        let mut bytes = Vec::new();
+        // One more than is expected makes the reader compare its check sum.
+        entry.take(expected.saturating_add(1)).read_to_end(&mut bytes).map_err(broken)?;
+        if bytes.len() as u64 != expected {
+            return Err(format!(
+                "is cut short: {} of {} bytes are there",
+                count(bytes.len() as u128),
+                count(expected.into())
+            ));
+        }
+        let [rows, columns] = match array.shape[..] {
+            [rows] => [rows, 1],
+            [rows, columns] => [rows, columns],
+            _ => return Err(format!("has the shape {}; expected rows and columns", array.shape_in_words())),
+        };
+        let (number, by_columns) = (array.number, array.by_columns);
+        Ok(Numbers { bytes, number, by_columns, rows: rows as usize, columns: columns as usize })
+    }
+}
+
+impl Array {
+    /// Whether it holds whole numbers.
+    pub(super) fn is_whole(&self) -> bool {
+        matches!(self.number, Number::Signed(_) | Number::Unsigned(_))
+    }
+
+    /// Length of the numbers (bytes), if 64 bits can say it.
+    pub(super) fn bytes(&self) -> Option<u64> {
+        self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))
+    }
+
+    /// The length of the numbers in words.
+    pub(super) fn size_in_words(&self) -> String {
+        size(self.bytes().unwrap_or(u64::MAX).into())
+    }
+
+    /// The shape as NumPy writes it.
+    pub(super) fn shape_in_words(&self) -> String {
+        let lengths: Vec<_> = self.shape.iter().map(u64::to_string).collect();
+        format!("({}{})", lengths.join(", "), if lengths.len() == 1 { "," } else { "" })
+    }
+}
+
+/// Reads until a buffer is full or nothing more comes, and says how much came.
+fn read_up_to(file: &mut File, buffer: &mut [u8]) -> std::io::Result<usize> {
+    let mut length = 0;
+    while length < buffer.len() {
+        match file.read(&mut buffer[length..])? {
+            0 => break,
+            more => length += more,
+        }
+    }
+    std::io::Seek::rewind(file)?;
+    Ok(length)
+}
+
+/// What follows a key in the head of an array, which is a dictionary in Python's spelling.
+fn value<'t>(text: &'t str, key: &str) -> Option<&'t str> {
+    let after = ["'", "\""].iter().find_map(|quote| text.split_once(&format!("{quote}{key}{quote}")))?.1;
+    Some(after.trim_start().strip_prefix(':')?.trim_start())
+}
+
+/// The text in quotation marks at the start.
+fn quoted_text(text: &str) -> Option<&str> {
+    let quote = text.chars().next().filter(|c| ['\'', '"'].contains(c))?;
+    text[1..].split_once(quote).map(|(inside, _)| inside)
+}
+
+/// The numbers of a tuple at the start.
+fn tuple(text: &str) -> Option<Vec<u64>> {
+    let (inside, _) = text.strip_prefix('(')?.split_once(')')?;
+    let parts = inside.split(',').map(str::trim).filter(|part| !part.is_empty());
+    // Python 2 wrote an L behind long numbers.
+    parts.map(|part| part.trim_end_matches('L').parse().ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heads_are_read_as_numpy_writes_them() {
+        let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (64, 3), }          \n";
+        assert_eq!(value(text, "descr").and_then(quoted_text), Some("<f8"));
+        assert!(value(text, "fortran_order").unwrap().starts_with("False"));
+        assert_eq!(value(text, "shape").and_then(tuple), Some(vec![64, 3]));
+        assert_eq!(tuple("(3L,)"), Some(vec![3]));
+        assert_eq!(tuple("()"), Some(vec![]));
+        assert_eq!((tuple("(3"), tuple("(-1, 2)"), tuple("(99999999999999999999,)")), (None, None, None));
+        assert_eq!((value(text, "size"), quoted_text("<f8"), quoted_text("'<f8")), (None, None, None));
+    }
+
+    #[test]
+    fn types_are_known_or_refused_in_words() {
+        assert_eq!(Number::of("<f8"), Ok(Number::Float64));
+        assert_eq!(Number::of("|u1"), Ok(Number::Unsigned(1)));
+        for (name, words) in [
+            (">f8", "big-endian"),
+            ("<f2", "of the type \"<f2\""),
+            ("<c16", "of the type"),
+            ("|O", "Python objects"),
+            ("<U7", "of the type"),
+            ("", "of the type"),
+            ("é", "of the type"),
+        ] {
+            assert!(Number::of(name).unwrap_err().contains(words), "{name}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_of_all_widths_keep_their_sign() {
+        for bytes in [1, 2, 4, 8] {
+            let mut raw = (-1i64).to_le_bytes()[..bytes].to_vec();
+            raw.extend(&5i64.to_le_bytes()[..bytes]);
+            let mut numbers =
+                Numbers { bytes: raw, number: Number::Signed(bytes), by_columns: false, rows: 1, columns: 2 };
+            assert_eq!((numbers.whole(0, 0), numbers.whole(0, 1)), (-1, 5));
+            numbers.number = Number::Unsigned(bytes);
+            let largest = if bytes == 8 { i64::MAX } else { (1 << (8 * bytes)) - 1 };
+            assert_eq!((numbers.whole(0, 0), numbers.double(0, 1)), (largest, 5.0));
+        }
+    }
+}

@@ -1,0 +1,437 @@
+//! The lists of a body: typed in the scene, or in a file beside it.
+
+use super::vector;
+use crate::scene::file::{BodyFile, Coordinates, Positive};
+use crate::scene::limits::{Limits, size};
+use crate::scene::npz::{Array, Npz, Numbers};
+use crate::scene::report::{Report, Way, written};
+use crate::scene::structure::LARGEST;
+use crate::scene::words::{count, list, nearest};
+use crate::sim::body::{Dimension, IndexLists};
+use glam::DVec3;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Where the lists stand.
+#[derive(Clone, Debug)]
+pub(super) enum Place {
+    /// In the scene itself.
+    Scene,
+    /// In a file of this name.
+    File(String),
+}
+
+impl Place {
+    /// How a list or an entry is called.
+    pub(super) fn name(&self, key: &str, at: &[usize]) -> String {
+        let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
+        match self {
+            Self::Scene => format!("body.{key}{indices}"),
+            Self::File(file) => format!("{file}: {key}{indices}"),
+        }
+    }
+
+    /// Reports a mistake in an entry of a list.
+    pub(super) fn tell(
+        &self,
+        report: &mut Report<'_>,
+        key: &str,
+        at: &[usize],
+        message: String,
+        help: impl Into<Option<String>>,
+    ) {
+        match self {
+            Self::Scene => {
+                let indices = at.iter().map(|&index| Way::Index(index));
+                let path: Vec<_> = [Way::Key("body"), Way::Key(key)].into_iter().chain(indices).collect();
+                report.at(&path, message, help);
+            }
+            Self::File(_) => self.tell_of_file(report, key, at, message, help.into()),
+        }
+    }
+
+    /// Reports a mistake about a whole list.
+    pub(super) fn tell_key(&self, report: &mut Report<'_>, key: &str, message: String) {
+        match self {
+            Self::Scene => report.at_key(&[Way::Key("body"), Way::Key(key)], message, None),
+            Self::File(_) => self.tell_of_file(report, key, &[], message, None),
+        }
+    }
+
+    /// In the scene there is only the name of the file to point at, so the message says the rest.
+    fn tell_of_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
+        let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
+        let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
+        report.at(&[Way::Key("body"), Way::Key("file")], message, help);
+    }
+}
+
+/// What a body lists.
+#[derive(Clone, Debug)]
+pub(super) struct Lists {
+    pub(super) place: Place,
+    pub(super) dimension: Dimension,
+    /// Rest positions (m).
+    pub(super) nodes: Vec<DVec3>,
+    pub(super) elements: IndexLists,
+    pub(super) springs: Option<Vec<[u32; 2]>>,
+    pub(super) faces: Option<IndexLists>,
+    /// Initial positions (m).
+    pub(super) positions: Option<Vec<DVec3>>,
+    /// Initial velocities (m/s).
+    pub(super) velocities: Option<Vec<DVec3>>,
+    /// Masses (kg).
+    pub(super) masses: Option<Vec<f64>>,
+}
+
+impl Lists {
+    /// What a scene lists, if it lists nodes; points with another number of coordinates are reported.
+    pub(super) fn typed(file: &BodyFile, report: &mut Report<'_>) -> Option<Self> {
+        let nodes = file.nodes.as_ref()?;
+        let dimension = if nodes.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space };
+        let mut points = |typed: &Option<Vec<Coordinates>>, key| {
+            let mut points = Vec::new();
+            for (at, coordinates) in typed.as_ref()?.iter().enumerate() {
+                let path = [Way::Key("body"), Way::Key(key), Way::Index(at)];
+                points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
+            }
+            Some(points)
+        };
+        let all =
+            |typed: &Option<Vec<Vec<u32>>>| Some(typed.as_ref()?.iter().map(Vec::as_slice).collect::<IndexLists>());
+        Some(Self {
+            place: Place::Scene,
+            dimension,
+            nodes: points(&file.nodes, "nodes")?,
+            elements: all(&file.elements).unwrap_or_default(),
+            springs: file.springs.clone(),
+            faces: all(&file.faces),
+            positions: points(&file.positions, "positions"),
+            velocities: points(&file.velocities, "velocities"),
+            masses: file.masses.as_ref().map(|masses| masses.iter().map(|&Positive(mass)| mass).collect()),
+        })
+    }
+
+    /// What a file lists, or `None` after reporting what is wrong with it.
+    pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Self> {
+        let path = folder.join(name);
+        let whole = |report: &mut Report<'_>, message: String, help: Option<String>| {
+            report.at(&[Way::Key("body"), Way::Key("file")], format!("`{name}` {message}"), help);
+        };
+        if !path.exists() {
+            let message = format!("is not there (looked for {})", path.display());
+            whole(report, message, similar(&path).map(|near| format!("did you mean {near:?}?")));
+            return None;
+        }
+        let npz = match Npz::open(&path) {
+            Ok(npz) => npz,
+            Err(message) => {
+                whole(report, message, None);
+                return None;
+            }
+        };
+        let before = report.total();
+        let mut reader = Reader { npz, place: Place::File(name.to_owned()), limits, left: limits.memory, report };
+        let lists = reader.lists();
+        (report.total() == before).then_some(lists).flatten()
+    }
+
+    /// A digest of everything listed: whatever changes the body changes it, and neither compression nor the width of
+    /// numbers nor where the file lies does.
+    pub(super) fn digest(&self) -> String {
+        let mut hasher = Sha256::new();
+        let coordinates = |points: &[DVec3], hasher: &mut Sha256| {
+            for coordinate in points.iter().flat_map(|point| point.to_array()) {
+                // Both zeros mean the same.
+                hasher.update((coordinate + 0.0).to_le_bytes());
+            }
+        };
+        let lengths = |hasher: &mut Sha256, key: &str, length: usize| {
+            hasher.update(key);
+            hasher.update((length as u64).to_le_bytes());
+        };
+        lengths(&mut hasher, if self.dimension == Dimension::Plane { "plane" } else { "space" }, self.nodes.len());
+        coordinates(&self.nodes, &mut hasher);
+        for (key, lists) in [("elements", Some(&self.elements)), ("faces", self.faces.as_ref())] {
+            let Some(lists) = lists else { continue };
+            lengths(&mut hasher, key, lists.len());
+            for list in lists.iter() {
+                lengths(&mut hasher, "", list.len());
+                list.iter().for_each(|index| hasher.update(index.to_le_bytes()));
+            }
+        }
+        if let Some(springs) = &self.springs {
+            lengths(&mut hasher, "springs", springs.len());
+            springs.iter().flatten().for_each(|index| hasher.update(index.to_le_bytes()));
+        }
+        for (key, points) in [("positions", &self.positions), ("velocities", &self.velocities)] {
+            if let Some(points) = points {
+                lengths(&mut hasher, key, points.len());
+                coordinates(points, &mut hasher);
+            }
+        }
+        if let Some(masses) = &self.masses {
+            lengths(&mut hasher, "masses", masses.len());
+            masses.iter().for_each(|mass| hasher.update(mass.to_le_bytes()));
+        }
+        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// The archive in the same folder whose name is most like that of a missing one.
+fn similar(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut archives: Vec<String> = names.filter(|name| name.ends_with(".npz")).collect();
+    archives.sort();
+    nearest(wanted, &archives.iter().map(String::as_str).collect::<Vec<_>>()).map(str::to_owned)
+}
+
+/// The arrays that an archive may have, in the order in which they are read.
+const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
+
+/// Reads the arrays of one archive.
+struct Reader<'a, 't> {
+    npz: Npz,
+    place: Place,
+    limits: &'a Limits,
+    /// What may still be read (bytes).
+    left: u64,
+    report: &'a mut Report<'t>,
+}
+
+impl Reader<'_, '_> {
+    fn tell(&mut self, key: &str, at: &[usize], message: String, help: Option<String>) {
+        self.place.tell(self.report, key, at, message, help);
+    }
+
+    /// Says something that begins with the name of an array or of one of its places.
+    fn say(&mut self, key: &str, at: &[usize], message: &str) {
+        let message = format!("`{}` {message}", self.place.name(key, at));
+        self.tell(key, at, message, None);
+    }
+
+    fn lists(&mut self) -> Option<Lists> {
+        for name in self.npz.names().iter().filter(|name| !ARRAYS.contains(&name.as_str())) {
+            let help = match nearest(name, &ARRAYS) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
+            };
+            let message = format!("`{}` is no array that a body has", self.place.name(name, &[]));
+            self.tell(name, &[], message, Some(help));
+        }
+        let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
+            [rows, 2 | 3] => {
+                if rows > self.limits.nodes {
+                    let (rows, most) = (count(rows.into()), count(self.limits.nodes.into()));
+                    let message = format!("`{}` has {rows} nodes; the limit is {most}", self.place.name("nodes", &[]));
+                    self.tell("nodes", &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
+                    return None;
+                }
+                self.numbers("nodes", &array)
+            }
+            _ => {
+                self.wrong_shape("nodes", &array, "one row for each node with 2 or 3 coordinates");
+                None
+            }
+        });
+        let columns = nodes.as_ref().map(|(columns, _)| *columns);
+        let dimension = if columns == Some(2) { Dimension::Plane } else { Dimension::Space };
+        let nodes = nodes.map(|(_, numbers)| self.points("nodes", &numbers));
+        let elements = self.array("elements").and_then(|array| self.rows_of_indices("elements", &array, 2));
+        let springs = self.optional("springs").and_then(|array| self.pairs("springs", &array));
+        let faces = self.optional("faces").and_then(|array| self.rows_of_indices("faces", &array, 3));
+        let positions = self.optional("positions").and_then(|array| self.vectors("positions", &array, columns));
+        let velocities = self.optional("velocities").and_then(|array| self.vectors("velocities", &array, columns));
+        let masses = self.optional("masses").and_then(|array| self.masses(&array));
+        let (nodes, elements, place) = (nodes?, elements?, self.place.clone());
+        Some(Lists { place, dimension, nodes, elements, springs, faces, positions, velocities, masses })
+    }
+
+    /// The head of an array that must be there.
+    fn array(&mut self, key: &str) -> Option<Array> {
+        let found = self.optional_head(key);
+        if found.is_none() {
+            let Place::File(file) = &self.place else { return None };
+            let message = format!("`{file}` has no array `{key}`");
+            self.report.at(&[Way::Key("body"), Way::Key("file")], message, None);
+        }
+        found.flatten()
+    }
+
+    /// The head of an array that need not be there.
+    fn optional(&mut self, key: &str) -> Option<Array> {
+        self.optional_head(key).flatten()
+    }
+
+    /// Nothing if there is no such array; none in it if it has a mistake, which is reported.
+    fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
+        match self.npz.array(key)? {
+            Ok(array) if array.shape.first() == Some(&0) && !["faces"].contains(&key) => {
+                self.say(key, &[], "is empty; expected at least one row");
+                Some(None)
+            }
+            Ok(array) => Some(Some(array)),
+            Err(message) => {
+                self.say(key, &[], &message);
+                Some(None)
+            }
+        }
+    }
+
+    fn wrong_shape(&mut self, key: &str, array: &Array, expected: &str) {
+        self.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
+    }
+
+    /// The numbers of an array with the length of its rows, unless all arrays together are too large.
+    fn numbers(&mut self, key: &str, array: &Array) -> Option<(u64, Numbers)> {
+        let bytes = array.bytes().unwrap_or(u64::MAX);
+        if bytes > self.left {
+            let (needed, most) = (array.size_in_words(), size(self.limits.memory.into()));
+            let message = format!("`{}` takes {needed}; the limit of all arrays is {most}", self.place.name(key, &[]));
+            self.tell(key, &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
+            return None;
+        }
+        self.left -= bytes;
+        match self.npz.numbers(array) {
+            Ok(numbers) => Some((array.shape.get(1).copied().unwrap_or(1), numbers)),
+            Err(message) => {
+                self.say(key, &[], &message);
+                None
+            }
+        }
+    }
+
+    /// A number that is finite and not too large; zero after a mistake.
+    fn number(&mut self, key: &str, numbers: &Numbers, at: &[usize]) -> f64 {
+        let number = numbers.double(at[0], at.get(1).copied().unwrap_or(0));
+        if number.abs() <= LARGEST {
+            return number;
+        }
+        let expected =
+            if number.is_finite() { format!("a magnitude up to {LARGEST:e}") } else { "a finite number".into() };
+        self.say(key, at, &format!("is {number}; expected {expected}"));
+        0.0
+    }
+
+    fn points(&mut self, key: &str, numbers: &Numbers) -> Vec<DVec3> {
+        let flat = numbers.columns() == 2;
+        let point = |row| {
+            let z = if flat { 0.0 } else { self.number(key, numbers, &[row, 2]) };
+            DVec3::new(self.number(key, numbers, &[row, 0]), self.number(key, numbers, &[row, 1]), z)
+        };
+        (0..numbers.rows()).map(point).collect()
+    }
+
+    /// Points with as many coordinates as the nodes have, if that is known.
+    fn vectors(&mut self, key: &str, array: &Array, columns: Option<u64>) -> Option<Vec<DVec3>> {
+        let fits = array.shape.len() == 2 && columns.is_none_or(|columns| array.shape[1] == columns);
+        if !fits || !(2..=3).contains(&array.shape[1]) {
+            let expected = match columns {
+                Some(columns) => format!("one row for each node with {columns} coordinates, as `nodes` has"),
+                None => "one row for each node with 2 or 3 coordinates".to_owned(),
+            };
+            self.wrong_shape(key, array, &expected);
+            return None;
+        }
+        let (_, numbers) = self.numbers(key, array)?;
+        Some(self.points(key, &numbers))
+    }
+
+    fn masses(&mut self, array: &Array) -> Option<Vec<f64>> {
+        if array.shape.len() != 1 {
+            self.wrong_shape("masses", array, "one number for each node");
+            return None;
+        }
+        let (_, numbers) = self.numbers("masses", array)?;
+        let mut masses = Vec::with_capacity(numbers.rows());
+        for row in 0..numbers.rows() {
+            let before = self.report.total();
+            let mass = self.number("masses", &numbers, &[row]);
+            if mass <= 0.0 && self.report.total() == before {
+                self.say("masses", &[row], &format!("is {mass}; expected a number greater than 0"));
+            }
+            masses.push(mass);
+        }
+        Some(masses)
+    }
+
+    /// The numbers of an array of indices with rows of a length.
+    fn indices(&mut self, key: &str, array: &Array, fits: impl Fn(u64) -> bool, expected: &str) -> Option<Numbers> {
+        if array.shape.len() != 2 || !fits(array.shape[1]) {
+            self.wrong_shape(key, array, expected);
+            return None;
+        }
+        if !array.is_whole() {
+            self.say(key, &[], "has numbers with fractions; expected whole numbers, as by astype(\"<i4\")");
+            return None;
+        }
+        Some(self.numbers(key, array)?.1)
+    }
+
+    /// One index, or `None` after a mistake.
+    fn index(&mut self, key: &str, numbers: &Numbers, at: [usize; 2]) -> Option<u32> {
+        let number = numbers.whole(at[0], at[1]);
+        let index = u32::try_from(number).ok();
+        if index.is_none() {
+            self.say(key, &at, &format!("is {number}; expected the number of a node"));
+        }
+        index
+    }
+
+    fn pairs(&mut self, key: &str, array: &Array) -> Option<Vec<[u32; 2]>> {
+        let numbers = self.indices(key, array, |columns| columns == 2, "one row for each spring with 2 nodes")?;
+        let mut pairs = Vec::with_capacity(numbers.rows());
+        for row in 0..numbers.rows() {
+            let pair = [0, 1].map(|column| self.index(key, &numbers, [row, column]));
+            pairs.push(pair.map(Option::unwrap_or_default));
+        }
+        Some(pairs)
+    }
+
+    /// Rows of nodes without the places that they do not use.
+    fn rows_of_indices(&mut self, key: &str, array: &Array, least: usize) -> Option<IndexLists> {
+        let expected = format!("one row for each of the {key} with at least {least} nodes");
+        let numbers = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
+        let mut lists = IndexLists::default();
+        let mut row_of = Vec::with_capacity(numbers.columns());
+        for row in 0..numbers.rows() {
+            row_of.clear();
+            let before = self.report.total();
+            let used = (0..numbers.columns()).rev().find(|&column| numbers.whole(row, column) != -1);
+            let used = used.map_or(0, |last| last + 1);
+            for column in 0..used {
+                match numbers.whole(row, column) {
+                    -1 => self.say(key, &[row, column], "is -1, and a node follows it; unused places come last"),
+                    _ => row_of.extend(self.index(key, &numbers, [row, column])),
+                }
+            }
+            if used < least && self.report.total() == before {
+                let nodes = if used == 1 { "node" } else { "nodes" };
+                self.say(key, &[row], &format!("has {used} {nodes}; expected at least {least}"));
+            }
+            lists.push(&row_of);
+        }
+        Some(lists)
+    }
+}
+
+/// Reports a list that has not one entry for each node.
+pub(super) fn check_count(place: &Place, key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
+    if length != nodes {
+        let (name, entries) = (place.name(key, &[]), if length == 1 { "entry" } else { "entries" });
+        let message = format!("`{name}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
+        place.tell_key(report, key, message);
+    }
+}
+
+/// Reports a key of the scene that says the same as an array of the file.
+pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
+    if typed {
+        let path = [Way::Key("body"), Way::Key(key)];
+        let message = format!("`{}` and `{}` exclude each other", written(&path), lists.place.name(array, &[]));
+        report.at_key(&path, message, "keep one".to_owned());
+    }
+}

@@ -1,0 +1,144 @@
+//! Rebound and friction against closed forms, at obstacles of every shape, still and moving.
+
+use crate::support::Noise;
+use glam::{DQuat, DVec3};
+use localshape::sim::contact::{Motion, Obstacle, Shape};
+use localshape::sim::motion::{Ease, Key, Place};
+
+const STEP: f64 = 1e-3;
+
+fn obstacle(shape: Shape, restitution: f64, friction: f64, motion: Motion) -> Obstacle {
+    Obstacle { shape, motion, restitution, friction }
+}
+
+fn floor() -> Shape {
+    Shape::Floor { normal: DVec3::Y, height: 0.0 }
+}
+
+/// Constant speed (m/s) and angular velocity (rad/s) from the start on.
+fn steady(speed: DVec3, spin: DVec3) -> Motion {
+    let keys = vec![
+        Key { time: 0.0, place: Place::default() },
+        Key { time: 100.0, place: Place { shift: speed * 100.0, turn: spin * 100.0 } },
+    ];
+    Motion::Keys { keys, ease: Ease::Linear, repeat: false }
+}
+
+#[test]
+fn a_moving_wall_gives_a_node_its_own_speed_and_the_rebound() {
+    for (restitution, speed, before) in [(0.0, 2.0, 0.0), (0.5, 2.0, -1.0), (1.0, 3.0, 0.0)] {
+        let rising = obstacle(floor(), restitution, 0.0, steady(DVec3::Y * speed, DVec3::ZERO));
+        let height = 0.4 * speed;
+        let (mut position, mut velocity) = (DVec3::new(0.3, height - 0.01, 0.0), DVec3::Y * before);
+        assert!(rising.at(0.4, STEP).rebound(&mut position, &mut velocity));
+        // Relative to the wall: −e (v − u), and mirrored by e times the depth.
+        let expected = speed - restitution * (before - speed);
+        assert!((velocity - DVec3::Y * expected).length() < 1e-11, "{velocity} {expected}");
+        assert!((position.y - (height + restitution * 0.01)).abs() < 1e-13, "{position}");
+    }
+}
+
+#[test]
+fn a_node_that_flees_faster_than_the_wall_keeps_its_speed() {
+    let rising = obstacle(floor(), 0.5, 0.5, steady(DVec3::Y, DVec3::ZERO));
+    let (mut position, mut velocity) = (DVec3::new(0.0, 0.09, 0.0), DVec3::new(0.5, 1.5, 0.0));
+    assert!(rising.at(0.1, STEP).rebound(&mut position, &mut velocity));
+    assert_eq!(velocity, DVec3::new(0.5, 1.5, 0.0));
+}
+
+#[test]
+fn a_conveyor_takes_a_node_along_by_friction_and_no_faster_than_itself() {
+    let belt = |friction| obstacle(floor(), 0.0, friction, steady(DVec3::X * 3.0, DVec3::ZERO));
+    for (friction, along) in [(0.0, 0.0), (0.2, 0.4), (1.0, 2.0), (5.0, 3.0)] {
+        let (mut position, mut velocity) = (DVec3::new(0.0, -0.001, 0.0), DVec3::new(0.0, -2.0, 0.0));
+        belt(friction).at(0.5, STEP).rebound(&mut position, &mut velocity);
+        assert!((velocity - DVec3::X * along).length() < 1e-10, "{friction}: {velocity}");
+    }
+}
+
+#[test]
+fn a_turning_table_carries_a_node_at_the_speed_of_the_place_where_it_stands() {
+    let table = obstacle(floor(), 0.0, 1e3, steady(DVec3::ZERO, DVec3::Y * 4.0));
+    let (mut position, mut velocity) = (DVec3::new(0.5, -0.001, 0.2), DVec3::new(0.0, -1.0, 0.0));
+    table.at(0.7, STEP).rebound(&mut position, &mut velocity);
+    // The chord of the last step instead of the tangent: half a step's turn behind.
+    let chord = DQuat::from_rotation_y(-4.0 * STEP / 2.0) * DVec3::new(4.0 * 0.2, 0.0, -4.0 * 0.5);
+    assert!((velocity - chord).length() < 1e-5, "{velocity} {chord}");
+}
+
+#[test]
+fn every_shape_mirrors_the_depth_and_the_speed_along_its_normal() {
+    let slant = DVec3::new(0.6, 0.8, 0.0);
+    let shapes = [
+        (floor(), DVec3::new(0.2, -0.01, 0.1), DVec3::Y),
+        (Shape::Plate { point: DVec3::Y, normal: slant }, DVec3::Y - slant * 0.01, slant),
+        (Shape::Sphere { centre: DVec3::X, radius: 0.5 }, DVec3::X + slant * 0.49, slant),
+        (Shape::Capsule { from: -DVec3::Z, to: DVec3::Z, radius: 0.3 }, slant * 0.29 + DVec3::Z * 0.4, slant),
+        (Shape::Capsule { from: -DVec3::Z, to: DVec3::Z, radius: 0.3 }, DVec3::Z * 1.29, DVec3::Z),
+        (
+            Shape::Box { centre: DVec3::ONE, half: DVec3::new(0.5, 0.2, 0.3), turn: DQuat::IDENTITY },
+            DVec3::ONE + DVec3::new(0.1, 0.19, 0.1),
+            DVec3::Y,
+        ),
+    ];
+    for (shape, inside, normal) in shapes {
+        for restitution in [0.0, 0.5, 1.0] {
+            let (mut position, mut velocity) = (inside, DVec3::new(0.3, -0.4, 0.2) - normal * 3.0);
+            let before = velocity;
+            assert!(
+                obstacle(shape.clone(), restitution, 0.0, Motion::Still)
+                    .at(1.0, STEP)
+                    .rebound(&mut position, &mut velocity)
+            );
+            let depth = 0.01;
+            assert!((position - (inside + normal * depth * (1.0 + restitution))).length() < 1e-14, "{shape:?}");
+            let expected = before - normal * (1.0 + restitution) * before.dot(normal);
+            assert!((velocity - expected).length() < 1e-13, "{shape:?}: {velocity} {expected}");
+            let outside = obstacle(shape.clone(), 1.0, 1.0, Motion::Still);
+            let (mut away, mut speed) = (inside + normal * 0.02, -normal);
+            assert!(!outside.at(1.0, STEP).rebound(&mut away, &mut speed));
+        }
+    }
+}
+
+/// A moving obstacle is a still one seen from a moving frame: to round-off for steady motion.
+#[test]
+fn a_steadily_moving_obstacle_is_a_still_one_in_a_moving_frame() {
+    let mut noise = Noise(4);
+    let shapes = [
+        floor(),
+        Shape::Sphere { centre: DVec3::new(0.1, 0.0, 0.0), radius: 0.9 },
+        Shape::Capsule { from: -DVec3::X, to: DVec3::X * 0.5, radius: 0.8 },
+        Shape::Box { centre: DVec3::ZERO, half: DVec3::ONE, turn: DQuat::from_rotation_y(0.4) },
+    ];
+    for shape in shapes {
+        let mut met = 0;
+        for _ in 0..200 {
+            let drift = noise.vector();
+            let still = obstacle(shape.clone(), 0.6, 0.3, Motion::Still);
+            let moving = obstacle(shape.clone(), 0.6, 0.3, steady(drift, DVec3::ZERO));
+            let (mut position, mut velocity) = (noise.vector(), noise.vector() * 2.0);
+            let (mut other, mut other_velocity) = (position + drift * 0.25, velocity + drift);
+            let hit = still.at(0.25, STEP).rebound(&mut position, &mut velocity);
+            assert_eq!(hit, moving.at(0.25, STEP).rebound(&mut other, &mut other_velocity));
+            met += usize::from(hit);
+            assert!((other - position - drift * 0.25).length() < 1e-12);
+            assert!((other_velocity - velocity - drift).length() < 1e-11, "{shape:?}");
+        }
+        assert!(met > 30, "{shape:?}: {met}");
+    }
+}
+
+#[test]
+fn obstacles_act_in_the_order_of_the_scene() {
+    // Between two walls that overlap, the last one has the last word.
+    let left = obstacle(Shape::Plate { point: DVec3::ZERO, normal: DVec3::X }, 0.0, 0.0, Motion::Still);
+    let right = obstacle(Shape::Plate { point: DVec3::X * -0.1, normal: -DVec3::X }, 0.0, 0.0, Motion::Still);
+    for (order, end) in [([&left, &right], -0.1), ([&right, &left], 0.0)] {
+        let (mut position, mut velocity) = (DVec3::X * -0.05, DVec3::ZERO);
+        for one in order {
+            one.at(1.0, STEP).rebound(&mut position, &mut velocity);
+        }
+        assert_eq!(position.x, end);
+    }
+}

@@ -1,0 +1,84 @@
+//! The paper's readings, each by what it does.
+
+use crate::support::{after, free, lattice, shape_based, shipped};
+use glam::DVec3;
+use localshape::sim::body::{Body, State};
+use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::snapshot::Status;
+
+fn spinning(body: &Body, spin: DVec3) -> State {
+    let centre = body.rest.iter().sum::<DVec3>() / body.len() as f64;
+    let velocity = body.rest.iter().map(|&rest| spin.cross(rest - centre)).collect();
+    State { position: body.rest.clone(), velocity }
+}
+
+/// One free element, as printed: its spin falls as `exp(−D t/m)`; of deformation only: it stays.
+#[test]
+fn damping_as_printed_brakes_a_rigid_spin_and_damping_of_deformation_does_not() {
+    let body = lattice(1, 0.1);
+    let (damping, step, spin) = (2.0, 1e-4, DVec3::new(0.0, 3.0, 0.0));
+    let momentum = |reading| {
+        let model = ShapeBased { damping_of: reading, passes: 4, ..shape_based(1e4, damping) };
+        let mut world = free(&body, spinning(&body, spin), &model, step);
+        let before = world.snapshot().diagnostics.angular_momentum;
+        world.advance(5000);
+        world.snapshot().diagnostics.angular_momentum.y / before.y
+    };
+    let printed = momentum(DampingReading::RelativeMotion);
+    assert!((printed - (-damping * 0.5_f64).exp()).abs() < 1e-3, "{printed}");
+    let deformation = momentum(DampingReading::Deformation);
+    assert!((deformation - 1.0).abs() < 1e-11, "{deformation}");
+}
+
+#[test]
+fn damping_of_deformation_still_brings_deformation_to_rest() {
+    let body = lattice(2, 0.1);
+    let mut start = spinning(&body, DVec3::new(0.0, 3.0, 0.0));
+    start.position.iter_mut().for_each(|p| *p *= DVec3::new(1.1, 0.9, 1.0));
+    let model = ShapeBased { damping_of: DampingReading::Deformation, passes: 4, ..shape_based(1e4, 40.0) };
+    let mut world = free(&body, start, &model, 1e-4);
+    let before = world.snapshot().diagnostics;
+    world.advance(20_000);
+    let after = world.snapshot().diagnostics;
+    // What is left is what the spin pulls apart: m ω² r / k.
+    assert!(after.elastic < 1e-3 * before.elastic, "{} {}", after.elastic, before.elastic);
+    assert!((after.angular_momentum - before.angular_momentum).length() < 1e-10);
+}
+
+/// The shipped scene: Eq. (16) as printed swells, accumulated rotations keep the size.
+#[test]
+fn the_linear_update_swells_a_spinning_cube() {
+    let scene = shipped("swelling", &[]);
+    let volume = |run| after(&scene, run, 10.0).diagnostics.volume_ratio;
+    let mended = volume("Rotations accumulated");
+    assert!((0.99..1.06).contains(&mended), "{mended}");
+    let printed = volume("Eq. (16) as printed");
+    assert!(printed > 2.0, "{printed}");
+}
+
+/// The shipped scene: Eqs. (2) and (3) as printed blow up, and the other methods do not.
+#[test]
+fn explicit_euler_blows_up_a_dropped_block() {
+    let scene = shipped("explicit-euler", &[]);
+    assert!(matches!(after(&scene, "As printed", 2.0).status, Status::Diverged(_)));
+    for run in ["Semi-implicit Euler", "Velocity Verlet"] {
+        let end = after(&scene, run, 2.0);
+        assert_eq!((end.status, end.diagnostics.turned_over), (Status::Ok, 0), "{run}");
+    }
+}
+
+/// With its angle read as `|w|`, one pass from a fast spin turns an element too far every time, which pumps it.
+#[test]
+fn the_length_as_angle_leaves_more_error_than_the_arctangent() {
+    let body = lattice(1, 0.1);
+    let residual = |rotation| {
+        let model = ShapeBased { rotation, passes: 1, ..shape_based(1e4, 0.0) };
+        let mut world = free(&body, spinning(&body, DVec3::new(0.0, 30.0, 5.0)), &model, 2e-3);
+        (0..200).fold(0.0, |most: f64, _| {
+            world.advance(1);
+            most.max(world.snapshot().diagnostics.residual)
+        })
+    };
+    let [arctangent, length] = [RotationReading::Arctangent, RotationReading::VectorLength].map(residual);
+    assert!(length > 10.0 * arctangent, "{arctangent:e} {length:e}");
+}

@@ -1,0 +1,455 @@
+//! Bodies in a NumPy archive beside the scene.
+
+use glam::DVec3;
+use localshape::scene::{Limits, Scene, SceneError};
+use localshape::sim::body::ElementKind;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// One array as it lies in an archive.
+#[derive(Clone)]
+struct Array {
+    name: &'static str,
+    descr: String,
+    shape: String,
+    bytes: Vec<u8>,
+    by_columns: bool,
+}
+
+fn doubles(name: &'static str, shape: &str, numbers: &[f64]) -> Array {
+    let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    Array { name, descr: "'<f8'".into(), shape: shape.into(), bytes, by_columns: false }
+}
+
+fn indices(name: &'static str, shape: &str, numbers: &[i64]) -> Array {
+    let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    Array { name, descr: "'<i8'".into(), shape: shape.into(), bytes, by_columns: false }
+}
+
+impl Array {
+    fn file(&self) -> Vec<u8> {
+        let order = if self.by_columns { "True" } else { "False" };
+        let head = format!("{{'descr': {}, 'fortran_order': {order}, 'shape': {}, }}\n", self.descr, self.shape);
+        let mut file = b"\x93NUMPY\x01\x00".to_vec();
+        file.extend((head.len() as u16).to_le_bytes());
+        file.extend(head.bytes());
+        file.extend(&self.bytes);
+        file
+    }
+}
+
+fn archive(arrays: &[Array], method: CompressionMethod) -> Vec<u8> {
+    let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for array in arrays {
+        zip.start_file(format!("{}.npy", array.name), SimpleFileOptions::default().compression_method(method)).unwrap();
+        zip.write_all(&array.file()).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+/// A unit square of two triangles.
+fn square() -> Vec<Array> {
+    vec![
+        doubles("nodes", "(4, 2)", &[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]),
+        indices("elements", "(2, 3)", &[0, 1, 2, 0, 2, 3]),
+    ]
+}
+
+const SCENE: &str = "\
+[time]
+duration = 1
+[body]
+file = 'body.npz'
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', stiffness = 1e4 }
+[[run]]
+name = 'Mass-spring'
+model = { kind = 'mass-spring', stiffness = 1e4 }
+";
+
+/// Writes a new file: one that is written over waits for the disk.
+fn put(path: &Path, bytes: &[u8]) {
+    let _ = std::fs::remove_file(path);
+    std::fs::write(path, bytes).unwrap();
+}
+
+/// A folder with a scene and its body.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new(body: &[u8]) -> Self {
+        let place = Self(tempfile::tempdir().unwrap());
+        place.put_body(body);
+        place
+    }
+
+    fn put_body(&self, bytes: &[u8]) {
+        put(&self.path().with_file_name("body.npz"), bytes);
+    }
+
+    fn path(&self) -> PathBuf {
+        self.0.path().join("scene.toml")
+    }
+
+    fn load(&self, scene: &str, limits: &Limits) -> Result<Scene, SceneError> {
+        put(&self.path(), scene.as_bytes());
+        Scene::load(&self.path(), limits)
+    }
+}
+
+#[track_caller]
+fn good(body: &[u8], scene: &str) -> Scene {
+    Place::new(body).load(scene, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Expects exactly these mistakes, all of them at the name of the file.
+#[track_caller]
+fn wrong(body: &[u8], expected: &[&str]) {
+    let error = Place::new(body).load(SCENE, &Limits::default()).expect_err(&format!("{expected:?}"));
+    assert_eq!(error.mistakes().len(), expected.len(), "{error}");
+    for (mistake, words) in error.mistakes().iter().zip(expected) {
+        assert_eq!((mistake.line, mistake.column), (4, 8), "{error}");
+        let text = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        assert!(text.contains(words), "{words:?} is not in\n{error}");
+    }
+}
+
+fn with(change: impl Fn(&mut Vec<Array>)) -> Vec<u8> {
+    let mut arrays = square();
+    change(&mut arrays);
+    archive(&arrays, CompressionMethod::Stored)
+}
+
+/// Written by NumPy 2.4 with `savez` and `savez_compressed`: a cube and a pyramid of -1-padded rows in int64, springs in
+/// int32, faces in int16, positions in Fortran order, velocities in float32, masses in float64.
+const BY_NUMPY: [&[u8]; 2] = [include_bytes!("numpy.npz"), include_bytes!("numpy_compressed.npz")];
+
+#[test]
+fn archives_written_by_numpy_are_read_compressed_or_not() {
+    for bytes in BY_NUMPY {
+        let scene = good(bytes, SCENE);
+        let body = &scene.body;
+        assert_eq!(body.kinds, [ElementKind::Hexahedron, ElementKind::Pyramid]);
+        assert_eq!(&body.elements[1], [4, 5, 7, 6, 8]);
+        assert_eq!(body.rest[8], DVec3::new(0.5, 0.5, 1.5));
+        assert_eq!(scene.initial.position[8], DVec3::new(0.75, 0.75, 2.25));
+        assert_eq!(scene.initial.position[1], DVec3::new(1.5, 0.0, 0.0));
+        assert!(scene.initial.velocity.iter().all(|&velocity| velocity == -DVec3::Y));
+        assert_eq!(body.mass[8], 9.0);
+        assert_eq!((&body.faces.nodes[0], &body.faces.nodes[1]), (&[4, 5, 7, 6][..], &[4, 5, 8][..]));
+        assert_eq!((body.faces.inner[0], body.faces.outer[0]), (Some(0), Some(1)));
+        assert!(scene.runs[1].model.describe(body).starts_with("2 springs,"));
+    }
+    assert_eq!(good(BY_NUMPY[0], SCENE).digest, good(BY_NUMPY[1], SCENE).digest);
+}
+
+#[test]
+fn a_body_from_a_file_is_the_same_as_one_in_the_scene() {
+    let scene = good(
+        &with(|_| ()),
+        &SCENE.replace(
+            "file = 'body.npz'",
+            "file = 'body.npz'\nmass = 2\nlowest = 3\nrotation.angle = 0.1\noffset = [1, 2]\nvelocity = [0, -1]",
+        ),
+    );
+    let typed = SCENE.replace(
+        "file = 'body.npz'",
+        "nodes = [[0, 0], [1, 0], [1, 1], [0, 1]]\nelements = [[0, 1, 2], [0, 2, 3]]\nmass = 2\nlowest = 3\nrotation.angle = 0.1\noffset = [1, 2]\nvelocity = [0, -1]",
+    );
+    let typed = super::good(&typed);
+    assert_eq!(scene.body, typed.body);
+    assert_eq!(scene.initial, typed.initial);
+    assert_eq!(scene.view.side, typed.view.side);
+}
+
+#[test]
+fn every_type_and_order_of_numbers_means_the_same() {
+    let plain = good(&with(|_| ()), SCENE);
+    let narrow = with(|arrays| {
+        let numbers: [f32; 8] = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
+        arrays[0].bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        arrays[0].descr = "'<f4'".into();
+        (arrays[1].bytes, arrays[1].descr) = (vec![0, 1, 2, 0, 2, 3], "'|u1'".into());
+    });
+    let by_columns = with(|arrays| {
+        arrays[0] = doubles("nodes", "(4, 2)", &[0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        arrays[1] = indices("elements", "(2, 3)", &[0, 0, 1, 2, 2, 3]);
+        arrays.iter_mut().for_each(|array| array.by_columns = true);
+    });
+    let padded = with(|arrays| arrays[1] = indices("elements", "(2, 4)", &[0, 1, 2, -1, 0, 2, 3, -1]));
+    let compressed = archive(&square(), CompressionMethod::Deflated);
+    for other in [narrow, by_columns, padded, compressed] {
+        let other = good(&other, SCENE);
+        assert_eq!((&other.body, &other.digest), (&plain.body, &plain.digest));
+    }
+}
+
+#[test]
+fn the_digest_follows_what_is_in_the_file_and_not_its_name() {
+    let plain = good(&with(|_| ()), SCENE).digest;
+    let moved = Place::new(&[]);
+    std::fs::create_dir(moved.0.path().join("bodies")).unwrap();
+    std::fs::write(moved.0.path().join("bodies/other.npz"), with(|_| ())).unwrap();
+    let scene = moved.load(&SCENE.replace("body.npz", "bodies/other.npz"), &Limits::default()).unwrap();
+    assert_eq!(scene.digest, plain);
+    let mut digests = vec![plain];
+    for change in [
+        with(|arrays| arrays[0].bytes[8] ^= 1),
+        with(|arrays| arrays[1] = indices("elements", "(2, 3)", &[0, 1, 3, 1, 2, 3])),
+        with(|arrays| arrays[1] = indices("elements", "(1, 4)", &[0, 1, 2, 3])),
+        with(|arrays| arrays.push(indices("springs", "(1, 2)", &[0, 1]))),
+        with(|arrays| arrays.push(indices("springs", "(1, 2)", &[1, 0]))),
+        with(|arrays| arrays.push(indices("faces", "(1, 3)", &[0, 1, 2]))),
+        with(|arrays| arrays.push(indices("faces", "(0, 3)", &[]))),
+        with(|arrays| arrays.push(doubles("positions", "(4, 2)", &[0.5; 8]))),
+        with(|arrays| arrays.push(doubles("velocities", "(4, 2)", &[0.5; 8]))),
+        with(|arrays| arrays.push(doubles("masses", "(4,)", &[0.5; 4]))),
+    ] {
+        digests.push(good(&change, SCENE).digest);
+    }
+    let all = digests.len();
+    digests.sort();
+    digests.dedup();
+    assert_eq!(digests.len(), all);
+}
+
+#[test]
+fn files_that_are_no_archives() {
+    let whole = with(|_| ());
+    wrong(b"", &["`body.npz` is empty; expected a NumPy archive"]);
+    wrong(b"v 0 0 0\nv 1 0 0\n", &["`body.npz` is no NumPy archive (.npz)"]);
+    wrong(&square()[0].file(), &["`body.npz` is a single array (.npy); expected several"]);
+    wrong(&whole[..whole.len() - 30], &["`body.npz` is a damaged NumPy archive, or is cut short"]);
+    wrong(&whole[..100], &["is a damaged NumPy archive, or is cut short"]);
+    let mut damaged = whole.clone();
+    // A coordinate that is no longer what the check sum says.
+    let at = damaged.windows(8).position(|bytes| bytes == 1f64.to_le_bytes()).unwrap();
+    damaged[at + 7] ^= 1;
+    wrong(&damaged, &["`body.npz: nodes` cannot be read, the file is damaged or cut short"]);
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let place = Place::new(&with(|_| ()));
+    let load = |name: &str| {
+        let error = place.load(&SCENE.replace("body.npz", name), &Limits::default()).unwrap_err();
+        assert_eq!(error.mistakes().len(), 1, "{error}");
+        error.to_string()
+    };
+    let missing = load("bodi.npz");
+    assert!(missing.contains("`bodi.npz` is not there (looked for ") && missing.contains("did you mean \"body.npz\"?"));
+    assert!(load("no/such/folder.npz").contains("is not there"));
+    assert!(load(".").contains("is a folder; expected a NumPy archive"));
+    // A text lies in no folder: its file is looked for from the current one.
+    let error = super::bad(SCENE).to_string();
+    assert!(error.contains("`body.npz` is not there (looked for body.npz)"), "{error}");
+    let absolute = place.path().with_file_name("body.npz");
+    super::good(&SCENE.replace("body.npz", &absolute.display().to_string()));
+}
+
+#[test]
+fn arrays_that_are_none() {
+    wrong(&with(|arrays| drop(arrays.remove(0))), &["`body.npz` has no array `nodes`"]);
+    wrong(
+        &with(|arrays| arrays[1].name = "element"),
+        &[
+            "`body.npz: element` is no array that a body has did you mean `elements`?",
+            "`body.npz` has no array `elements`",
+        ],
+    );
+    wrong(
+        &with(|arrays| arrays[0].shape = "(8,)".into()),
+        &["`body.npz: nodes` has the shape (8,); expected one row for each node with 2 or 3 coordinates"],
+    );
+    wrong(&with(|arrays| arrays[0].shape = "(2, 4)".into()), &["has the shape (2, 4); expected one row"]);
+    wrong(
+        &with(|arrays| arrays[1].shape = "(6, 1)".into()),
+        &["`body.npz: elements` has the shape (6, 1); expected one row for each of the elements with at least 2 nodes"],
+    );
+    wrong(&with(|arrays| arrays[1].shape = "(6,)".into()), &["`body.npz: elements` has the shape (6,)"]);
+    wrong(&with(|arrays| arrays[1] = indices("elements", "(0, 3)", &[])), &["`body.npz: elements` is empty"]);
+    wrong(&with(|arrays| arrays[0] = doubles("nodes", "(0, 3)", &[])), &["`body.npz: nodes` is empty"]);
+    wrong(&with(|arrays| arrays[0].descr = "'>f8'".into()), &["`body.npz: nodes` has big-endian numbers"]);
+    wrong(&with(|arrays| arrays[0].descr = "'<c8'".into()), &["has numbers of the type \"<c8\"; expected float64"]);
+    wrong(&with(|arrays| arrays[0].descr = "[('x', '<f8')]".into()), &["`body.npz: nodes` has rows of several fields"]);
+    wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` holds Python objects"]);
+    wrong(&with(|arrays| arrays[1].descr = "'<f8'".into()), &["`body.npz: elements` has numbers with fractions"]);
+    wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no whole head"]);
+    wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no whole head"]);
+    wrong(
+        &with(|arrays| arrays.push(indices("springs", "(2, 3)", &[0, 1, 2, 1, 2, 3]))),
+        &["`body.npz: springs` has the shape (2, 3); expected one row for each spring with 2 nodes"],
+    );
+    wrong(
+        &with(|arrays| arrays.push(indices("faces", "(1, 2)", &[0, 1]))),
+        &["`body.npz: faces` has the shape (1, 2)"],
+    );
+    wrong(
+        &with(|arrays| arrays.push(doubles("masses", "(4, 1)", &[1.0; 4]))),
+        &["`body.npz: masses` has the shape (4, 1)"],
+    );
+    wrong(
+        &with(|arrays| arrays.push(doubles("velocities", "(4, 3)", &[1.0; 12]))),
+        &["`body.npz: velocities` has the shape (4, 3); expected one row for each node with 2 coordinates"],
+    );
+}
+
+#[test]
+fn what_is_said_to_be_enormous_is_refused_before_it_is_read() {
+    for shape in ["(1000000000000, 3)", "(18446744073709551615, 3)", "(4000000, 3)"] {
+        wrong(&with(|arrays| arrays[0].shape = shape.into()), &["which does not fit the 64 bytes that are stored"]);
+    }
+    let place = Place::new(&with(|_| ()));
+    let few = Limits { nodes: 3, ..Limits::default() };
+    let error = place.load(SCENE, &few).unwrap_err().to_string();
+    assert!(
+        error.contains("`body.npz: nodes` has 4 nodes; the limit is 3") && error.contains("--allow-large"),
+        "{error}"
+    );
+    let little = Limits { memory: 100, ..Limits::default() };
+    let error = place.load(SCENE, &little).unwrap_err().to_string();
+    assert!(error.contains("`body.npz: elements` takes 1 kB; the limit of all arrays is 1 kB"), "{error}");
+    // It fits, and what would be made of it does not.
+    let error = place.load(SCENE, &Limits { memory: 200, ..little }).unwrap_err().to_string();
+    assert!(error.contains("`body.npz`: this makes 4 nodes, 2 elements and up to 6 springs, about"), "{error}");
+}
+
+#[test]
+fn numbers_that_cannot_be() {
+    wrong(
+        &with(|arrays| arrays[0] = doubles("nodes", "(4, 2)", &[0.0, 0.0, 1.0, f64::NAN, 1e31, 1.0, 0.0, 1.0])),
+        &[
+            "`body.npz: nodes[1][1]` is NaN; expected a finite number",
+            "`body.npz: nodes[2][0]` is 10000000000000000000000000000000; expected a magnitude up to 1e30",
+        ],
+    );
+    wrong(
+        &with(|arrays| arrays.push(doubles("masses", "(4,)", &[1.0, 0.0, f64::INFINITY, -1.0]))),
+        &[
+            "`body.npz: masses[1]` is 0; expected a number greater than 0",
+            "`body.npz: masses[2]` is inf; expected a finite number",
+            "`body.npz: masses[3]` is -1; expected a number greater than 0",
+        ],
+    );
+    wrong(
+        &with(|arrays| arrays.push(doubles("masses", "(3,)", &[1.0; 3]))),
+        &["`body.npz: masses` has 3 entries, and the body has 4 nodes; expected one for each"],
+    );
+    wrong(
+        &with(|arrays| arrays[1] = indices("elements", "(3, 3)", &[0, 1, -1, 0, -1, 2, -2, 2, 3])),
+        &[
+            "`body.npz: elements[1][1]` is -1, and a node follows it; unused places come last",
+            "`body.npz: elements[2][0]` is -2; expected the number of a node",
+        ],
+    );
+    wrong(
+        &with(|arrays| arrays[1] = indices("elements", "(2, 3)", &[0, 1, 2, 3, -1, -1])),
+        &["`body.npz: elements[1]` has 1 node; expected at least 2"],
+    );
+    wrong(
+        &with(|arrays| arrays.push(indices("faces", "(1, 3)", &[0, 1, -1]))),
+        &["`body.npz: faces[0]` has 2 nodes; expected at least 3"],
+    );
+}
+
+#[test]
+fn lists_of_a_file_are_checked_like_those_of_a_scene() {
+    let elements = |numbers: &'static [i64]| with(move |arrays| arrays[1] = indices("elements", "(2, 3)", numbers));
+    wrong(
+        &elements(&[0, 1, 2, 0, 2, 4]),
+        &["`body.npz: elements[1][2]`: there is no node 4; the body has nodes 0 to 3"],
+    );
+    wrong(&elements(&[0, 1, 2, 0, 2, 2]), &["node 2 stands twice in `body.npz: elements[1]`"]);
+    wrong(
+        &elements(&[0, 1, 2, 2, 0, 1]),
+        &[
+            "`body.npz: elements[1]` has the same nodes as `body.npz: elements[0]`",
+            "`body.npz: nodes[3]`: node 3 belongs to no element and no spring",
+        ],
+    );
+    wrong(
+        &elements(&[0, 1, 2, 0, 3, 2]),
+        &["`body.npz: elements[1]` is clockwise; expected counter-clockwise write [2, 3, 0]"],
+    );
+    wrong(
+        &with(|arrays| arrays[0] = doubles("nodes", "(4, 2)", &[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 2.0, 2.0])),
+        &["`body.npz: elements[1]` has no area"],
+    );
+    wrong(
+        &with(|arrays| arrays[0] = doubles("nodes", "(4, 2)", &[5.0; 8])),
+        &[
+            "`body.npz: elements[0]` has no extent: all its nodes are at [5, 5]",
+            "`body.npz: elements[1]` has no extent",
+        ],
+    );
+    wrong(
+        &with(|arrays| arrays.push(indices("springs", "(2, 2)", &[0, 1, 1, 0]))),
+        &["`body.npz: springs[1]` has the same nodes as `body.npz: springs[0]`"],
+    );
+    wrong(
+        &with(|arrays| arrays.push(indices("faces", "(1, 3)", &[0, 1, 7]))),
+        &["`body.npz: faces[0][2]`: there is no node 7"],
+    );
+}
+
+#[test]
+fn a_scene_does_not_say_what_its_file_says() {
+    let arrays = with(|arrays| {
+        arrays.push(doubles("masses", "(4,)", &[1.0; 4]));
+        arrays.push(doubles("velocities", "(4, 2)", &[0.0; 8]));
+    });
+    let both = SCENE.replace("file = 'body.npz'", "file = 'body.npz'\nmass = 1\nvelocity = [0, 1]");
+    let error = Place::new(&arrays).load(&both, &Limits::default()).unwrap_err();
+    let lines: Vec<_> = error.mistakes().iter().map(|mistake| (mistake.line, mistake.message.as_str())).collect();
+    assert_eq!(
+        lines,
+        [
+            (5, "`body.mass` and `body.npz: masses` exclude each other"),
+            (6, "`body.velocity` and `body.npz: velocities` exclude each other"),
+        ]
+    );
+}
+
+/// Whatever a file holds, reading it ends with a scene or with mistakes, never with a panic or out of memory.
+#[test]
+fn any_bytes_in_an_archive() {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut below = |bound: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % bound as u64) as usize
+    };
+    let small = Limits { nodes: 5000, memory: 1 << 24, file: 1 << 20 };
+    let place = Place::new(&[]);
+    for bytes in BY_NUMPY {
+        for _ in 0..1500 {
+            let mut bytes = bytes.to_vec();
+            for _ in 0..=below(3) {
+                let at = below(bytes.len());
+                match below(5) {
+                    0 => bytes[at] = b"0123456789,() -'<>"[below(18)],
+                    1 => bytes[at] ^= 1 << below(8),
+                    2 => bytes[at] = 0xff,
+                    3 if bytes.len() > 1 => drop(bytes.remove(at)),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            place.put_body(&bytes);
+            match place.load(SCENE, &small) {
+                Ok(scene) => assert!(scene.initial.position.iter().all(|at| at.is_finite())),
+                Err(error) => assert!(error.mistakes().iter().all(|mistake| mistake.line > 0), "{error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_path_is_taken_from_the_scene_and_not_from_the_current_folder() {
+    let place = Place::new(&with(|_| ()));
+    assert!(!Path::new("body.npz").exists());
+    assert_eq!(place.load(SCENE, &Limits::default()).unwrap().body.len(), 4);
+}

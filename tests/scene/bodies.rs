@@ -1,0 +1,279 @@
+//! Bodies that are made by a rule, and elements of every shape.
+
+use super::{bad, good};
+use glam::DVec3;
+use localshape::scene::Scene;
+use localshape::sequence::Sequence;
+use localshape::sim::body::{Dimension, ElementKind};
+use std::collections::BTreeMap;
+
+/// A world in which a body falls on a floor, with a run of each model.
+fn world(body: &str, dimension: Dimension) -> String {
+    let gravity = if dimension == Dimension::Plane { "[0, -9.8]" } else { "[0, -9.8, 0]" };
+    format!(
+        "gravity = {gravity}
+time = {{ duration = 0.3, step = 'T/100', frames_per_second = 10 }}
+obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+[[run]]
+name = 'Local shape'
+model = {{ kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 }}
+[[run]]
+name = 'Mass-spring'
+model = {{ kind = 'mass-spring', stiffness = 1e4, damping_ratio = 0.1, springs = 'edges+face-diagonals' }}
+[body]
+{body}
+"
+    )
+}
+
+/// How many elements there are of each number of nodes.
+type Sizes = &'static [(usize, usize)];
+
+/// Bodies of every rule, with how many elements of each number of nodes they have, where that is no matter of chance.
+const BODIES: [(&str, Dimension, Sizes); 13] = [
+    ("lattice = { cells = [3, 2], side = 0.1 }", Dimension::Plane, &[(4, 6)]),
+    ("lattice = { cells = [3, 2], side = [0.1, 0.2], elements = 'triangles' }", Dimension::Plane, &[(3, 12)]),
+    ("lattice = { cells = [5, 4], side = 0.1, elements = 'mixed', irregular = 0.4 }", Dimension::Plane, &[]),
+    ("lattice = { cells = [2, 2, 2], side = 0.1, irregular = 0.3, seed = 4 }", Dimension::Space, &[(8, 8)]),
+    ("lattice = { cells = [2, 2, 3], side = 0.1, elements = 'tetrahedra' }", Dimension::Space, &[(4, 60)]),
+    ("lattice = { cells = [3, 3, 3], side = 0.1, elements = 'mixed', irregular = 0.2 }", Dimension::Space, &[]),
+    ("polygon = { sides = 6, radius = 0.3 }", Dimension::Plane, &[(6, 1)]),
+    ("polygon = { sides = 3, radius = 0.3 }", Dimension::Plane, &[(3, 1)]),
+    ("fan = { sides = 6, radius = 0.3 }", Dimension::Plane, &[(3, 6)]),
+    ("disc = { radius = 0.3, rings = 3, sectors = 12 }", Dimension::Plane, &[(3, 12), (4, 24)]),
+    ("disc = { radius = 0.3, rings = 1, sectors = 3 }", Dimension::Plane, &[(3, 3)]),
+    ("bars = { count = 4, length = 0.1, direction = [1, 0] }", Dimension::Plane, &[(2, 4)]),
+    ("bars = { count = 4, length = 0.1, direction = [0, 1, 1] }", Dimension::Space, &[(2, 4)]),
+];
+
+fn sizes(scene: &Scene) -> Vec<(usize, usize)> {
+    let mut sizes = BTreeMap::new();
+    scene.body.elements.iter().for_each(|nodes| *sizes.entry(nodes.len()).or_insert(0) += 1);
+    sizes.into_iter().collect()
+}
+
+/// The positions of all runs at the last frame.
+fn end(scene: &Scene) -> Vec<Vec<DVec3>> {
+    let all: Vec<_> = (0..scene.runs.len()).collect();
+    let frame = Sequence::new(scene, &all).frame(scene.last_frame());
+    frame.runs.into_iter().map(|run| run.snapshot.position.clone()).collect()
+}
+
+#[test]
+fn every_rule_makes_the_body_that_it_says() {
+    for (body, dimension, expected) in BODIES {
+        let scene = good(&world(body, dimension));
+        assert_eq!(scene.body.dimension, dimension, "{body}");
+        if !expected.is_empty() {
+            assert_eq!(sizes(&scene), expected, "{body}");
+        }
+        // Each stands on the level of the origin, and nothing hangs loose.
+        let lowest = scene.body.rest.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
+        assert!(lowest.abs() < 1e-15, "{body}: {lowest}");
+        let mut nodes: Vec<u32> = scene.body.elements.indices().to_vec();
+        nodes.sort_unstable();
+        nodes.dedup();
+        assert_eq!(nodes.len(), scene.body.len(), "{body}");
+    }
+}
+
+#[test]
+fn a_lattice_has_the_same_nodes_however_it_is_cut() {
+    let nodes =
+        |more: &str| good(&world(&format!("lattice = {{ cells = [4, 3, 2], side = 0.1{more} }}"), Dimension::Space));
+    let plain = nodes("").body.rest.clone();
+    assert_eq!(nodes(", elements = 'tetrahedra'").body.rest, plain);
+    assert_eq!(nodes(", elements = 'mixed', seed = 9").body.rest[..plain.len()], plain);
+}
+
+#[test]
+fn the_seed_chooses_the_body_and_one_is_the_default() {
+    let rest = |more: &str| {
+        let lattice =
+            format!("lattice = {{ cells = [4, 3, 2], side = 0.1, elements = 'mixed', irregular = 0.2{more} }}");
+        let scene = good(&world(&lattice, Dimension::Space));
+        (scene.body.rest.clone(), scene.body.elements.clone(), scene.digest)
+    };
+    let one = rest("");
+    assert_eq!(rest(", seed = 1"), one);
+    let two = rest(", seed = 2");
+    assert!(two.0 != one.0 && two.1 != one.1 && two.2 != one.2);
+}
+
+/// These very bits, on every machine: a stored result of an irregular body is worth nothing without them.
+#[test]
+fn random_bodies_are_the_same_everywhere() {
+    let scene = good(&world(
+        "lattice = { cells = [3, 3, 3], side = 0.1, elements = 'mixed', irregular = 0.2 }",
+        Dimension::Space,
+    ));
+    let bits = scene.body.rest.iter().flat_map(|node| node.to_array()).map(f64::to_bits);
+    let bits = bits.chain(scene.body.elements.indices().iter().map(|&index| index.into()));
+    let sum = bits.fold(0u64, |sum, bits| (sum ^ bits).wrapping_mul(0x0100_0000_01b3).rotate_left(23));
+    assert_eq!((scene.body.len(), scene.body.elements.len(), sum), RANDOM);
+}
+
+const RANDOM: (usize, usize, u64) = (78, 127, 7_934_938_136_864_051_000);
+
+/// The same body listed node by node, the nodes in another order and the elements backwards.
+fn listed(scene: &Scene) -> (String, impl Fn(usize) -> usize) {
+    let count = scene.body.len();
+    // A stride without a common factor makes a permutation.
+    let stride = [7, 11, 13].into_iter().find(|stride| !count.is_multiple_of(*stride)).expect("one of them");
+    let renamed = move |node: usize| (node * stride + 3) % count;
+    let point = |at: DVec3| match scene.body.dimension {
+        Dimension::Plane => format!("[{:?}, {:?}]", at.x, at.y),
+        Dimension::Space => format!("[{:?}, {:?}, {:?}]", at.x, at.y, at.z),
+    };
+    let mut nodes = vec![String::new(); count];
+    scene.body.rest.iter().enumerate().for_each(|(node, &at)| nodes[renamed(node)] = point(at));
+    let renamed_all = |element: &[u32]| element.iter().map(|&node| renamed(node as usize)).collect();
+    let mut elements: Vec<Vec<usize>> = scene.body.elements.iter().map(renamed_all).collect();
+    elements.reverse();
+    (format!("nodes = [{}]\nelements = {elements:?}", nodes.join(", ")), renamed)
+}
+
+#[test]
+fn a_body_made_by_a_rule_moves_like_the_same_body_listed_in_any_order() {
+    for (body, dimension, _) in BODIES {
+        let start = match dimension {
+            Dimension::Plane => "rotation = { angle = 0.1 }\nlowest = 0.02\nvelocity = [0.3, -2]",
+            Dimension::Space => {
+                "rotation = { axis = [1, 0, 2], angle = 0.1 }\nlowest = 0.02\nvelocity = [0.3, -2, 0.1]"
+            }
+        };
+        let made = good(&world(&format!("{body}\n{start}"), dimension));
+        let (text, renamed) = listed(&made);
+        let listed = good(&world(&format!("{text}\n{start}"), dimension));
+        assert_eq!(listed.summary().elements, made.summary().elements);
+        for (run, (one, other)) in end(&made).iter().zip(&end(&listed)).enumerate() {
+            let moved = one[0].distance(made.initial.position[0]);
+            assert!(moved > 0.01, "{body}: {moved}");
+            for (node, position) in one.iter().enumerate() {
+                let distance = position.distance(other[renamed(node)]);
+                assert!(distance <= 1e-12, "{body}, run {run}, node {node}: {distance:e}");
+            }
+        }
+    }
+}
+
+/// One element of each kind and shape, flat ones too, as nodes and elements.
+const ELEMENTS: [(&str, &str, usize); 11] = [
+    ("a bar in the plane", "[[0,0],[1,0]]", 2),
+    ("a concave pentagon", "[[0,0],[2,0],[2,2],[1,0.5],[0,2]]", 5),
+    (
+        "a dodecagon that is no regular one",
+        "[[0,0],[2,0],[3,1],[3,2],[2,3],[1.5,3.2],[1,3.2],[0,3],[-1,2],[-1.2,1.5],[-1.1,1],[-1,0.5]]",
+        12,
+    ),
+    ("a bar in space", "[[0,0,0],[1,0,1]]", 2),
+    ("cloth of one triangle", "[[0,0,0],[1,0,0],[0,0.2,1]]", 3),
+    ("a pyramid", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0.4,0.5,1]]", 5),
+    ("a cube without a corner", "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1]]", 7),
+    ("a flat heptagon in space", "[[0,0,0],[2,0,0],[3,1,1],[2.5,2,2],[1,3,3],[-1,2,2],[-1,1,1]]", 7),
+    ("a rod of seven nodes", "[[0,0,0],[1,1,0],[2,2,0],[3,3,0],[4,4,0],[5,5,0],[6,6,0]]", 7),
+    (
+        "a triangulated square antiprism with nodes inside",
+        "[[1,0,0],[0,1,0],[-1,0,0],[0,-1,0],[0.7,0.7,1],[-0.7,0.7,1],[-0.7,-0.7,1],[0.7,-0.7,1],[0,0,0.4],[0.1,0,0.6]]",
+        10,
+    ),
+    (
+        "a pentagonal prism",
+        "[[1,0,0],[0.31,0.95,0],[-0.81,0.59,0],[-0.81,-0.59,0],[0.31,-0.95,0],[1,0,1],[0.31,0.95,1],[-0.81,0.59,1],[-0.81,-0.59,1],[0.31,-0.95,1]]",
+        10,
+    ),
+];
+
+#[test]
+fn elements_of_every_shape_run_in_both_models() {
+    for (name, nodes, count) in ELEMENTS {
+        let all: Vec<_> = (0..count).collect();
+        let dimension = if nodes.matches(',').count() == 2 * count - 1 { Dimension::Plane } else { Dimension::Space };
+        let scene = world(&format!("nodes = {nodes}\nelements = [{all:?}]\nlowest = 0.1"), dimension);
+        let scene = good(&scene.replace("edges+face-diagonals", "all"));
+        assert_eq!(scene.body.dimension, dimension, "{name}");
+        for positions in end(&scene) {
+            assert!(positions.iter().all(|at| at.is_finite() && at.length() < 20.0), "{name}: {positions:?}");
+        }
+        assert!(!scene.summary().to_string().is_empty());
+    }
+}
+
+#[test]
+fn every_named_topology_holds_an_element_of_any_shape_together() {
+    let (_, prism, _) = ELEMENTS[10];
+    for (springs, count) in [
+        ("edges", 15),
+        ("edges+one-diagonal", 15 + 5 + 2 * 2),
+        ("edges+face-diagonals", 15 + 5 * 2 + 2 * 5),
+        ("edges+body-diagonals", 15 + 10),
+        ("all", 45),
+    ] {
+        let scene =
+            world(&format!("nodes = {prism}\nelements = [[0,1,2,3,4,5,6,7,8,9]]\nlowest = 0"), Dimension::Space);
+        let scene = good(&scene.replace("edges+face-diagonals", springs));
+        let words = scene.runs[1].model.describe(&scene.body);
+        assert!(words.starts_with(&format!("{count} springs,")), "{springs}: {words}");
+    }
+}
+
+#[test]
+fn faces_listed_by_hand_are_inside_where_two_elements_hold_them() {
+    let nodes = "[[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],[1,1,1],[0,0,2],[1,0,2],[0,1,2],[1,1,2]]";
+    let body = format!(
+        "nodes = {nodes}\nelements = [[0,1,2,3,4,5,6,7],[4,5,6,7,8,9,10,11]]\n\
+         faces = [[0,2,3,1],[4,5,7,6],[8,9,11,10],[0,1,5,4],[4,5,9,8]]"
+    );
+    let faces = good(&world(&body, Dimension::Space)).body.faces.clone();
+    assert_eq!(faces.inner, [Some(0), Some(0), Some(1), Some(0), Some(1)]);
+    assert_eq!(faces.outer, [None, Some(1), None, None, None]);
+}
+
+#[test]
+fn a_summary_counts_the_elements_of_each_kind() {
+    let body = |body, dimension| good(&world(body, dimension)).summary().to_string().lines().nth(1).unwrap().to_owned();
+    assert_eq!(
+        body(BODIES[9].0, Dimension::Plane),
+        "  body      37 nodes, 36 elements (12 triangles and 24 quadrilaterals), 0.5796 × 0.5796 m, 37 kg"
+    );
+    let mixed = body("lattice = { cells = [4, 4, 4], side = 0.1, elements = 'mixed' }", Dimension::Space);
+    assert!(
+        mixed.contains(" elements (") && mixed.contains(" tetrahedra, ") && mixed.contains(" pyramids, "),
+        "{mixed}"
+    );
+    assert!(mixed.contains(" wedges and ") && mixed.contains(" cubes), 0.4 × 0.4 × 0.4 m"), "{mixed}");
+    assert!(body(BODIES[0].0, Dimension::Plane).contains(" 12 nodes, 6 squares, "));
+}
+
+#[test]
+fn kinds_are_those_of_the_number_of_nodes() {
+    let scene = good(&world("bars = { count = 2, length = 0.1, direction = [0, 0, 2] }", Dimension::Space));
+    assert_eq!(scene.body.kinds, [ElementKind::Segment; 2]);
+    assert!((scene.body.rest[2] - DVec3::Z * 0.2).length() < 1e-16);
+}
+
+#[test]
+fn bodies_beyond_the_limits_are_refused_before_they_are_made() {
+    for (body, dimension, words) in [
+        ("polygon = { sides = 4000000000, radius = 1 }", Dimension::Plane, "4 000 000 000 nodes, 1 element and"),
+        ("fan = { sides = 40000000, radius = 1 }", Dimension::Plane, "40 000 001 nodes, 40 000 000 elements and"),
+        ("disc = { rings = 4000000000, sectors = 4000000000, radius = 1 }", Dimension::Plane, "32-bit indices"),
+        ("bars = { count = 40000000, length = 1, direction = [1, 0] }", Dimension::Plane, "use fewer bars"),
+        ("lattice = { cells = [300, 300, 300], side = 1, elements = 'mixed' }", Dimension::Space, "use fewer cells"),
+        (
+            "lattice = { cells = [300, 300, 300], side = 1, elements = 'tetrahedra' }",
+            Dimension::Space,
+            "135 000 000 elements",
+        ),
+        (
+            "lattice = { cells = [9000, 9000], side = 1, elements = 'triangles' }",
+            Dimension::Plane,
+            "162 000 000 elements",
+        ),
+    ] {
+        let error = bad(&world(body, dimension).replace("'edges+face-diagonals'", "'edges'"));
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        assert!(error.to_string().contains(words), "{error}");
+        assert!(mistake.line == 11, "{error}");
+    }
+}

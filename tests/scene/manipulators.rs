@@ -1,0 +1,228 @@
+//! Mistakes in obstacles, paths and grips, and what good ones mean.
+
+use super::{bad, good};
+use glam::DVec3;
+
+/// Two cubes' worth of nodes with their middle over the origin, 0.1 m above it.
+const WORLD: &str = "\
+time = { duration = 1 }
+run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
+body = { lattice = { cells = [2, 1, 1], side = 0.1 }, offset = [0, 0.1, 0] }
+";
+
+/// The same in the plane.
+const PLANE: &str = "\
+time = { duration = 1 }
+run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
+body = { lattice = { cells = [2, 1], side = 0.1 }, offset = [0, 0.1] }
+";
+
+/// Adds lines to a world and expects exactly the mistakes listed: line of what was added, column, words.
+#[track_caller]
+fn case(world: &str, added: &str, expected: &[(usize, usize, &str)]) {
+    let error = bad(&format!("{world}{added}"));
+    let found = error.mistakes();
+    assert_eq!(found.len(), expected.len(), "{added}\n{error}");
+    for (mistake, &(line, column, words)) in found.iter().zip(expected) {
+        assert_eq!((mistake.line - 3, mistake.column), (line, column), "{added}\n{error}");
+        let text = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        assert!(text.contains(words), "{words:?} is not in\n{error}");
+    }
+}
+
+fn sphere(more: &str) -> String {
+    format!("[[obstacle]]\nkind = 'sphere'\ncentre = [1, 1, 1]\nradius = 0.1\n{more}")
+}
+
+#[test]
+fn keys_out_of_order() {
+    let path = |keys: &str| sphere(&format!("path.keys = [{keys}]"));
+    case(
+        WORLD,
+        &path("{ time = 1 }, { time = 0.5, shift = [0, 0, 1] }"),
+        &[(
+            5,
+            37,
+            "`obstacle[0].path.keys[1]` is at 0.5 s, not later than the key before it at 1 s list the keys in rising",
+        )],
+    );
+    case(WORLD, &path("{ time = 1 }, { time = 1 }"), &[(5, 37, "not later than the key before it")]);
+    case(WORLD, &path("{ time = -1 }"), &[(5, 23, "is -1; expected a number of at least 0")]);
+    case(WORLD, &path(""), &[(5, 13, "`obstacle[0].path.keys` is empty")]);
+    case(WORLD, &path("{ shift = [0, 0, 1] }"), &[(5, 14, "`obstacle[0].path.keys[0]` has no `time`")]);
+    case(WORLD, &path("{ time = 0, shift = [0, 1] }"), &[(5, 34, "has 2 coordinates; expected 3")]);
+    case(WORLD, &path("{ time = 0, rotation = { angle = 1 } }"), &[(5, 37, "has no `axis`")]);
+    case(
+        WORLD,
+        &path("{ time = 0, rotation = { axis = [0, 0, 0], angle = 1 } }"),
+        &[(5, 46, "is zero, so it has no direction")],
+    );
+}
+
+#[test]
+fn paths_that_would_jump_or_go_nowhere() {
+    case(
+        WORLD,
+        &sphere("path = { repeat = true, keys = [{ time = 0 }, { time = 1, shift = [0, 0, 1] }] }"),
+        &[(5, 47, "repeats, but does not end where it begins: it would jump")],
+    );
+    case(WORLD, &sphere("path = { repeat = true, keys = [{ time = 0 }] }"), &[(5, 8, "repeats, but has a single key")]);
+    case(WORLD, &sphere("swing = { period = 1 }"), &[(5, 9, "has neither `shift` nor `rotation`")]);
+    case(
+        WORLD,
+        &sphere("swing = { period = 1, shift = [1, 0, 0] }\npath.keys = [{ time = 0 }]"),
+        &[(6, 1, "has both `path` and `swing`, which exclude each other keep one")],
+    );
+    // A whole turn ends where it begins.
+    good(&format!(
+        "{WORLD}{}",
+        sphere(
+            "path = { repeat = true, keys = [{ time = 0 }, { time = 1, rotation = { axis = [0, 1, 0], angle = 6.283185307 } }] }"
+        )
+    ));
+}
+
+#[test]
+fn obstacles_without_extent_or_direction() {
+    case(
+        WORLD,
+        "[[obstacle]]\nkind = 'sphere'\ncentre = [1, 1, 1]\nradius = 0",
+        &[(4, 10, "expected a number greater than 0")],
+    );
+    case(
+        WORLD,
+        "[[obstacle]]\nkind = 'box'\ncentre = [1, 1, 1]\nsize = [1, 0, 1]",
+        &[(4, 12, "`obstacle[0].size[1]` is 0")],
+    );
+    case(
+        WORLD,
+        "[[obstacle]]\nkind = 'plate'\npoint = [0, 1, 0]\nnormal = [0, 0, 0]",
+        &[(4, 10, "is zero, so it has no direction")],
+    );
+    case(WORLD, "[[obstacle]]\nkind = 'plate'\npoint = [0, 1, 0]", &[(1, 1, "`obstacle[0]` has no `normal`")]);
+    case(WORLD, "[[obstacle]]\nkind = 'ball'", &[(2, 8, "\"sphere\"")]);
+    case(
+        WORLD,
+        "[[obstacle]]\nkind = 'capsule'\nfrom = [1, 1, 1]\nto = [1, 1]\nradius = 1e-3",
+        &[(4, 6, "has 2 coordinates")],
+    );
+    case(
+        PLANE,
+        "[[obstacle]]\nkind = 'box'\ncentre = [1, 1]\nsize = [1, 1]\nrotation = { axis = [0, 0, 1], angle = 1 }",
+        &[(5, 14, "has an `axis`, but the body is in the plane")],
+    );
+}
+
+#[test]
+fn obstacles_that_start_inside_the_body() {
+    let touching = "[[obstacle]]\nkind = 'sphere'\ncentre = [0, 0.1, 0]\nradius = 0.08";
+    case(
+        WORLD,
+        touching,
+        &[(1, 1, "the body starts inside this sphere: node 1 lies 3.000e-2 m below its surface move one")],
+    );
+    let hidden = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.05, 0.15, 0]\nradius = 0.01";
+    case(
+        WORLD,
+        hidden,
+        &[(1, 1, "this sphere starts inside the body, at [0.05, 0.15, 0]: no node would ever meet it")],
+    );
+    let hidden = "[[obstacle]]\nkind = 'box'\ncentre = [0.05, 0.15]\nsize = [0.01, 0.01]";
+    case(PLANE, hidden, &[(1, 1, "this box starts inside the body, at [0.05, 0.15]")]);
+    let floor = "[[obstacle]]\nkind = 'floor'\nheight = 0.15";
+    case(
+        WORLD,
+        floor,
+        &[(1, 1, "the body starts inside this floor: node 0 lies 5.000e-2 m below its surface move the floor")],
+    );
+    // A path that starts elsewhere counts, and so does a floor that is just touched.
+    let away = "path.keys = [{ time = 0, shift = [0, 9, 0] }]";
+    good(&format!("{WORLD}{touching}\n{away}"));
+    good(&format!("{WORLD}[[obstacle]]\nkind = 'floor'\nheight = 0.1"));
+}
+
+#[test]
+fn nodes_in_two_hands_at_once() {
+    let grab = "path.keys = [{ time = 0.2 }, { time = 0.5, shift = [0, 1, 0] }]\n";
+    let both = format!("[[hold]]\nnodes = [1, 2]\n[[grab]]\nnodes = [2, 3]\n{grab}");
+    case(
+        WORLD,
+        &both,
+        &[(
+            4,
+            9,
+            "node 2 is held by `hold[0]` and grabbed by `grab[0]` at once, from 0.2 s until 0.5 s leave each node",
+        )],
+    );
+    let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";
+    case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s for good")]);
+    // One after the other is well.
+    let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
+    assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
+}
+
+#[test]
+fn nodes_that_are_none() {
+    case(WORLD, "[[hold]]\nnodes = [1, 12]", &[(2, 13, "there is no node 12; the body has nodes 0 to 11")]);
+    case(WORLD, "[[hold]]\nnodes = [1, 1]", &[(2, 13, "node 1 stands twice in `hold[0].nodes`")]);
+    case(WORLD, "[[hold]]\nnodes = []", &[(2, 9, "is empty")]);
+    case(WORLD, "[[hold]]\nnodes = 'all'", &[(2, 9, "is the string \"all\"; expected an array or a table")]);
+    case(
+        WORLD,
+        "[[hold]]\nnodes = { of = [9, 9, 9], within = 1 }",
+        &[(2, 9, "is a region without nodes at the start")],
+    );
+    case(WORLD, "[[hold]]\nnodes = { of = [9, 9, 9] }", &[(2, 9, "has `of` but no `within`")]);
+    case(
+        WORLD,
+        "[[hold]]\nnodes = [1]\nfrom = 2\nuntil = 1",
+        &[(4, 9, "ends at 1 s, not later than it begins at 2 s")],
+    );
+    case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 1 }]", &[(3, 1, "has a single key")]);
+    case(
+        WORLD,
+        "[[grab]]\nnodes = [1]\npath = { repeat = true, keys = [{ time = 1 }, { time = 2 }] }",
+        &[(3, 10, "repeats, so the nodes would never be let go")],
+    );
+    case(WORLD, "[[grab]]\nnodes = [1]", &[(1, 1, "`grab[0]` has no `path`")]);
+}
+
+#[test]
+fn regions_hold_the_nodes_that_start_in_them() {
+    let scene = good(&format!(
+        "{WORLD}[[hold]]\nnodes = {{ of = [0.1, 0.2, 0.05], within = 0.11 }}\n\
+         [[hold]]\nnodes = {{ low = [-0.1, 0.1, -0.05], high = [-0.1, 0.1, 0.05] }}"
+    ));
+    assert_eq!(scene.grips[0].nodes, [5, 8, 10, 11]);
+    assert_eq!(scene.grips[1].nodes, [0, 6]);
+}
+
+#[test]
+fn a_summary_tells_of_obstacles_and_grips() {
+    let scene = good(&format!(
+        "{WORLD}{}[[obstacle]]\nkind = 'floor'\n[[hold]]\nnodes = [0]\n[[grab]]\nnodes = [3, 4]\n\
+         path.keys = [{{ time = 0.5 }}, {{ time = 0.7, shift = [0, 1, 0] }}]",
+        sphere("swing = { period = 2, shift = [0.1, 0, 0] }\n")
+    ));
+    let text = scene.summary().to_string();
+    for line in [
+        "obstacle  sphere at (1, 1, 1) m, radius 0.1 m, e = 0, μ = 0, swinging once in 2 s",
+        "obstacle  floor at 0 m along (0, 1, 0), e = 0, μ = 0",
+        "grip      node 0 held from 0 s for good",
+        "grip      2 nodes dragged from 0.5 s until 0.7 s",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+}
+
+#[test]
+fn a_spin_turns_about_the_middle() {
+    let spin = |world: &str, spin: &str| good(&world.replace("offset", &format!("spin = {spin}, offset")));
+    let scene = spin(WORLD, "{ axis = [0, 2, 0], rate = 3 }");
+    for (position, velocity) in scene.initial.position.iter().zip(&scene.initial.velocity) {
+        assert!((*velocity - DVec3::new(3.0 * position.z, 0.0, -3.0 * position.x)).length() < 1e-15);
+    }
+    let scene = spin(PLANE, "{ rate = -2 }");
+    assert!((scene.initial.velocity[0] - DVec3::new(-0.1, 0.2, 0.0)).length() < 1e-15);
+    case(&WORLD.replace("offset", "spin = { rate = 1 }, offset"), "", &[(0, 62, "`body.spin` has no `axis`")]);
+}
