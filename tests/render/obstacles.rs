@@ -124,7 +124,8 @@ fn solids_are_closed_look_outward_and_are_where_their_paths_have_brought_them() 
 #[test]
 fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
     for (path, gone, arrows) in [("", 0.0, 0), (MOVING, 0.4, 1)] {
-        let scene = scene(&[WORLD, CUBE, FLOOR, PLATE, path]);
+        let view = "[view]\ncamera = { target = [0, 0.6, 0], distance = 8 }\n";
+        let scene = scene(&[WORLD, CUBE, FLOOR, PLATE, path, view]);
         let picture = picture(&scene, 25);
         let panel = &picture.panels[0];
         assert!(panel.obstacles.solids.is_empty());
