@@ -311,7 +311,7 @@ mod tests {
                 for bottomless in [false, true] {
                     let camera = Camera { follow, ..camera.clone() };
                     let middles = Middles { low: DVec3::splat(odd), high: DVec3::splat(odd), start: DVec3::ZERO };
-                    let framing = super::framing(&camera, &middles, bottomless);
+                    let framing = framing(&camera, &middles, bottomless);
                     assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
                 }
             }

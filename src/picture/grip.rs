@@ -13,6 +13,8 @@ use glam::DVec3;
 /// in the plane, where nodes are discs.
 const PIN: [f64; 2] = [6.5, 9.0];
 const HAND: [f64; 2] = [9.5, 12.0];
+/// Of more nodes than this that are dragged together, the arrow says enough: they are marked as if they were held.
+const FEW: usize = 4;
 /// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
 const SHARE: f64 = 0.45;
 const NARROWEST: f64 = 3.0;
@@ -46,10 +48,12 @@ impl Hands<'_> {
         let visible = self.visible();
         for grip in held {
             let nodes = || grip.nodes.iter().filter(|&&node| (node as usize) < self.position.len());
+            let dragged = grip.motion != Motion::Still;
             for &node in nodes() {
-                self.mark(self.position[node as usize], visible[node as usize], grip.motion != Motion::Still, marks);
+                let ringed = dragged && grip.nodes.len() <= FEW;
+                self.mark(self.position[node as usize], visible[node as usize], ringed, marks);
             }
-            if grip.motion != Motion::Still {
+            if dragged {
                 let points: Vec<_> = nodes().map(|&node| self.position[node as usize]).collect();
                 let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
                 let gap = HAND[usize::from(self.arrows.lens.orthographic)] + 3.0;
@@ -84,8 +88,8 @@ impl Hands<'_> {
         visible
     }
 
-    fn mark(&self, point: DVec3, visible: bool, dragged: bool, marks: &mut Vec<Mark>) {
-        let sizes = if dragged { HAND } else { PIN };
+    fn mark(&self, point: DVec3, visible: bool, ringed: bool, marks: &mut Vec<Mark>) {
+        let sizes = if ringed { HAND } else { PIN };
         let flat = self.arrows.lens.orthographic;
         let radius = (sizes[usize::from(flat)] * self.scale.line()).min(SHARE * self.element);
         let Some((pixel, _)) = self.arrows.lens.project(point).filter(|_| radius >= NARROWEST / 2.0) else { return };
@@ -99,7 +103,7 @@ impl Hands<'_> {
             along: Mark::UPRIGHT,
             colour: self.palette.pointer,
             second: self.palette.background,
-            shape: match (dragged, visible) {
+            shape: match (ringed, visible) {
                 (false, true) => MarkShape::Pin,
                 (false, false) => MarkShape::HiddenPin,
                 (true, true) => MarkShape::Hand,

@@ -170,7 +170,7 @@ impl Staging<'_> {
                     let centroid = (a + b + c) / 3.0;
                     let size = [a, b, c].iter().map(|at| at.distance(centroid)).fold(0.0, f64::max);
                     if middle.distance(centroid) < reach + size && inside(centroid) > -size {
-                        self.pierce([a, b, c], &inside, lines);
+                        self.pierce([a, b, c], inside, lines);
                     }
                 }
             }
@@ -306,9 +306,9 @@ impl Staging<'_> {
         }
         // Rings ever closer together towards the body.
         let axis = (self.origin - centre).try_normalize().unwrap_or(DVec3::Y);
-        let growth = 1.2 * (1.0 + radius / self.extent).ln();
+        let growth = 1.2 * libm::log(1.0 + radius / self.extent);
         let profile = (0..=rings).rev().map(|ring| {
-            let share = (growth * ring as f64 / rings as f64).exp_m1() / growth.exp_m1();
+            let share = libm::expm1(growth * ring as f64 / rings as f64) / libm::expm1(growth);
             (FRAC_PI_2 - PI * share, 0.0)
         });
         lathe(centre, axis, radius, profile, segments)

@@ -1,0 +1,340 @@
+//! Obstacles and grips in the composed picture: no device needed, but for one test.
+
+use super::{fig4b, gpu};
+use glam::{DVec3, Vec3};
+use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Panel, Picture, compose};
+use localshape::render::Renderer;
+use localshape::scene::{Follow, Limits, Scene};
+use localshape::sequence::Sequence;
+use localshape::sim::snapshot::{Divergence, Frame, Status};
+use std::collections::HashMap;
+
+const WORLD: &str = "
+    time = { duration = 1, step = 'T/50', frames_per_second = 50 }
+    run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e3 } }]
+";
+const CUBE: &str = "body = { lattice = { cells = [1, 1, 1], side = 0.2 }, lowest = 0.1 }\n";
+const FLOOR: &str = "[[obstacle]]\nkind = 'floor'\n";
+const TRIANGLE: &str = "[body]\nnodes = [[0, 1], [1, 1], [0.5, 1.8]]\nelements = [[0, 1, 2]]\n";
+const SPHERE: &str = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.4, 0.5, 0]\nradius = 0.1\n";
+const MOVING: &str = "path = { keys = [{ time = 0 }, { time = 1, shift = [0, 0.4, 0] }], ease = 'linear' }\n";
+const PLATE: &str = "[[obstacle]]\nkind = 'plate'\npoint = [0, 0.8, 0]\nnormal = [0, -1, 0]\n";
+
+fn scene(parts: &[&str]) -> Scene {
+    let text = parts.concat();
+    Scene::parse(&text, "obstacles.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn frame(scene: &Scene, index: u64) -> Frame {
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    Sequence::new(scene, &runs).frame(index)
+}
+
+fn picture(scene: &Scene, index: u64) -> Picture {
+    compose(scene, &frame(scene, index))
+}
+
+fn at(mesh: &Mesh, index: u32) -> Vec3 {
+    Vec3::from(mesh.vertices[index as usize].position)
+}
+
+fn volume(mesh: &Mesh) -> f32 {
+    mesh.triangles.iter().map(|three| three.map(|index| at(mesh, index))).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}
+
+fn is_closed(mesh: &Mesh) -> bool {
+    let mut balance: HashMap<[[i32; 3]; 2], i32> = HashMap::new();
+    let place = |index: u32| at(mesh, index).to_array().map(|x| (x * 1e3).round() as i32);
+    for triangle in &mesh.triangles {
+        for side in 0..3 {
+            let [a, b] = [place(triangle[side]), place(triangle[(side + 1) % 3])];
+            let (key, sign) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+            *balance.entry(key).or_default() += sign;
+        }
+    }
+    balance.values().all(|&sum| sum == 0)
+}
+
+fn middle(points: impl ExactSizeIterator<Item = [f32; 3]>) -> Vec3 {
+    let count = points.len() as f32;
+    points.map(Vec3::from).sum::<Vec3>() / count
+}
+
+/// A point of the world in sides from the panel's origin, which a camera that does not follow looks at.
+fn seen(scene: &Scene, point: [f64; 3]) -> Vec3 {
+    ((DVec3::from(point) - scene.view.camera.target) / scene.view.side).as_vec3()
+}
+
+fn numbers(panel: &Panel) -> Vec<f32> {
+    let mut all = Vec::new();
+    for solid in &panel.obstacles.solids {
+        all.extend(solid.mesh.vertices.iter().flat_map(|vertex| [vertex.position, vertex.normal].concat()));
+    }
+    for slab in &panel.obstacles.slabs {
+        for corner in slab.panes.iter().flat_map(|pane| &pane.corners) {
+            all.extend(corner.position.iter().chain(&corner.grid).chain(&corner.from_middle));
+        }
+        all.extend(slab.edges.iter().flatten().flatten());
+    }
+    all.extend(panel.lines.iter().flat_map(|line| [line.from, line.to].concat()));
+    all
+}
+
+fn marks(picture: &Picture, shapes: &[MarkShape]) -> Vec<Mark> {
+    picture.marks.iter().filter(|mark| shapes.contains(&mark.shape)).copied().collect()
+}
+
+#[test]
+fn solids_are_closed_look_outward_and_are_where_their_paths_have_brought_them() {
+    let ball = std::f64::consts::PI * 4.0 / 3.0 * 1e-3;
+    let rod = ball + std::f64::consts::PI * 0.01 * 0.3;
+    for (obstacle, centre, exact) in [
+        ("'sphere'\ncentre = [0.4, 0.5, 0]\nradius = 0.1\n", [0.4, 0.5, 0.0], ball),
+        ("'capsule'\nfrom = [0.4, 0.2, 0]\nto = [0.4, 0.5, 0]\nradius = 0.1\n", [0.4, 0.35, 0.0], rod),
+        ("'capsule'\nfrom = [0.4, 0.2, 0.3]\nto = [0.4, 0.2, 0.6]\nradius = 0.1\n", [0.4, 0.2, 0.45], rod),
+        (
+            "'box'\ncentre = [0.4, 0.3, 0]\nsize = [0.1, 0.2, 0.3]\nrotation = { axis = [1, 2, 3], angle = 1 }\n",
+            [0.4, 0.3, 0.0],
+            0.006,
+        ),
+    ] {
+        for (path, gone) in [("", 0.0), (MOVING, 0.2)] {
+            let scene = scene(&[WORLD, CUBE, FLOOR, "[[obstacle]]\nkind = ", obstacle, path]);
+            let picture = picture(&scene, 25);
+            let panel = &picture.panels[0];
+            let [solid] = &panel.obstacles.solids[..] else { panic!("{obstacle}") };
+            let mesh = &solid.mesh;
+            assert!(is_closed(mesh), "{obstacle}");
+            let found = f64::from(volume(mesh)) * scene.view.side.powi(3);
+            assert!((0.97..1.001).contains(&(found / exact)), "{obstacle} {found} {exact}");
+            let centre = seen(&scene, [centre[0], centre[1] + gone, centre[2]]);
+            // Segments are spread evenly.
+            let corners = middle(mesh.vertices.iter().map(|vertex| vertex.position));
+            assert!(corners.distance(centre) < 0.02, "{obstacle} {corners} {centre}");
+            for vertex in &mesh.vertices {
+                assert!(Vec3::from(vertex.normal).dot(Vec3::from(vertex.position) - centre) > 0.0, "{obstacle}");
+            }
+            assert!(panel.lines.iter().any(|line| line.kind == LineKind::ObstacleContour), "{obstacle}");
+            let ([x, y, w, h], [left, top, width, height]) = (panel.region, panel.viewport);
+            assert!(left <= x && top <= y && x + w <= left + width && y + h <= top + height);
+        }
+    }
+}
+
+#[test]
+fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
+    for (path, gone, arrows) in [("", 0.0, 0), (MOVING, 0.4, 1)] {
+        let view = "[view]\ncamera = { target = [0, 0.6, 0], distance = 8 }\n";
+        let scene = scene(&[WORLD, CUBE, FLOOR, PLATE, path, view]);
+        let picture = picture(&scene, 25);
+        let panel = &picture.panels[0];
+        assert!(panel.obstacles.solids.is_empty());
+        let [slab] = &panel.obstacles.slabs[..] else { panic!("one slab") };
+        assert!(slab.panes.iter().all(|pane| pane.alpha < 1.0 && !pane.grid) && slab.panes.len() == 3);
+        assert_eq!(slab.edges.len(), 9, "those that are seen");
+        let gone = gone * frame(&scene, 25).time;
+        let surface = seen(&scene, [0.0, 0.8 + gone, 0.0]).y;
+        let heights = slab.panes.iter().flat_map(|pane| &pane.corners).map(|corner| corner.position[1] - surface);
+        let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+        assert!(low.abs() < 1e-4 && (0.01..0.2).contains(&high), "{low} {high}");
+        let found = marks(&picture, &[MarkShape::Arrow]);
+        assert_eq!(found.len(), arrows);
+        assert!(found.iter().all(|arrow| arrow.along[1] < -0.99), "upwards");
+    }
+}
+
+#[test]
+fn walls_have_a_grid_and_end_at_the_ground() {
+    let wall = "[[obstacle]]\nkind = 'floor'\nnormal = [1, 0.2, 0]\nheight = -0.4\n";
+    let scene = scene(&[WORLD, CUBE, FLOOR, wall, FLOOR]);
+    let picture = picture(&scene, 0);
+    let [slab] = &picture.panels[0].obstacles.slabs[..] else { panic!("the second ground is the first again") };
+    assert!(slab.panes.iter().all(|pane| pane.grid && pane.alpha < 1.0));
+    let ground = seen(&scene, [0.0; 3]).y;
+    let corners: Vec<_> = slab.panes.iter().flat_map(|pane| &pane.corners).collect();
+    assert!(corners.iter().all(|corner| corner.position[1] > ground - 1e-4));
+    assert!(corners.iter().any(|corner| corner.position[1] < ground + 1e-4));
+}
+
+#[test]
+fn slabs_are_ordered_from_the_farthest_to_the_nearest() {
+    let plates: Vec<_> = [-0.3, -0.5, -0.9, -0.2]
+        .map(|z| format!("[[obstacle]]\nkind = 'plate'\npoint = [3, 0, {z}]\nnormal = [0, 0, 1]\n"))
+        .to_vec();
+    let scene = scene(&[WORLD, CUBE, &plates.concat()[..], "[view]\ncamera = { azimuth = 0.0 }\n"]);
+    let picture = picture(&scene, 0);
+    let depth = |slab: &localshape::picture::Slab| slab.panes[0].corners[0].position[2];
+    let depths: Vec<_> = picture.panels[0].obstacles.slabs.iter().map(depth).collect();
+    assert!(depths.len() == 4 && depths.windows(2).all(|two| two[0] < two[1]), "{depths:?}");
+}
+
+#[test]
+fn obstacles_throw_shadows_with_the_body() {
+    let [without, with] = [&[WORLD, CUBE, FLOOR][..], &[WORLD, CUBE, FLOOR, SPHERE][..]].map(|parts| {
+        let scene = scene(parts);
+        let picture = picture(&scene, 0);
+        let floor = picture.panels[0].floor.clone().expect("a floor");
+        floor.shades[1].cells.iter().map(|&cell| u64::from(cell)).sum::<u64>()
+    });
+    assert!(with > without + 1000, "{without} {with}");
+}
+
+#[test]
+fn floors_that_move_take_their_grid_along() {
+    let moving = "path = { keys = [{ time = 0 }, { time = 1, shift = [0.07, -0.4, 0] }], ease = 'linear' }\n";
+    let scene = scene(&[WORLD, CUBE, FLOOR, moving]);
+    let [start, later] = [0, 25].map(|index| picture(&scene, index).panels[0].floor.clone().expect("a floor"));
+    let (side, time) = (scene.view.side as f32, frame(&scene, 25).time as f32);
+    assert!((later.height - start.height + 0.4 * time / side).abs() < 1e-4);
+    let off = (later.grid[0] - start.grid[0] + 0.07 * time / side).rem_euclid(1.0);
+    assert!(off.min(1.0 - off) < 1e-4, "{off}");
+}
+
+#[test]
+fn what_blew_up_stays_among_finite_numbers() {
+    let all = [
+        WORLD,
+        CUBE,
+        FLOOR,
+        PLATE,
+        MOVING,
+        SPHERE,
+        MOVING,
+        "[[obstacle]]\nkind = 'sphere'\ncentre = [0, -1e9, 0]\nradius = 1e9\n",
+        "[[obstacle]]\nkind = 'box'\ncentre = [1e20, 0, 0]\nsize = [1, 1e19, 1]\n",
+        "[[obstacle]]\nkind = 'capsule'\nfrom = [2, 2, 2]\nto = [2, 2, 2]\nradius = 1e-12\n",
+        "[[obstacle]]\nkind = 'floor'\nnormal = [-1, 0, 0]\nheight = -1e12\n",
+        "swing = { period = 1e-9, rotation = { axis = [0, 1, 0], angle = 1e9 } }\n",
+    ];
+    let scene = scene(&all);
+    for far in [1.0, 1e6, 1e200, f64::NAN, f64::INFINITY] {
+        let mut frame = frame(&scene, 3);
+        let snapshot = &mut frame.runs[0].snapshot;
+        snapshot.position[2] *= far;
+        if far != 1.0 {
+            snapshot.status = Status::Diverged(Divergence { time: 0.01, step: 3, element: None });
+        }
+        let picture = compose(&scene, &frame);
+        assert!(numbers(&picture.panels[0]).iter().all(|number| number.is_finite()), "{far}");
+        if let Some(gpu) = gpu("what_blew_up_stays_among_finite_numbers") {
+            let mut renderer = Renderer::new(gpu, picture.size, 1).expect("a size that can be drawn");
+            renderer.draw(&picture).expect("the device works");
+        }
+    }
+}
+
+#[test]
+fn a_ball_as_large_as_a_planet_is_smooth_below_the_body() {
+    let scene = scene(&[WORLD, CUBE, "[[obstacle]]\nkind = 'sphere'\ncentre = [0, -1e4, 0]\nradius = 1e4\n"]);
+    let picture = picture(&scene, 0);
+    let mesh = &picture.panels[0].obstacles.solids[0].mesh;
+    let top = seen(&scene, [0.0; 3]).y;
+    let near = mesh.triangles.iter().map(|three| three.map(|index| at(mesh, index)));
+    let near: Vec<_> = near.filter(|three| three.iter().all(|at| at.x.abs() + at.z.abs() < 8.0)).collect();
+    assert!(near.len() > 100, "{}", near.len());
+    assert!(near.iter().flatten().all(|at| (at.y - top).abs() < 0.02), "flat there");
+}
+
+#[test]
+fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
+    let obstacles = "
+        [[obstacle]]\nkind = 'floor'\n
+        [[obstacle]]\nkind = 'sphere'\ncentre = [2, 0]\nradius = 0.5\n
+        [[obstacle]]\nkind = 'box'\ncentre = [-1, 0.5]\nsize = [0.4, 0.2]\n
+        [[obstacle]]\nkind = 'capsule'\nfrom = [2, 2]\nto = [3, 2]\nradius = 0.2\n
+        [[obstacle]]\nkind = 'plate'\npoint = [0, 2.8]\nnormal = [0, -1]\n
+        path = { keys = [{ time = 0 }, { time = 1, shift = [0, -0.5] }] }\n";
+    let scene = scene(&[WORLD, TRIANGLE, obstacles]);
+    let picture = picture(&scene, 25);
+    let panel = &picture.panels[0];
+    assert!(panel.obstacles.slabs.is_empty());
+    // A fill and an outline each.
+    assert_eq!(panel.obstacles.solids.len(), 6);
+    let area = |mesh: &Mesh| -> f64 {
+        let areas = mesh.triangles.iter().map(|three| three.map(|index| at(mesh, index)));
+        let areas = areas.map(|[a, b, c]| f64::from((b - a).cross(c - a).z) / 2.0);
+        areas.sum::<f64>() * scene.view.side.powi(2)
+    };
+    let pi = std::f64::consts::PI;
+    for (pair, exact) in panel.obstacles.solids.chunks(2).zip([pi * 0.125, 0.08, 0.4 + pi * 0.04]) {
+        let [fill, outline] = [0, 1].map(|at| area(&pair[at].mesh));
+        assert!((outline / exact - 1.0).abs() < 0.01, "{outline} {exact}");
+        assert!(fill < outline && fill > 0.7 * outline, "{fill} {outline}");
+        assert!(pair.iter().flat_map(|solid| &solid.mesh.vertices).all(|vertex| vertex.position[2] == 0.0));
+    }
+    // The plate has a line and a soft fill, as the floor has, and an arrow.
+    for (shape, count) in [(MarkShape::Fading, 2), (MarkShape::Smooth, 1)] {
+        assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), count, "{shape:?}");
+    }
+    assert_eq!(marks(&picture, &[MarkShape::Arrow]).len(), 1);
+}
+
+#[test]
+fn nodes_are_marked_only_while_they_are_held() {
+    let hold = "[[hold]]\nnodes = [0, 7]\nfrom = 0.2\nuntil = 0.4\n";
+    let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0.4 }, { time = 0.8, shift = [0.3, 0, 0] }] }\n";
+    let scene = scene(&[WORLD, CUBE, FLOOR, hold, grab]);
+    let (pins, hands) = ([MarkShape::Pin, MarkShape::HiddenPin], [MarkShape::Hand, MarkShape::HiddenHand]);
+    for (index, held, dragged, arrows) in [(0, 0, 0, 0), (15, 2, 0, 0), (30, 0, 1, 1), (45, 0, 0, 0)] {
+        let picture = picture(&scene, index);
+        assert_eq!(marks(&picture, &pins).len(), held, "{index}");
+        assert_eq!(marks(&picture, &hands).len(), dragged, "{index}");
+        let arrows_found = marks(&picture, &[MarkShape::Arrow]);
+        assert_eq!(arrows_found.len(), arrows, "{index}");
+        assert!(arrows_found.iter().all(|arrow| arrow.along[0] > 0.9), "to the right");
+    }
+    // Node 0 lies behind, seen from above and from the right; node 7 in front.
+    let picture = picture(&scene, 15);
+    assert_eq!(marks(&picture, &[MarkShape::HiddenPin]).len() + marks(&picture, &[MarkShape::Pin]).len(), 2);
+}
+
+#[test]
+fn scenes_without_obstacles_pay_nothing() {
+    let (scene, frame) = fig4b(4);
+    let picture = compose(&scene, &frame);
+    assert!(picture.panels.iter().all(|panel| panel.obstacles.is_empty()));
+    assert!(picture.panels.iter().flat_map(|panel| &panel.lines).all(|line| (line.kind as u32) < 4));
+}
+
+#[test]
+fn the_camera_shows_what_comes_near_and_nothing_else() {
+    let camera = |parts: &[&str]| scene(&[&[WORLD, CUBE, FLOOR], parts].concat()).view.camera;
+    let alone = camera(&[]);
+    // What is in the picture anyway, and what passes far away, moves nothing.
+    let small = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.15, 0.1, 0]\nradius = 0.02\n";
+    let far = "[[obstacle]]\nkind = 'sphere'\ncentre = [9, 0.1, 0]\nradius = 0.2\n";
+    assert_eq!(camera(&[small]), alone);
+    assert_eq!(camera(&[far]), alone);
+    // What comes near is shown, wherever it comes from, and the body stays large.
+    let near = "path = { keys = [{ time = 0 }, { time = 0.5, shift = [-8.7, 0, 0] }, { time = 1 }] }\n";
+    let shown = camera(&[far, near]);
+    assert!(shown.target.x > alone.target.x + 0.01 && shown.distance > alone.distance, "{shown:?}");
+    assert!(shown.distance < 1.8 * alone.distance, "{shown:?}");
+    let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0 }, { time = 0.5, shift = [-0.3, 0.2, 0] }] }\n";
+    let dragged = camera(&[grab]);
+    assert!(dragged.target.x < alone.target.x && dragged.distance > alone.distance, "{dragged:?}");
+    // What is typed stays as it is typed.
+    let typed = camera(&[far, near, "[view]\ncamera = { distance = 2 }\n"]);
+    assert_eq!((typed.distance, typed.target), (2.0, alone.target));
+}
+
+#[test]
+fn following_the_body_lets_the_grid_scroll_below() {
+    let text = "velocity = [3, 0, 0]";
+    let body = CUBE.replace("lowest = 0.1", &format!("lowest = 0.1, {text}"));
+    let with = |follow: &str| scene(&[WORLD, &body, FLOOR, "[view]\ncamera = { follow = ", follow, " }\n"]);
+    let (body, height, truth) = (with("'body'"), with("'height'"), with("true"));
+    assert_eq!([&body, &height, &truth].map(|s| s.view.camera.follow), [Follow::Body, Follow::Height, Follow::Height]);
+    let composer = Composer::new(&body);
+    let eye = |picture: &Picture| picture.panels[0].sight.eye;
+    // Any frame by itself, and in any order.
+    let [late, early] = [25, 0].map(|index| composer.compose(&frame(&body, index)));
+    // The camera stands as it stood towards the body, and the grid has gone as far as the body.
+    assert!(eye(&late).distance(eye(&early)) < 1e-3);
+    let grid = [&late, &early].map(|picture| picture.panels[0].floor.as_ref().expect("a floor").grid[0]);
+    let gone = (3.0 * frame(&body, 25).time / body.view.side) as f32;
+    let off = (grid[0] - grid[1] - gone).rem_euclid(1.0);
+    assert!(off.min(1.0 - off) < 1e-3, "{grid:?} {gone}");
+    let still = [25, 0].map(|index| picture(&height, index).panels[0].floor.as_ref().expect("a floor").grid);
+    assert_eq!(still[0], still[1]);
+}
