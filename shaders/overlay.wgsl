@@ -40,6 +40,9 @@ const CLOCKWISE = 5u;
 const FADING = 6u;
 const SHADOW = 7u;
 const SMOOTH = 8u;
+const ARROW = 9u;
+const BLEND = 10u;
+const POINT = 11u;
 
 // The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
 // the right), length and half width of its head.
@@ -64,6 +67,45 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
     let side = s * slant.x - (HEAD.x - t) * slant.y;
     let head = min(0.5 - side / pixel, 0.5 + t / pixel);
     return saturate(max(ring, head));
+}
+
+// A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and the
+// halo. The head of a short one is this part of its length, and all of it is as much smaller.
+const ARROW_HEAD = vec2<f32>(1.235, 0.2);
+const ARROW_SHAFT = 0.247;
+const ARROW_HALO = 0.17647;
+const ARROW_SHORT = 0.62;
+
+fn off_segment(at: vec2<f32>, from_end: vec2<f32>, to_end: vec2<f32>) -> f32 {
+    let along = to_end - from_end;
+    let share = saturate(dot(at - from_end, along) / max(dot(along, along), 1e-9));
+    return length(at - from_end - share * along);
+}
+
+// How far a point is outside of an arrow (px), for a mark of a size; negative inside.
+fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> f32 {
+    let wide = size.y / (1.0 + 2.0 * ARROW_HALO);
+    let pad = wide * ARROW_HALO;
+    let tip = size.x - 2.0 * pad;
+    let head = min(ARROW_HEAD.x * wide, ARROW_SHORT * tip);
+    let part = head / (ARROW_HEAD.x * wide);
+    let half_head = 0.5 * wide * part;
+    let half_shaft = 0.5 * ARROW_SHAFT * wide * part;
+    let back = tip - head;
+    let notch = ARROW_HEAD.y * wide * part;
+    let p = vec2(at.x - pad, abs(at.y - 0.5 * size.y));
+    let joint = vec2(back + notch * (1.0 - half_shaft / max(half_head, 1e-6)), half_shaft);
+    let barb = vec2(back, half_head);
+    let point = vec2(tip, 0.0);
+    let off = min(
+        min(off_segment(p, vec2(0.0), vec2(0.0, half_shaft)), off_segment(p, vec2(0.0, half_shaft), joint)),
+        min(off_segment(p, joint, barb), off_segment(p, barb, point)),
+    );
+    let in_shaft = p.x >= 0.0 && p.x <= joint.x && p.y <= half_shaft;
+    let side = (p.x - barb.x) * (point.y - barb.y) - (p.y - barb.y) * (point.x - barb.x);
+    let rear = p.x >= back + notch * (1.0 - p.y / max(half_head, 1e-6));
+    let inside = in_shaft || (rear && side > 0.0 && p.y <= half_head);
+    return select(off, -off, inside);
 }
 
 @vertex
@@ -114,6 +156,22 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case SMOOTH: {
             let inside = min(at, corner.rectangle.zw - at);
             return vec4(corner.colour.rgb, saturate(inside.x) * saturate(inside.y));
+        }
+        case ARROW: {
+            let off = off_arrow(at, corner.rectangle.zw);
+            let halo = corner.rectangle.w * ARROW_HALO / (1.0 + 2.0 * ARROW_HALO) - 0.5;
+            let inside = saturate(0.5 - off);
+            let around = saturate(0.5 + max(halo, 0.0) - off);
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), max(inside, 0.92 * around));
+        }
+        case BLEND: {
+            return vec4(mix(corner.colour.rgb, corner.second.rgb, at.x / corner.rectangle.z), 1.0);
+        }
+        case POINT: {
+            let size = corner.rectangle.zw;
+            let slant = vec2(0.5 * size.y, size.x);
+            let off = dot(vec2(at.x - size.x, abs(at.y - 0.5 * size.y)), slant) / length(slant);
+            return vec4(corner.colour.rgb, saturate(0.5 - off));
         }
         default: {
             return vec4(corner.colour.rgb, 1.0);

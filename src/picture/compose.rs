@@ -1,17 +1,22 @@
 //! Putting a picture together.
 
+use super::arrows::{self, Arrows};
 use super::camera::{Lens, framing};
 use super::caption::{Writer, numbers};
 use super::ears::{Ears, bare_elements};
+use super::field::{NOWHERE, Shades};
 use super::layout::{self, Rectangle, Scale};
+use super::legend::{self, Legend};
 use super::narrow::{narrow, narrow_point};
 use super::palette::Palette;
-use super::plane::Flat;
+use super::plane::{Flat, node_radius};
+use super::ramp;
 use super::shadow::{self, Plane};
 use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
-use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
-use crate::scene::Scene;
+use super::wire::{Edges, Wire};
+use super::{Colour, Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight, Stroke};
+use crate::scene::{Camera, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
@@ -57,6 +62,12 @@ pub struct Composer<'a> {
     ears: Ears,
     /// Elements without faces.
     bare: Vec<usize>,
+    /// The colours of a field, if one is shown.
+    ramp: Vec<Colour>,
+    /// The edges of the elements, if surfaces are not shown.
+    edges: Edges,
+    /// The nodes that get arrows.
+    bearers: Vec<u32>,
     extent: f64,
     /// The unit of soft distances (sides).
     soft: f64,
@@ -108,15 +119,21 @@ impl<'a> Composer<'a> {
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let ears = Ears::new(body);
+        let skin = Skin::new(body, &ears);
+        let bare = bare_elements(body);
+        let visible = scene.view.visible;
         Self {
             scene,
+            ramp: scene.view.colour.map_or_else(Vec::new, |_| ramp::ramp(scene.view.theme)),
+            edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
+            bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: Palette::of(scene.view.theme),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
-            skin: Skin::new(body, &ears),
+            skin,
             ears,
-            bare: bare_elements(body),
+            bare,
             extent,
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
         }
@@ -126,7 +143,10 @@ impl<'a> Composer<'a> {
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let panels = layout::panels(size, frame.runs.len(), view.columns);
+        let legend = self.legend(size, frame.runs.len());
+        // The key stands below all panels.
+        let above_legend = [size[0], size[1] - legend.map_or(0, |legend| legend.height)];
+        let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
         let centres = frame.runs.iter().filter_map(|run| height_of_centre(&run.snapshot));
         let heights = centres.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
         let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
@@ -147,6 +167,11 @@ impl<'a> Composer<'a> {
             let numbers = numbers(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             writer.count(viewport, &self.tally, &run.snapshot, &numbers);
         }
+        if let Some((legend, &viewport)) = legend.zip(panels.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, viewport, &framing, scale));
+            let colours = view.colour.as_ref().map(|colour| (colour, &self.ramp[..], legend::beyond(colour, frame)));
+            legend.draw(&mut writer, size, arrow, colours);
+        }
         let Writer { mut marks, words, .. } = writer;
         let mut under = Vec::new();
         let panels = panels
@@ -154,7 +179,32 @@ impl<'a> Composer<'a> {
             .zip(&frame.runs)
             .map(|(&viewport, run)| self.panel(viewport, run, &framing, scale, [&mut under, &mut marks]))
             .collect();
-        Picture { size, palette: self.palette, panels, under, marks, words }
+        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+    }
+
+    /// The key of colours and arrows, if there are any.
+    fn legend(&self, size: [u32; 2], runs: usize) -> Option<Legend> {
+        let view = &self.scene.view;
+        if view.colour.is_none() && !view.visible.displacements {
+            return None;
+        }
+        let panels = layout::panels(size, runs, view.columns);
+        Legend::new(size, Scale::new(size, *panels.first()?))
+    }
+
+    /// What the arrow of the key stands for (m), which no motion changes, and its length in this frame (px).
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 2] {
+        let Self { scene, .. } = self;
+        let edges = viewport.map(f64::from);
+        let pixels = |framing: &Framing| {
+            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
+            // In space, the key holds at the point looked at.
+            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
+        };
+        let camera = Camera { follow: false, ..scene.view.camera.clone() };
+        let times = scene.view.arrow_scale;
+        let metres = legend.arrow_metres(pixels(&framing(&camera, [0.0; 2], false)) * times);
+        [metres, metres * pixels(seen) * times]
     }
 
     fn panel(
@@ -176,7 +226,8 @@ impl<'a> Composer<'a> {
         let position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * side)).collect();
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
-        if !position.is_empty() {
+        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &run.snapshot.field));
+        if !position.is_empty() && view.visible.surfaces {
             let surroundings = Surroundings {
                 body,
                 ears: &self.ears,
@@ -185,16 +236,42 @@ impl<'a> Composer<'a> {
                 origin,
                 side,
                 soft: self.soft * side,
+                shades: shades.as_ref(),
             };
             let over = &run.snapshot.turned_over;
             let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
             surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
             let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
             surroundings.add(&boundary(body, over, true), kinds, &mut turned_over, &mut lines);
-            self.add_bare(&position, over, origin, &mut lines);
+            if shades.is_none() {
+                self.add_bare(&position, over, origin, &mut lines);
+            }
         }
         let flat = body.dimension == Dimension::Plane;
         let diverged = matches!(run.snapshot.status, Status::Diverged(_));
+        let element = lens.focal * side / if flat { 1.0 } else { framing.distance };
+        let of_nodes = match &shades {
+            Some(shades) if !view.visible.surfaces || !self.bare.is_empty() => shades.of_nodes(body),
+            _ => Vec::new(),
+        };
+        let wire = Wire {
+            body,
+            position: &position,
+            origin,
+            side,
+            forward: lens.forward,
+            palette: &self.palette,
+            line: scale.line(),
+            surfaces: view.visible.surfaces,
+            shades: (!of_nodes.is_empty()).then_some((&self.ramp[..], &of_nodes[..])),
+        };
+        let strokes = self.strokes(run, &wire);
+        let (mut beads, mut room) = (Vec::new(), LINE_ROOM * scale.line() + 2.0);
+        if view.visible.nodes && !flat && !diverged {
+            let radius = node_radius(scale, element);
+            beads = wire.without_surfaces().beads(radius);
+            room = room.max(radius + 2.0);
+        }
         if flat {
             let flat = Flat {
                 body,
@@ -208,10 +285,31 @@ impl<'a> Composer<'a> {
             };
             flat.floors(&self.scene.obstacles, under);
             if !diverged {
-                flat.signs(above);
+                if view.visible.surfaces {
+                    flat.signs(above);
+                }
+                if view.visible.nodes {
+                    let colour = |node: usize| {
+                        let place = of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
+                        place.filter(|_| !view.visible.surfaces).map(|place| ramp::colour(&self.ramp, place))
+                    };
+                    flat.nodes(element, &colour, above);
+                }
             }
         }
-        let mut region = region(viewport, &position, &lens, LINE_ROOM * scale.line() + 2.0);
+        if view.visible.displacements && !diverged && !position.is_empty() {
+            let has_springs = self.scene.runs.get(run.run).is_some_and(|run| !run.model.springs().is_empty());
+            let arrows = Arrows {
+                lens: &lens,
+                room: layout::clear_of_words(viewport, scale),
+                size: arrows::size(element, scale.unit),
+                times: view.arrow_scale,
+                colour: self.palette.arrows[usize::from(has_springs)],
+                halo: self.palette.background,
+            };
+            arrows.draw(&self.bearers, &body.rest, &position, &run.snapshot.placement, above);
+        }
+        let mut region = region(viewport, &position, &lens, room);
         if diverged {
             // What blew up may lie across everything; the words that say so stay on clean ground.
             region = overlap(region, layout::clear_of_words(viewport, scale));
@@ -228,13 +326,44 @@ impl<'a> Composer<'a> {
                 flat,
                 line_scale: narrow(scale.line()),
                 soft: narrow(self.soft),
-                element: narrow(lens.focal * side / if flat { 1.0 } else { framing.distance }),
+                element: narrow(element),
             },
             floor: if flat { None } else { self.floor(&position, framing, key, scale) },
             sound,
             turned_over,
             lines,
+            strokes,
+            beads,
         }
+    }
+
+    /// Lines with colours of their own: springs, or the edges of elements where there would be nothing else to see, and
+    /// what a field colours of elements without faces.
+    fn strokes(&self, run: &RunFrame, wire: &Wire<'_>) -> Vec<Stroke> {
+        let visible = self.scene.view.visible;
+        let over = &run.snapshot.turned_over;
+        let mut strokes = Vec::new();
+        if wire.position.is_empty() {
+            return strokes;
+        }
+        if visible.surfaces && wire.shades.is_some() {
+            strokes.extend(wire.bare(&self.bare, over));
+        }
+        let springs = match self.scene.runs.get(run.run) {
+            Some(run) if visible.springs => run.model.springs(),
+            _ => &[],
+        };
+        if !visible.surfaces && springs.is_empty() {
+            strokes.extend(wire.edges(&self.edges, over, false));
+        }
+        if !springs.is_empty() {
+            strokes.extend(wire.without_surfaces().springs(springs));
+            if !visible.surfaces {
+                // Which elements have turned over is told in any case.
+                strokes.extend(wire.edges(&self.edges, over, true));
+            }
+        }
+        strokes
     }
 
     /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
@@ -302,6 +431,15 @@ impl<'a> Composer<'a> {
         let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
+}
+
+/// The nodes that get arrows: those on the surface and those of elements without faces.
+fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
+    let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
+    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    arrows::bearers(&nodes)
 }
 
 /// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …

@@ -8,24 +8,30 @@
 //! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
 //! out depends on the scene and that frame alone.
 
+mod arrows;
 mod camera;
 mod caption;
 mod compose;
 mod ears;
+mod field;
 mod layout;
+mod legend;
 mod narrow;
 mod number;
 mod palette;
 mod plane;
+mod ramp;
 mod shadow;
 mod surface;
 mod tally;
 mod text;
+mod wire;
 
 pub use camera::{Framing, Lens, framing};
 pub use compose::{Composer, compose};
 pub use layout::Rectangle;
 pub use palette::{Colour, Palette};
+pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Glyph, TextRun, Weight, font, shortened, width};
 
@@ -38,6 +44,8 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Its colours.
     pub palette: Palette,
+    /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
+    pub ramp: Vec<Colour>,
     /// One for each run shown.
     pub panels: Vec<Panel>,
     /// Flat marks below the bodies, in the order in which they are drawn.
@@ -65,6 +73,10 @@ pub struct Panel {
     pub turned_over: Mesh,
     /// Edges and contours of both.
     pub lines: Vec<Line>,
+    /// Springs and other lines with colours of their own, above the surfaces, in the order in which they are drawn.
+    pub strokes: Vec<Stroke>,
+    /// Nodes in space, above the strokes, in the order in which they are drawn.
+    pub beads: Vec<Bead>,
 }
 
 /// Camera and light of a panel.
@@ -120,6 +132,9 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
     pub triangles: Vec<[u32; 3]>,
+    /// Where each corner stands on the scale of a field, from 0 to 1; −1 where there is no value. Empty if no field
+    /// is shown.
+    pub shades: Vec<f32>,
 }
 
 /// A corner of a surface.
@@ -157,6 +172,34 @@ pub enum LineKind {
     Contour = 2,
     /// The same of the turned-over set.
     AlarmContour = 3,
+}
+
+/// A straight line in space with colours of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Its ends.
+    pub ends: [[f32; 3]; 2],
+    /// The colours at its ends.
+    pub colours: [Colour; 2],
+    /// The colour of what lies over a surface instead.
+    pub on_body: Option<Colour>,
+    /// Opacity of what lies behind a surface.
+    pub behind: u8,
+    /// Its width (px).
+    pub width: f32,
+}
+
+/// A node in space: a disc that always faces the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bead {
+    /// Its middle.
+    pub at: [f32; 3],
+    /// Its radius (px).
+    pub radius: f32,
+    /// Its colour.
+    pub colour: Colour,
+    /// The colour of its rim.
+    pub rim: Colour,
 }
 
 /// A flat mark on the picture.
@@ -198,4 +241,11 @@ pub enum MarkShape {
     Shadow,
     /// A filled rectangle with smooth borders, a pixel wide inside it.
     Smooth,
+    /// An arrow along the width with a halo of the second colour. The halo fills the rectangle's border, 3/23 of the
+    /// height wide; the tip stands before it.
+    Arrow,
+    /// A filled rectangle that goes from its colour to the second one along its width.
+    Blend,
+    /// A triangle that points along the width.
+    Point,
 }

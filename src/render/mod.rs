@@ -5,7 +5,10 @@
 //! 3. `line`: edges and contours as opacities, one sample a pixel with smooth borders of their own.
 //! 4. `ground`: the floor, its grid and its shadows, into the picture.
 //! 5. `composite`: bodies and lines over the ground.
-//! 6. `overlay`: marks and words.
+//! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
+//! 7. `overlay`: marks and words.
+//!
+//! With a scalar field, `tint` takes the place of `surface`.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
@@ -18,8 +21,10 @@ mod panel;
 mod pipeline;
 #[cfg(test)]
 mod shader_tests;
+mod stroke;
 mod surface;
 mod target;
+mod tint;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
@@ -76,6 +81,9 @@ pub struct Renderer {
     lines: line::Lines,
     grounds: ground::Grounds,
     composite: composite::Composite,
+    /// Made when first needed, like the tint.
+    strokes: Option<stroke::Strokes>,
+    tint: Option<tint::Tint>,
     overlay: overlay::Overlay,
     canvas: Canvas,
     bodies: Option<Bodies>,
@@ -104,6 +112,8 @@ impl Renderer {
             lines: line::Lines::new(gpu, &panels, samples),
             grounds: ground::Grounds::new(gpu, &panels),
             composite: composite::Composite::new(gpu, &panels, samples),
+            strokes: None,
+            tint: None,
             overlay: overlay::Overlay::new(gpu),
             canvas: Canvas::new(gpu, size),
             bodies: None,
@@ -142,6 +152,8 @@ impl Renderer {
                 self.surfaces.retarget(&gpu, &bodies);
                 self.lines.retarget(&gpu, &bodies);
                 self.composite.retarget(&gpu, &bodies);
+                self.strokes.iter_mut().for_each(|strokes| strokes.retarget(&gpu, &bodies));
+                self.tint.iter_mut().for_each(|tint| tint.retarget(&gpu, &bodies));
                 bodies
             }
         };
@@ -150,15 +162,25 @@ impl Renderer {
         self.lines.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
+        if !picture.ramp.is_empty() {
+            let made = || tint::Tint::new(&gpu, &self.panels, &bodies, self.samples);
+            self.tint.get_or_insert_with(made).write(&gpu, picture);
+        }
+        let tint = self.tint.as_ref().filter(|_| !picture.ramp.is_empty());
+        if stroke::Strokes::are_in(picture) {
+            let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies, self.samples);
+            self.strokes.get_or_insert_with(made).write(&gpu, picture);
+        }
+        let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places);
+            self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint);
         }
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places);
+            self.surfaces.draw_all(&mut pass, &self.panels, &places, tint);
         }
         {
             let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
@@ -177,6 +199,9 @@ impl Renderer {
             let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
             self.grounds.draw(&mut pass, &self.panels, picture);
             self.composite.draw(&mut pass, &self.panels, picture);
+            if let Some(strokes) = strokes {
+                strokes.draw(&mut pass, &self.panels, picture);
+            }
         }
         {
             let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);

@@ -157,6 +157,9 @@ fn plain(mark: &picture::Mark) -> Mark {
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
+            MarkShape::Arrow => 9,
+            MarkShape::Blend => 10,
+            MarkShape::Point => 11,
         },
     }
 }

@@ -87,7 +87,11 @@ fn missing_keys() {
         PLANE,
         "kind = 'floor'\n",
         "",
-        &[(16, 1, "`obstacle[0]` has no `kind`; expected \"floor\", \"plate\", \"sphere\", \"capsule\" or \"box\" such as kind = \"floor\"")],
+        &[(
+            16,
+            1,
+            "`obstacle[0]` has no `kind`; expected \"floor\", \"plate\", \"sphere\", \"capsule\" or \"box\" such as kind = \"floor\"",
+        )],
     );
     case(PLANE, "kind = 'mass-spring', ", "", &[(15, 9, "has no `kind`; expected \"shape-based\" or \"mass-spring\"")]);
     case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edge (m)")]);
