@@ -82,8 +82,8 @@ fn off_segment(at: vec2<f32>, from_end: vec2<f32>, to_end: vec2<f32>) -> f32 {
     return length(at - from_end - share * along);
 }
 
-// How far a point is outside of an arrow (px), for a mark of a size; negative inside.
-fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> f32 {
+// How far a point is outside of an arrow (px), for a mark of a size, negative inside; and the width of its halo.
+fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
     let wide = size.y / (1.0 + 2.0 * ARROW_HALO);
     let pad = wide * ARROW_HALO;
     let tip = size.x - 2.0 * pad;
@@ -105,7 +105,7 @@ fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> f32 {
     let side = (p.x - barb.x) * (point.y - barb.y) - (p.y - barb.y) * (point.x - barb.x);
     let rear = p.x >= back + notch * (1.0 - p.y / max(half_head, 1e-6));
     let inside = in_shaft || (rear && side > 0.0 && p.y <= half_head);
-    return select(off, -off, inside);
+    return vec2(select(off, -off, inside), max(pad * max(part, 0.5) - 0.5, 0.0));
 }
 
 @vertex
@@ -158,10 +158,9 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             return vec4(corner.colour.rgb, saturate(inside.x) * saturate(inside.y));
         }
         case ARROW: {
-            let off = off_arrow(at, corner.rectangle.zw);
-            let halo = corner.rectangle.w * ARROW_HALO / (1.0 + 2.0 * ARROW_HALO) - 0.5;
-            let inside = saturate(0.5 - off);
-            let around = saturate(0.5 + max(halo, 0.0) - off);
+            let arrow = off_arrow(at, corner.rectangle.zw);
+            let inside = saturate(0.5 - arrow.x);
+            let around = saturate(0.5 + arrow.y - arrow.x);
             return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), max(inside, 0.92 * around));
         }
         case BLEND: {

@@ -13,14 +13,18 @@ struct Stroke {
     @location(6) @interpolate(flat) kind: u32,
 }
 
-// A line; a line with another colour over surfaces; a disc.
+// Besides plain lines: a line with another colour over surfaces, a disc, and a line with another colour at its sides.
 const LINE_ON_BODY = 1u;
 const DISC = 2u;
+const CASED_LINE = 3u;
 
 // As for the surfaces of turned-over elements.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
 const OFFSET = 0.0016;
+// The width of a casing, in parts of the line's, and the least (px).
+const CASING = 0.24;
+const LEAST_CASING = 0.6;
 // The rim of a disc, in parts of its radius.
 const RIM = 0.32;
 // A disc is cut off by what is nearer than the front of a ball this much larger.
@@ -82,7 +86,8 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let start = stroke.ends.xy;
     let difference = stroke.ends.zw - start;
     let pixel = stroke.place.xy - panel.place.xy;
-    let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
+    let unbounded = dot(pixel - start, difference) / max(dot(difference, difference), 1e-6);
+    let share = saturate(unbounded);
     let middle = start + share * difference;
     let distance = length(pixel - middle);
     let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
@@ -102,8 +107,16 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let visible = before >= here || panel.flatness > 0.5;
     // Lines thinner than a pixel are fainter instead.
     let drawn = max(stroke.size, 1.0);
-    let covered = saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
-    let own = mix(stroke.first.rgb, stroke.second.rgb, share);
+    var covered = saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
+    var own = mix(stroke.first.rgb, stroke.second.rgb, share);
+    if stroke.kind == CASED_LINE {
+        let casing = max(CASING * stroke.size, LEAST_CASING);
+        own = mix(stroke.other.rgb, own, saturate(0.5 * stroke.size - casing + 0.5 - distance));
+        // Pieces of one line fit together only with straight ends.
+        covered *= saturate(0.5 + min(unbounded, 1.0 - unbounded) * length(difference));
+    }
     let colour = select(own, stroke.other.rgb, stroke.kind == LINE_ON_BODY && here > 0.0);
-    return vec4(decoded(colour), covered * select(stroke.other.a, 1.0, visible));
+    // Where many faint lines meet, their round ends would add up to a dot.
+    let hidden = select(0.0, stroke.other.a, unbounded == share);
+    return vec4(decoded(colour), covered * select(hidden, 1.0, visible));
 }

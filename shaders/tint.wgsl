@@ -6,7 +6,7 @@
 
 const SHADES = 64;
 // The darkest light leaves this part of a colour, and light of this brightness and below it is the darkest.
-const SHADED = 0.62;
+const SHADED = 0.68;
 const DARKEST = 0.35;
 // How strong stripes are that are seen through the body.
 const THROUGH = 0.75;
@@ -26,8 +26,7 @@ fn tinted_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    let place = sound_corner(position, normal, hatch).place;
-    return TintedCorner(place, position, normal, hatch, shade);
+    return TintedCorner(panel.clip * vec4(position, 1.0), position, normal, hatch, shade);
 }
 
 @vertex
@@ -37,8 +36,7 @@ fn tinted_alarm_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    let place = alarm_corner(position, normal, hatch).place;
-    return TintedCorner(place, position, normal, hatch, shade);
+    return TintedCorner(moved_nearer(position), position, normal, hatch, shade);
 }
 
 fn tint(corner: TintedCorner) -> vec3<f32> {

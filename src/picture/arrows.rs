@@ -17,7 +17,7 @@ const HEAD: f64 = 17.0;
 const ROOMY_ELEMENT: f64 = 105.0;
 const SMALLEST: f64 = 0.36;
 /// Arrows shorter than this (px) are left out.
-const SHORTEST: f64 = 1.5;
+const SHORTEST: f64 = 2.5;
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 

@@ -43,6 +43,8 @@ const FADE_ABOVE: f64 = 94.0;
 const SOFT_SHARE: f64 = 4.5;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
 const MOST_CELLS: f64 = 10.0;
+/// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
+const SHEER: f64 = 0.38;
 /// Coordinates of what blew up are kept within this (sides).
 const FARTHEST: f64 = 1e12;
 /// Room for thick lines around a body (px in the reference picture).
@@ -192,8 +194,9 @@ impl<'a> Composer<'a> {
         Legend::new(size, Scale::new(size, *panels.first()?))
     }
 
-    /// What the arrow of the key stands for (m), which no motion changes, and its length in this frame (px).
-    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 2] {
+    /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
+    /// how large it is beside those of the reference picture.
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
         let Self { scene, .. } = self;
         let edges = viewport.map(f64::from);
         let pixels = |framing: &Framing| {
@@ -204,7 +207,7 @@ impl<'a> Composer<'a> {
         let camera = Camera { follow: false, ..scene.view.camera.clone() };
         let times = scene.view.arrow_scale;
         let metres = legend.arrow_metres(pixels(&framing(&camera, [0.0; 2], false)) * times);
-        [metres, metres * pixels(seen) * times]
+        [metres, metres * pixels(seen) * times, arrows::size(pixels(seen) * scene.view.side, scale.unit)]
     }
 
     fn panel(
@@ -307,7 +310,7 @@ impl<'a> Composer<'a> {
                 colour: self.palette.arrows[usize::from(has_springs)],
                 halo: self.palette.background,
             };
-            arrows.draw(&self.bearers, &body.rest, &position, &run.snapshot.placement, above);
+            arrows.draw(&self.facing_bearers(&position, &lens), &body.rest, &position, &run.snapshot.placement, above);
         }
         let mut region = region(viewport, &position, &lens, room);
         if diverged {
@@ -366,6 +369,23 @@ impl<'a> Composer<'a> {
         strokes
     }
 
+    /// The nodes that get arrows, without those of which surfaces in space hide every face.
+    fn facing_bearers(&self, position: &[DVec3], lens: &Lens) -> Vec<u32> {
+        if lens.orthographic || !self.scene.view.visible.surfaces {
+            return self.bearers.clone();
+        }
+        let mut faces_away = vec![false; position.len()];
+        self.skin.nodes.iter().for_each(|&node| faces_away[node as usize] = true);
+        for triangle in &self.skin.triangles {
+            let nodes = triangle.map(|at| self.skin.nodes[at as usize] as usize);
+            let [a, b, c] = nodes.map(|node| position[node]);
+            if lens.sees(a, (b - a).cross(c - a)) {
+                nodes.iter().for_each(|&node| faces_away[node] = false);
+            }
+        }
+        self.bearers.iter().copied().filter(|&node| !faces_away[node as usize]).collect()
+    }
+
     /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
     fn add_bare(&self, position: &[DVec3], over: &[bool], origin: DVec3, lines: &mut Vec<Line>) {
         let body = &*self.scene.body;
@@ -401,11 +421,16 @@ impl<'a> Composer<'a> {
         let triangles = if points.is_empty() { &[][..] } else { &self.skin.triangles };
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
-        let shades = if key.dot(plane.normal) > 0.05 {
+        let mut shades = if key.dot(plane.normal) > 0.05 {
             shadow::shades(&points, triangles, &plane, key, middle, fade[1], self.soft)
         } else {
             std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
+        if !view.visible.surfaces {
+            // What one sees through lets most of the light through.
+            let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
+            cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
+        }
         let cell = cell(self.extent / side);
         // The grid's lines go through the origin of the world.
         let grid = plane.axes.map(|axis| narrow((origin / side).dot(axis).rem_euclid(cell)));

@@ -52,12 +52,12 @@ impl Legend {
     }
 
     /// Draws the key over its ground, the lowest part of a picture of a size (px). `arrow` is the length that the arrow
-    /// stands for (m) and its own (px).
+    /// stands for (m), its own (px), and how large it is beside those of the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
         size: [u32; 2],
-        arrow: Option<[f64; 2]>,
+        arrow: Option<[f64; 3]>,
         colours: Option<(&ColourScale, &[Colour], [bool; 2])>,
     ) {
         let unit = self.unit;
@@ -66,8 +66,8 @@ impl Legend {
         let top = (picture_height - f64::from(self.height) - ABOVE * writer.scale.unit).round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
-        if let Some([metres, length]) = arrow {
-            left = self.arrow(writer, [left, middle], metres, length) + APART * unit;
+        if let Some([metres, length, size]) = arrow {
+            left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
         }
         if let Some((scale, ramp, beyond)) = colours {
             self.bar(writer, [left, picture_width - margin], top, scale, ramp, beyond);
@@ -75,10 +75,10 @@ impl Legend {
     }
 
     /// An arrow and what it stands for; says where that ends (px).
-    fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], metres: f64, length: f64) -> f64 {
+    fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
-        writer.marks.push(arrows::arrow(ends, unit, palette.text, palette.background));
+        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.background));
         // The words stand still when the camera moves.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(

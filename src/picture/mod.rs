@@ -181,12 +181,23 @@ pub struct Stroke {
     pub ends: [[f32; 3]; 2],
     /// The colours at its ends.
     pub colours: [Colour; 2],
-    /// The colour of what lies over a surface instead.
-    pub on_body: Option<Colour>,
+    /// What else there is to its colour.
+    pub second: Second,
     /// Opacity of what lies behind a surface.
     pub behind: u8,
     /// Its width (px).
     pub width: f32,
+}
+
+/// The second colour of a stroke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Second {
+    /// There is none.
+    None,
+    /// It takes the place of the others over surfaces.
+    OnBody(Colour),
+    /// It runs along both sides, so that light colours show on light ground.
+    Casing(Colour),
 }
 
 /// A node in space: a disc that always faces the viewer.

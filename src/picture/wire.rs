@@ -4,7 +4,7 @@ use super::field::NOWHERE;
 use super::narrow::{narrow, narrow_point};
 use super::palette::{Colour, Palette};
 use super::ramp;
-use super::{Bead, Stroke};
+use super::{Bead, Second, Stroke};
 use crate::sim::body::Body;
 use crate::sim::topology::edges_of;
 use glam::DVec3;
@@ -12,11 +12,13 @@ use glam::DVec3;
 /// Width of springs, of edges, of edges of turned-over elements and of elements without faces that a field colours (px
 /// in the reference picture).
 const SPRING: f64 = 1.9;
-const EDGE: f64 = 1.2;
+const EDGE: f64 = 1.3;
 const ALARM_EDGE: f64 = 2.2;
-const BARE: f64 = 2.6;
+const BARE: f64 = 2.0;
+/// How much wider lines are that a field colours, to have room for a casing.
+const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface.
-const BEHIND: u8 = 34;
+const BEHIND: u8 = 28;
 /// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
 const HAZE: f64 = 0.62;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
@@ -77,7 +79,8 @@ impl Wire<'_> {
             self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes);
         }
         if self.surfaces {
-            strokes.iter_mut().for_each(|stroke| stroke.on_body = Some(self.palette.spring_on_body));
+            let second = Second::OnBody(self.palette.spring_on_body);
+            strokes.iter_mut().for_each(|stroke| stroke.second = second);
         }
         self.sorted(strokes)
     }
@@ -88,10 +91,10 @@ impl Wire<'_> {
         let mut strokes = Vec::new();
         if !only_turned_over {
             for &ends in &edges.all {
-                self.stroke(ends, self.palette.second_text, EDGE, &haze, &mut strokes);
+                self.stroke(ends, self.palette.spring, EDGE, &haze, &mut strokes);
             }
             let elements = edges.of_elements.iter().enumerate().filter(|(_, edges)| edges.is_empty());
-            elements.for_each(|(element, _)| self.spokes(element, self.palette.second_text, EDGE, &mut strokes));
+            elements.for_each(|(element, _)| self.spokes(element, self.palette.spring, EDGE, &mut strokes));
         }
         let mut strokes = self.sorted(strokes);
         let mut alarm = Vec::new();
@@ -181,7 +184,9 @@ impl Wire<'_> {
             let shares = [piece, piece + 1].map(|at| at as f32 / pieces);
             let ends = shares.map(|share| from.lerp(to, f64::from(share)));
             let colours = shares.map(|share| ramp::colour(ramp, places[0] + (places[1] - places[0]) * share));
-            strokes.push(self.straight(ends, colours, width));
+            let casing = faded(self.palette.spring, from.lerp(to, f64::from(shares[0].midpoint(shares[1]))));
+            let plain = self.straight(ends, colours, CASED * width);
+            strokes.push(Stroke { second: Second::Casing(casing), ..plain });
         }
     }
 
@@ -189,7 +194,7 @@ impl Wire<'_> {
         Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,
-            on_body: None,
+            second: Second::None,
             behind: if self.surfaces { BEHIND } else { 0 },
             width: narrow(width * self.line),
         }

@@ -4,7 +4,7 @@ use super::panel::{Panels, is_visible, limit};
 use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Bead, Colour, Picture, Stroke};
+use crate::picture::{Bead, Colour, Picture, Second, Stroke};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ struct Instance {
     ends: [[f32; 3]; 2],
     first: [u8; 4],
     second: [u8; 4],
-    /// The colour over surfaces, and the opacity behind them.
+    /// The second colour, and the opacity behind surfaces.
     other: [u8; 4],
     size: f32,
     kind: u32,
@@ -110,14 +110,12 @@ fn with_alpha([red, green, blue]: Colour, alpha: u8) -> [u8; 4] {
 
 fn line(stroke: &Stroke) -> Instance {
     let [first, second] = stroke.colours.map(|colour| with_alpha(colour, 255));
-    Instance {
-        ends: stroke.ends,
-        first,
-        second,
-        other: with_alpha(stroke.on_body.unwrap_or_default(), stroke.behind),
-        size: stroke.width,
-        kind: u32::from(stroke.on_body.is_some()),
-    }
+    let (kind, other) = match stroke.second {
+        Second::None => (0, Colour::default()),
+        Second::OnBody(colour) => (1, colour),
+        Second::Casing(colour) => (3, colour),
+    };
+    Instance { ends: stroke.ends, first, second, other: with_alpha(other, stroke.behind), size: stroke.width, kind }
 }
 
 fn disc(bead: &Bead) -> Instance {
