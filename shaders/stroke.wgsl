@@ -115,7 +115,11 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
         // Pieces of one line fit together only with straight ends.
         covered *= saturate(0.5 + min(unbounded, 1.0 - unbounded) * length(difference));
     }
-    let colour = select(own, stroke.other.rgb, stroke.kind == LINE_ON_BODY && here > 0.0);
+    // Along an outline a line is seen before the ground.
+    let along = difference / max(length(difference), 1e-6);
+    let across = 2.0 * vec2(-along.y, along.x);
+    let inside = here > 0.0 && min(depth_at(middle + across), depth_at(middle - across)) > 0.0;
+    let colour = select(own, stroke.other.rgb, stroke.kind == LINE_ON_BODY && inside);
     // Where many faint lines meet, their round ends would add up to a dot.
     let hidden = select(0.0, stroke.other.a, unbounded == share);
     return vec4(decoded(colour), covered * select(hidden, 1.0, visible));

@@ -16,8 +16,10 @@ const HEAD: f64 = 17.0;
 /// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
 const ROOMY_ELEMENT: f64 = 105.0;
 const SMALLEST: f64 = 0.36;
-/// Arrows shorter than this (px) are left out.
-const SHORTEST: f64 = 2.5;
+/// No arrow is smaller than this beside those of the reference picture, or it could not be seen.
+const FAINTEST: f64 = 0.33;
+/// Arrows shorter than this are left out (parts of the size, and px): they would be specks on the nodes.
+const SHORTEST: [f64; 2] = [9.0, 2.5];
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 
@@ -35,7 +37,7 @@ pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
 
 /// How large arrows are beside those of the reference picture, for elements of a length (px) in type of a unit.
 pub(super) fn size(element: f64, unit: f64) -> f64 {
-    unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)
+    (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
 }
 
 /// An arrow from one pixel to another; the tip stands exactly at the second one.
@@ -92,8 +94,9 @@ impl Arrows<'_> {
     /// An arrow that begins and ends where arrows may be; others are left out, for a cut one would say something else.
     fn inside(&self, ends: [DVec2; 2]) -> Option<[DVec2; 2]> {
         let [left, top, width, height] = self.room.map(f64::from);
+        let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]);
         let holds = |at: &DVec2| (left..=left + width).contains(&at.x) && (top..=top + height).contains(&at.y);
-        (ends.iter().all(holds) && ends[0].distance(ends[1]) >= SHORTEST).then_some(ends)
+        (ends.iter().all(holds) && ends[0].distance(ends[1]) >= shortest).then_some(ends)
     }
 }
 

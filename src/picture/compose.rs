@@ -187,11 +187,12 @@ impl<'a> Composer<'a> {
     /// The key of colours and arrows, if there are any.
     fn legend(&self, size: [u32; 2], runs: usize) -> Option<Legend> {
         let view = &self.scene.view;
-        if view.colour.is_none() && !view.visible.displacements {
+        let parts = [view.visible.displacements, view.colour.is_some()];
+        if parts == [false; 2] {
             return None;
         }
         let panels = layout::panels(size, runs, view.columns);
-        Legend::new(size, Scale::new(size, *panels.first()?))
+        Legend::new(size, Scale::new(size, *panels.first()?), parts)
     }
 
     /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and

@@ -19,13 +19,16 @@ const ABOVE: f64 = 4.0;
 /// Its type is no smaller than this part of the reference, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
 const MOST_HEIGHT: f64 = 0.1;
-/// The narrowest picture that holds everything at the reference size (px).
-const NARROWEST: f64 = 540.0;
+/// The room that the arrow with its words and the bar with its name take at least (px in the reference picture).
+const ARROW_ROOM: f64 = 250.0;
+const BAR_ROOM: f64 = 390.0;
 /// Size of the numbers at the ticks (px in the reference picture).
 const NUMBERS: f64 = 14.0;
 /// Height of the bar, its least and largest length, and the length of a tick (px in the reference picture).
 const BAR: f64 = 12.0;
-const LENGTHS: [f64; 2] = [130.0, 340.0];
+const LENGTHS: [f64; 2] = [190.0, 340.0];
+/// Numbers nearer to each other than this are thinned out (px in the reference picture).
+const NUMBERS_APART: f64 = 9.0;
 const TICK: f64 = 5.0;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
@@ -42,11 +45,13 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale; `None` where it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale) -> Option<Self> {
+    /// The key of a picture of a size (px) whose panels have a scale, with an arrow, a bar or both; `None` where it could not be read.
+    pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, bar]: [bool; 2]) -> Option<Self> {
         let [width, height] = size.map(f64::from);
-        let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT).min(width / NARROWEST);
-        let unit = scale.unit.max(roomy);
+        let apart = if arrow && bar { APART } else { 0.0 };
+        let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + if bar { BAR_ROOM } else { 0.0 };
+        let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
+        let unit = scale.unit.max(roomy).min((width - 2.0 * scale.margin()) / needed);
         let height = (HEIGHT * unit).round() as u32;
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
@@ -104,24 +109,30 @@ impl Legend {
         beyond: [bool; 2],
     ) {
         let (unit, palette) = (self.unit, writer.palette);
-        let ticks = Ticks::new(scale.range, scale.field.unit());
+        let mut ticks = Ticks::new(scale.range, scale.field.unit());
         let numbers = NUMBERS * unit;
-        let widths: Vec<_> = ticks.texts.iter().map(|text| width(text, Weight::Regular, numbers)).collect();
+        let wide = |text: &String| width(text, Weight::Regular, numbers);
+        let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
         let name = scale.field.name();
-        let unit_text = if ticks.unit.is_empty() { String::new() } else { format!(" ({})", ticks.unit) };
+        let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
         let caption = 16.0 * unit;
-        let named = width(name, Weight::SemiBold, caption) + width(&unit_text, Weight::Regular, caption);
+        let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
+        let named = width(name, Weight::SemiBold, caption) + space + width(&unit_text, Weight::Regular, caption);
         let gap = 20.0 * unit;
         let free = right - left - named - gap - overhang;
         let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
+        let room = widths.iter().sum::<f64>() + NUMBERS_APART * unit * widths.len() as f64;
+        if room > length && widths.len() == 5 {
+            ticks.halve();
+        }
         let whole = named + gap + length;
         let centred = (right + writer.scale.margin() - whole) / 2.0;
         let left = centred.max(left).min(right - whole - overhang);
         let height = (BAR * unit).round().max(2.0);
         let baseline = top + 0.5 * height + 5.5 * unit;
         let after = self.write(writer, name, Weight::SemiBold, 16.0, palette.text, left, baseline);
-        self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after, baseline);
+        self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
         let bar_left = (left + named + gap).round();
         let rim = unit.round().max(1.0);
         let mark = |rectangle: [f64; 4], colour, second, shape| Mark {
@@ -152,12 +163,12 @@ impl Legend {
             let rectangle = [at(piece), top, at(piece + 1) - at(piece), height];
             writer.marks.push(mark(rectangle, ramp[piece], ramp[piece + 1], MarkShape::Blend));
         }
-        for ((&share, text), wide) in ticks.places.iter().zip(&ticks.texts).zip(widths) {
+        for (&share, text) in ticks.places.iter().zip(&ticks.texts) {
             let x = bar_left + share * length;
             let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
             writer.marks.push(mark(line, palette.axis, palette.axis, MarkShape::Filled));
             let baseline = top + height + (TICK + 14.5) * unit;
-            self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide / 2.0, baseline);
+            self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, baseline);
         }
     }
 
@@ -190,7 +201,6 @@ impl Legend {
 /// Whether any value lies below or above a scale.
 pub(super) fn beyond(scale: &ColourScale, frame: &Frame) -> [bool; 2] {
     let [low, high] = scale.range;
-    let slack = 1e-9 * (high / 2.0 - low / 2.0);
     let values = || frame.runs.iter().flat_map(|run| &run.snapshot.field);
-    [values().any(|&value| value < low - slack), values().any(|&value| value > high + slack)]
+    [values().any(|&value| value < low), values().any(|&value| value > high)]
 }

@@ -113,6 +113,12 @@ impl Ticks {
             unit: format!("{prefix}{unit}"),
         }
     }
+
+    /// Keeps every second tick, with the first.
+    pub(super) fn halve(&mut self) {
+        self.places = self.places.iter().copied().step_by(2).collect();
+        self.texts = self.texts.iter().step_by(2).cloned().collect();
+    }
 }
 
 /// Three to five round values in a range, and how many decimals they need. Of the possible ones those that hold both

@@ -184,7 +184,7 @@ impl Wire<'_> {
             let shares = [piece, piece + 1].map(|at| at as f32 / pieces);
             let ends = shares.map(|share| from.lerp(to, f64::from(share)));
             let colours = shares.map(|share| ramp::colour(ramp, places[0] + (places[1] - places[0]) * share));
-            let casing = faded(self.palette.spring, from.lerp(to, f64::from(shares[0].midpoint(shares[1]))));
+            let casing = faded(self.palette.casing, from.lerp(to, f64::from(shares[0].midpoint(shares[1]))));
             let plain = self.straight(ends, colours, CASED * width);
             strokes.push(Stroke { second: Second::Casing(casing), ..plain });
         }

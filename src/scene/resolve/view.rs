@@ -136,7 +136,7 @@ impl Around<'_> {
         match field {
             Field::Strain => LARGE,
             Field::Displacement => LARGE * side,
-            Field::ElasticEnergy => 0.5 * stiffness * (LARGE * side).powi(2),
+            Field::ElasticEnergy => 0.5 * stiffness * (LARGE * side) * (LARGE * side),
             Field::Speed => {
                 let start = self.body.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
                 let (_, high) = bounds(&self.body.initial.position);

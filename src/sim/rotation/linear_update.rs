@@ -19,7 +19,8 @@ pub fn follow(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
     let mut matrix = last;
     for _ in 0..passes {
         let a = matrix * at_rest;
-        if linearised::determinant(a).abs() <= SINGULAR * size(a).powi(3) {
+        let size = size(a);
+        if linearised::determinant(a).abs() <= SINGULAR * size * size * size {
             break;
         }
         matrix += cross(linearised::solve(a)) * matrix;
