@@ -62,6 +62,8 @@ pub(super) struct Arrows<'a> {
     pub(super) room: Rectangle,
     /// See [`size`].
     pub(super) size: f64,
+    /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
+    pub(super) node: f64,
     /// How many times longer than the displacements they are.
     pub(super) times: f64,
     pub(super) colour: Colour,
@@ -94,7 +96,7 @@ impl Arrows<'_> {
     /// An arrow that begins and ends where arrows may be; others are left out, for a cut one would say something else.
     fn inside(&self, ends: [DVec2; 2]) -> Option<[DVec2; 2]> {
         let [left, top, width, height] = self.room.map(f64::from);
-        let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]);
+        let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
         let holds = |at: &DVec2| (left..=left + width).contains(&at.x) && (top..=top + height).contains(&at.y);
         (ends.iter().all(holds) && ends[0].distance(ends[1]) >= shortest).then_some(ends)
     }

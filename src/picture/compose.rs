@@ -266,6 +266,7 @@ impl<'a> Composer<'a> {
             forward: lens.forward,
             palette: &self.palette,
             line: scale.line(),
+            element,
             surfaces: view.visible.surfaces,
             shades: (!of_nodes.is_empty()).then_some((&self.ramp[..], &of_nodes[..])),
         };
@@ -307,6 +308,7 @@ impl<'a> Composer<'a> {
                 lens: &lens,
                 room: layout::clear_of_words(viewport, scale),
                 size: arrows::size(element, scale.unit),
+                node: if view.visible.nodes { node_radius(scale, element) } else { 0.0 },
                 times: view.arrow_scale,
                 colour: self.palette.arrows[usize::from(has_springs)],
                 halo: self.palette.background,

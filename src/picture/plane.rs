@@ -21,7 +21,7 @@ const LEAST_ROOM: f64 = 18.0;
 /// Bodies of more nodes than this are drawn without arrows.
 const MANY_NODES: usize = 150;
 /// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
-const CROWDED: f64 = 0.16;
+const CROWDED: f64 = 0.14;
 const SMALLEST_NODE: f64 = 1.4;
 /// How far the floor reaches down (px in the reference picture).
 const FLOOR_DEPTH: f64 = 50.0;

@@ -17,12 +17,16 @@ const ALARM_EDGE: f64 = 2.2;
 const BARE: f64 = 2.0;
 /// How much wider lines are that a field colours, to have room for a casing.
 const CASED: f64 = 1.9;
-/// Opacity of a spring behind a surface.
-const BEHIND: u8 = 28;
+/// Opacity of a spring behind a surface (of 255).
+const BEHIND: f64 = 28.0;
+/// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
+/// or there would be nothing but lines.
+const SMALL_ELEMENT: f64 = 26.0;
+const THINNEST: f64 = 0.4;
 /// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
 const HAZE: f64 = 0.62;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
-const LONGEST_STEP: f32 = 0.05;
+const LONGEST_STEP: f64 = 0.05;
 
 /// The edges of elements, once for all frames.
 #[derive(Debug, Default)]
@@ -59,6 +63,8 @@ pub(super) struct Wire<'a> {
     pub(super) palette: &'a Palette,
     /// Thickness of lines, in parts of that in the reference picture.
     pub(super) line: f64,
+    /// Length of an element's edge (px).
+    pub(super) element: f64,
     /// Whether surfaces are drawn, too.
     pub(super) surfaces: bool,
     /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
@@ -159,8 +165,14 @@ impl Wire<'_> {
         let nodes = &self.body.elements[element];
         let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
         for &node in nodes {
-            let own = self.place_colour(node).unwrap_or(colour);
-            strokes.push(self.straight([middle, self.position[node as usize]], [own; 2], width));
+            let ends = [middle, self.position[node as usize]];
+            strokes.push(match self.place_colour(node) {
+                None => self.straight(ends, [colour; 2], width),
+                Some(own) => {
+                    let second = Second::Casing(self.palette.casing);
+                    Stroke { second, ..self.straight(ends, [own; 2], CASED * width) }
+                }
+            });
         }
     }
 
@@ -179,24 +191,27 @@ impl Wire<'_> {
         let Some((ramp, places)) = places.filter(|(_, places)| !places.contains(&NOWHERE)) else {
             return strokes.push(self.straight([from, to], [faded(colour, from), faded(colour, to)], width));
         };
+        let places = places.map(f64::from);
         let pieces = ((places[1] - places[0]).abs() / LONGEST_STEP).ceil().max(1.0);
         for piece in 0..pieces as usize {
-            let shares = [piece, piece + 1].map(|at| at as f32 / pieces);
-            let ends = shares.map(|share| from.lerp(to, f64::from(share)));
-            let colours = shares.map(|share| ramp::colour(ramp, places[0] + (places[1] - places[0]) * share));
-            let casing = faded(self.palette.casing, from.lerp(to, f64::from(shares[0].midpoint(shares[1]))));
+            let shares = [piece, piece + 1].map(|at| at as f64 / pieces);
+            let ends = shares.map(|share| from.lerp(to, share));
+            let colours = shares.map(|share| ramp::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
+            let casing = faded(self.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
             let plain = self.straight(ends, colours, CASED * width);
             strokes.push(Stroke { second: Second::Casing(casing), ..plain });
         }
     }
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Stroke {
+        let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
+        let behind = (BEHIND * strength * strength).round() as u8;
         Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,
             second: Second::None,
-            behind: if self.surfaces { BEHIND } else { 0 },
-            width: narrow(width * self.line),
+            behind: if self.surfaces { behind.max(1) } else { 0 },
+            width: narrow(width * self.line * strength.max(THINNEST)),
         }
     }
 

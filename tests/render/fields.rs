@@ -153,7 +153,7 @@ fn the_bar_has_round_numbers_under_its_own_colours() {
 
 #[test]
 fn a_point_says_that_values_lie_beyond_the_scale() {
-    for (range, points) in [([0.0, 1e9], 0), ([0.0, 1e-3], 1), ([0.05, 1e9], 1), ([1.0, 1.5], 2)] {
+    for (range, points) in [([0.0, 1e9], 0), ([0.0, 1e-3], 1), ([5.0, 1e9], 1), ([5.0, 6.0], 2)] {
         let (scene, frame) = with_field(Field::Speed, range, 4);
         let drawn = marks(&compose(&scene, &frame), MarkShape::Point);
         // Each with a rim.
@@ -301,7 +301,9 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
     });
     let tally = picture.marks.iter().filter(|mark| {
         let struck = matches!(mark.shape, MarkShape::Struck | MarkShape::Blend | MarkShape::Point);
-        struck || (mark.shape == MarkShape::Filled && mark.colour == picture.palette.tally)
+        // The rim of a point lies under it.
+        (struck && mark.colour != picture.palette.axis)
+            || (mark.shape == MarkShape::Filled && mark.colour == picture.palette.tally)
     });
     let tally = tally.map(|mark| {
         let [left, top, width, height] = mark.rectangle;
