@@ -40,20 +40,14 @@ const CLOCKWISE = 5u;
 const FADING = 6u;
 const SHADOW = 7u;
 const SMOOTH = 8u;
-const ARROW = 16u;
-const PIN = 17u;
-const HIDDEN_PIN = 18u;
-const HAND = 19u;
-const HIDDEN_HAND = 20u;
+const ARROW = 9u;
+const BLEND = 10u;
+const POINT = 11u;
+const PIN = 12u;
+const HIDDEN_PIN = 13u;
+const HAND = 14u;
+const HIDDEN_HAND = 15u;
 
-// An arrow in a mark of height 23: length and half width of its head, how far its notch goes in, half the thickness of
-// its shaft, its halo, and the length below which all of it shrinks.
-const ARROW_HEIGHT = 23.0;
-const ARROW_HEAD = vec2<f32>(21.0, 8.5);
-const ARROW_NOTCH = 4.0;
-const ARROW_SHAFT = 2.1;
-const ARROW_HALO = 2.4;
-const SHORT_ARROW = 34.0;
 // What is hidden is so faint, and a halo so opaque.
 const HIDDEN = 0.38;
 const HALO = 0.75;
@@ -83,27 +77,51 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
     return saturate(max(ring, head));
 }
 
-// The distance (px) from the border of an arrow that runs along the x-axis from 0 to `size.x`; negative inside it.
-fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> f32 {
-    let scale = size.y / ARROW_HEIGHT;
-    let short = min(1.0, size.x / (SHORT_ARROW * scale));
-    let head = ARROW_HEAD * scale * short;
-    let notch = ARROW_NOTCH * scale * short;
-    let y = abs(at.y);
-    let from_base = at.x - (size.x - head.x);
-    // The sloping side of the head, and the notch behind it.
-    let side = dot(vec2(from_base, y - head.y), normalize(vec2(head.y, head.x)));
-    let back = dot(vec2(from_base, y - head.y), normalize(vec2(-head.y, -notch)));
-    let shaft = max(y - ARROW_SHAFT * scale * short, max(-at.x, from_base - notch));
-    return min(max(side, back), shaft);
-}
-
 // A mark with a halo: how far a pixel is outside of it (px).
 fn with_halo(colour: vec3<f32>, halo: vec3<f32>, outside: f32, width: f32, strength: f32) -> vec4<f32> {
     let inner = saturate(0.5 - outside);
     let outer = HALO * saturate(0.5 + width - outside);
     let alpha = inner + outer * (1.0 - inner);
     return vec4((colour * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha * strength);
+}
+
+// A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and the
+// halo. The head of a short one is this part of its length, and all of it is as much smaller.
+const ARROW_HEAD = vec2<f32>(1.235, 0.2);
+const ARROW_SHAFT = 0.247;
+const ARROW_HALO = 0.17647;
+const ARROW_SHORT = 0.62;
+
+fn off_segment(at: vec2<f32>, from_end: vec2<f32>, to_end: vec2<f32>) -> f32 {
+    let along = to_end - from_end;
+    let share = saturate(dot(at - from_end, along) / max(dot(along, along), 1e-9));
+    return length(at - from_end - share * along);
+}
+
+// How far a point is outside of an arrow (px), for a mark of a size, negative inside; and the width of its halo.
+fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
+    let wide = size.y / (1.0 + 2.0 * ARROW_HALO);
+    let pad = wide * ARROW_HALO;
+    let tip = size.x - 2.0 * pad;
+    let head = min(ARROW_HEAD.x * wide, ARROW_SHORT * tip);
+    let part = head / (ARROW_HEAD.x * wide);
+    let half_head = 0.5 * wide * part;
+    let half_shaft = 0.5 * ARROW_SHAFT * wide * part;
+    let back = tip - head;
+    let notch = ARROW_HEAD.y * wide * part;
+    let p = vec2(at.x - pad, abs(at.y - 0.5 * size.y));
+    let joint = vec2(back + notch * (1.0 - half_shaft / max(half_head, 1e-6)), half_shaft);
+    let barb = vec2(back, half_head);
+    let point = vec2(tip, 0.0);
+    let off = min(
+        min(off_segment(p, vec2(0.0), vec2(0.0, half_shaft)), off_segment(p, vec2(0.0, half_shaft), joint)),
+        min(off_segment(p, joint, barb), off_segment(p, barb, point)),
+    );
+    let in_shaft = p.x >= 0.0 && p.x <= joint.x && p.y <= half_shaft;
+    let side = (p.x - barb.x) * (point.y - barb.y) - (p.y - barb.y) * (point.x - barb.x);
+    let rear = p.x >= back + notch * (1.0 - p.y / max(half_head, 1e-6));
+    let inside = in_shaft || (rear && side > 0.0 && p.y <= half_head);
+    return vec2(select(off, -off, inside), max(pad * max(part, 0.5) - 0.5, 0.0));
 }
 
 @vertex
@@ -151,11 +169,6 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             let across = smoothstep(1.0, 0.55, abs(middle.x));
             return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
         }
-        case ARROW: {
-            let size = corner.rectangle.zw;
-            let outside = off_arrow(at - vec2(0.0, 0.5 * size.y), size);
-            return with_halo(corner.colour.rgb, corner.second.rgb, outside, ARROW_HALO * size.y / ARROW_HEIGHT, 1.0);
-        }
         case PIN, HIDDEN_PIN: {
             let radius = 0.5 * corner.rectangle.z;
             let outside = (radius * (abs(middle.x) + abs(middle.y)) - 0.74 * radius) * 0.70710678;
@@ -172,6 +185,21 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case SMOOTH: {
             let inside = min(at, corner.rectangle.zw - at);
             return vec4(corner.colour.rgb, saturate(inside.x) * saturate(inside.y));
+        }
+        case ARROW: {
+            let arrow = off_arrow(at, corner.rectangle.zw);
+            let inside = saturate(0.5 - arrow.x);
+            let around = saturate(0.5 + arrow.y - arrow.x);
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), max(inside, 0.92 * around));
+        }
+        case BLEND: {
+            return vec4(mix(corner.colour.rgb, corner.second.rgb, at.x / corner.rectangle.z), 1.0);
+        }
+        case POINT: {
+            let size = corner.rectangle.zw;
+            let slant = vec2(0.5 * size.y, size.x);
+            let off = dot(vec2(at.x - size.x, abs(at.y - 0.5 * size.y)), slant) / length(slant);
+            return vec4(corner.colour.rgb, saturate(0.5 - off));
         }
         default: {
             return vec4(corner.colour.rgb, 1.0);

@@ -38,12 +38,17 @@ fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>
     return Corner(panel.clip * vec4(position, 1.0), position, normal, hatch);
 }
 
-@vertex
-fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
+// Where a corner of the turned-over set is drawn.
+fn moved_nearer(position: vec3<f32>) -> vec4<f32> {
     var place = panel.clip * vec4(position, 1.0);
     place.z *= place.w / max(place.w - NEARER, panel.near);
     place.z = min(place.z, place.w);
-    return Corner(place, position, normal, hatch);
+    return place;
+}
+
+@vertex
+fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
+    return Corner(moved_nearer(position), position, normal, hatch);
 }
 
 struct Light {

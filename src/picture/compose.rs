@@ -1,21 +1,26 @@
 //! Putting a picture together.
 
-use super::arrow::Arrows;
+use super::arrows::{self, Arrows};
 use super::camera::{Lens, Middles, framing};
 use super::caption::{Writer, numbers};
 use super::ears::{Ears, bare_elements};
+use super::field::{NOWHERE, Shades};
 use super::grip::Hands;
 use super::layout::{self, Rectangle, Scale};
+use super::legend::{self, Legend};
 use super::narrow::{narrow, narrow_point};
 use super::obstacle::{Staged, Staging};
 use super::obstacle_plane;
 use super::palette::Palette;
-use super::plane::Flat;
+use super::plane::{Flat, node_radius};
+use super::pointer::Pointers;
+use super::ramp;
 use super::shadow::{self, Plane};
 use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
-use super::{Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight};
-use crate::scene::Scene;
+use super::wire::{Edges, Wire};
+use super::{Colour, Floor, Framing, Line, LineKind, Mark, Mesh, Panel, Picture, Sight, Stroke};
+use crate::scene::{Camera, Follow, Scene};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
@@ -42,6 +47,8 @@ const FADE_ABOVE: f64 = 94.0;
 const SOFT_SHARE: f64 = 4.5;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
 const MOST_CELLS: f64 = 10.0;
+/// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
+const SHEER: f64 = 0.38;
 /// Coordinates of what blew up are kept within this (sides).
 const FARTHEST: f64 = 1e12;
 /// Room for thick lines around a body (px in the reference picture).
@@ -61,6 +68,12 @@ pub struct Composer<'a> {
     ears: Ears,
     /// Elements without faces.
     bare: Vec<usize>,
+    /// The colours of a field, if one is shown.
+    ramp: Vec<Colour>,
+    /// The edges of the elements, if surfaces are not shown.
+    edges: Edges,
+    /// The nodes that get arrows.
+    bearers: Vec<u32>,
     extent: f64,
     /// The middle of the nodes at the start (m).
     start: DVec3,
@@ -116,15 +129,21 @@ impl<'a> Composer<'a> {
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let ears = Ears::new(body);
+        let skin = Skin::new(body, &ears);
+        let bare = bare_elements(body);
+        let visible = scene.view.visible;
         Self {
             scene,
+            ramp: scene.view.colour.map_or_else(Vec::new, |_| ramp::ramp(scene.view.theme)),
+            edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
+            bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: Palette::of(scene.view.theme),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
-            skin: Skin::new(body, &ears),
+            skin,
             ears,
-            bare: bare_elements(body),
+            bare,
             extent,
             start_box: bounds(&scene.initial.position).into(),
             start: mean(&scene.initial.position).unwrap_or_default(),
@@ -136,7 +155,10 @@ impl<'a> Composer<'a> {
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let panels = layout::panels(size, frame.runs.len(), view.columns);
+        let legend = self.legend(size, frame.runs.len());
+        // The key stands below all panels.
+        let above_legend = [size[0], size[1] - legend.map_or(0, |legend| legend.height)];
+        let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
         let middles = Middles::new(frame.runs.iter().filter_map(|run| middle(&run.snapshot)), self.start);
         let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
         let framing = framing(&view.camera, &middles, !level);
@@ -156,6 +178,11 @@ impl<'a> Composer<'a> {
             let numbers = numbers(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             writer.count(viewport, &self.tally, &run.snapshot, &numbers);
         }
+        if let Some((legend, &viewport)) = legend.zip(panels.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, viewport, &framing, scale));
+            let colours = view.colour.as_ref().map(|colour| (colour, &self.ramp[..], legend::beyond(colour, frame)));
+            legend.draw(&mut writer, size, arrow, colours);
+        }
         let Writer { mut marks, words, .. } = writer;
         let mut under = Vec::new();
         let panels = panels
@@ -163,7 +190,34 @@ impl<'a> Composer<'a> {
             .zip(&frame.runs)
             .map(|(&viewport, run)| self.panel(viewport, run, &framing, scale, [&mut under, &mut marks]))
             .collect();
-        Picture { size, palette: self.palette, panels, under, marks, words }
+        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+    }
+
+    /// The key of colours and arrows, if there are any.
+    fn legend(&self, size: [u32; 2], runs: usize) -> Option<Legend> {
+        let view = &self.scene.view;
+        let parts = [view.visible.displacements, view.colour.is_some()];
+        if parts == [false; 2] {
+            return None;
+        }
+        let panels = layout::panels(size, runs, view.columns);
+        Legend::new(size, Scale::new(size, *panels.first()?), parts)
+    }
+
+    /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
+    /// how large it is beside those of the reference picture.
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
+        let Self { scene, .. } = self;
+        let edges = viewport.map(f64::from);
+        let pixels = |framing: &Framing| {
+            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
+            // In space, the key holds at the point looked at.
+            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
+        };
+        let camera = Camera { follow: Follow::Nothing, ..scene.view.camera.clone() };
+        let times = scene.view.arrow_scale;
+        let metres = legend.arrow_metres(pixels(&framing(&camera, &Middles::new([], DVec3::ZERO), false)) * times);
+        [metres, metres * pixels(seen) * times, arrows::size(pixels(seen) * scene.view.side, scale.unit)]
     }
 
     fn panel(
@@ -185,7 +239,8 @@ impl<'a> Composer<'a> {
         let position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * side)).collect();
         let mut lines = Vec::new();
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
-        if !position.is_empty() {
+        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &run.snapshot.field));
+        if !position.is_empty() && view.visible.surfaces {
             let surroundings = Surroundings {
                 body,
                 ears: &self.ears,
@@ -194,17 +249,43 @@ impl<'a> Composer<'a> {
                 origin,
                 side,
                 soft: self.soft * side,
+                shades: shades.as_ref(),
             };
             let over = &run.snapshot.turned_over;
             let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
             surroundings.add(&boundary(body, over, false), kinds, &mut sound, &mut lines);
             let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
             surroundings.add(&boundary(body, over, true), kinds, &mut turned_over, &mut lines);
-            self.add_bare(&position, over, origin, &mut lines);
+            if shades.is_none() {
+                self.add_bare(&position, over, origin, &mut lines);
+            }
         }
         let flat = body.dimension == Dimension::Plane;
         let element = lens.focal * side / if flat { 1.0 } else { framing.distance };
         let diverged = matches!(run.snapshot.status, Status::Diverged(_));
+        let of_nodes = match &shades {
+            Some(shades) if !view.visible.surfaces || !self.bare.is_empty() => shades.of_nodes(body),
+            _ => Vec::new(),
+        };
+        let wire = Wire {
+            body,
+            position: &position,
+            origin,
+            side,
+            forward: lens.forward,
+            palette: &self.palette,
+            line: scale.line(),
+            element,
+            surfaces: view.visible.surfaces,
+            shades: (!of_nodes.is_empty()).then_some((&self.ramp[..], &of_nodes[..])),
+        };
+        let strokes = self.strokes(run, &wire);
+        let (mut beads, mut room) = (Vec::new(), LINE_ROOM * scale.line() + 2.0);
+        if view.visible.nodes && !flat && !diverged {
+            let radius = node_radius(scale, element);
+            beads = wire.without_surfaces().beads(radius);
+            room = room.max(radius + 2.0);
+        }
         if flat {
             let flat = Flat {
                 body,
@@ -218,10 +299,19 @@ impl<'a> Composer<'a> {
             };
             flat.floors(&self.scene.obstacles, run.snapshot.time, under);
             if !diverged {
-                flat.signs(above);
+                if view.visible.surfaces {
+                    flat.signs(above);
+                }
+                if view.visible.nodes {
+                    let colour = |node: usize| {
+                        let place = of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
+                        place.filter(|_| !view.visible.surfaces).map(|place| ramp::colour(&self.ramp, place))
+                    };
+                    flat.nodes(element, &colour, above);
+                }
             }
         }
-        let arrows = Arrows { lens: &lens, viewport, scale, palette: &self.palette };
+        let pointers = Pointers { lens: &lens, viewport, scale, palette: &self.palette };
         let time = run.snapshot.time;
         let (obstacles, staged) = if flat {
             let flat = obstacle_plane::Flat {
@@ -235,7 +325,7 @@ impl<'a> Composer<'a> {
                 line_scale: scale.line(),
                 palette: &self.palette,
             };
-            flat.arrows(&arrows, above);
+            flat.arrows(&pointers, above);
             flat.draw()
         } else {
             let staging = Staging {
@@ -253,7 +343,7 @@ impl<'a> Composer<'a> {
                 position: &position,
                 start: self.start_box,
             };
-            staging.arrows(&arrows, above);
+            staging.arrows(&pointers, above);
             staging.pierced(&[&sound, &turned_over], &mut lines);
             staging.draw(&mut lines)
         };
@@ -268,12 +358,25 @@ impl<'a> Composer<'a> {
                 viewport,
                 scale,
                 palette: &self.palette,
-                arrows: &arrows,
+                pointers: &pointers,
             };
             hands.draw(above);
         }
+        if view.visible.displacements && !diverged && !position.is_empty() {
+            let has_springs = self.scene.runs.get(run.run).is_some_and(|run| !run.model.springs().is_empty());
+            let arrows = Arrows {
+                lens: &lens,
+                room: layout::clear_of_words(viewport, scale),
+                size: arrows::size(element, scale.unit),
+                node: if view.visible.nodes { node_radius(scale, element) } else { 0.0 },
+                times: view.arrow_scale,
+                colour: self.palette.arrows[usize::from(has_springs)],
+                halo: self.palette.background,
+            };
+            arrows.draw(&self.facing_bearers(&position, &lens), &body.rest, &position, &run.snapshot.placement, above);
+        }
         let touched = position.iter().chain(&staged.outermost);
-        let mut region = region(viewport, touched, &lens, LINE_ROOM * scale.line() + 2.0);
+        let mut region = region(viewport, touched, &lens, room);
         if diverged {
             // What blew up may lie across everything; the words that say so stay on clean ground.
             region = overlap(region, layout::clear_of_words(viewport, scale));
@@ -297,7 +400,55 @@ impl<'a> Composer<'a> {
             turned_over,
             lines,
             obstacles,
+            strokes,
+            beads,
         }
+    }
+
+    /// Lines with colours of their own: springs, or the edges of elements where there would be nothing else to see, and
+    /// what a field colours of elements without faces.
+    fn strokes(&self, run: &RunFrame, wire: &Wire<'_>) -> Vec<Stroke> {
+        let visible = self.scene.view.visible;
+        let over = &run.snapshot.turned_over;
+        let mut strokes = Vec::new();
+        if wire.position.is_empty() {
+            return strokes;
+        }
+        if visible.surfaces && wire.shades.is_some() {
+            strokes.extend(wire.bare(&self.bare, over));
+        }
+        let springs = match self.scene.runs.get(run.run) {
+            Some(run) if visible.springs => run.model.springs(),
+            _ => &[],
+        };
+        if !visible.surfaces && springs.is_empty() {
+            strokes.extend(wire.edges(&self.edges, over, false));
+        }
+        if !springs.is_empty() {
+            strokes.extend(wire.without_surfaces().springs(springs));
+            if !visible.surfaces {
+                // Which elements have turned over is told in any case.
+                strokes.extend(wire.edges(&self.edges, over, true));
+            }
+        }
+        strokes
+    }
+
+    /// The nodes that get arrows, without those of which surfaces in space hide every face.
+    fn facing_bearers(&self, position: &[DVec3], lens: &Lens) -> Vec<u32> {
+        if lens.orthographic || !self.scene.view.visible.surfaces {
+            return self.bearers.clone();
+        }
+        let mut faces_away = vec![false; position.len()];
+        self.skin.nodes.iter().for_each(|&node| faces_away[node as usize] = true);
+        for triangle in &self.skin.triangles {
+            let nodes = triangle.map(|at| self.skin.nodes[at as usize] as usize);
+            let [a, b, c] = nodes.map(|node| position[node]);
+            if lens.sees(a, (b - a).cross(c - a)) {
+                nodes.iter().for_each(|&node| faces_away[node] = false);
+            }
+        }
+        self.bearers.iter().copied().filter(|&node| !faces_away[node as usize]).collect()
     }
 
     /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
@@ -362,11 +513,16 @@ impl<'a> Composer<'a> {
         }
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
-        let shades = if key.dot(plane.normal) > 0.05 {
+        let mut shades = if key.dot(plane.normal) > 0.05 {
             shadow::shades(&points, &triangles, &plane, key, middle, fade[1], self.soft)
         } else {
             std::array::from_fn(|_| shadow::Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
+        if !view.visible.surfaces {
+            // What one sees through lets most of the light through.
+            let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
+            cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
+        }
         let cell = cell(self.extent / side);
         let grid = plane.axes.map(|axis| narrow(((origin - anchor) / side).dot(axis).rem_euclid(cell)));
         Some(Floor {
@@ -391,6 +547,15 @@ impl<'a> Composer<'a> {
         let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
+}
+
+/// The nodes that get arrows: those on the surface and those of elements without faces.
+fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
+    let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
+    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    arrows::bearers(&nodes)
 }
 
 /// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …

@@ -1,9 +1,9 @@
 //! Marks on nodes that a hand holds or drags: nothing where no hand is at work.
 
-use super::arrow::{Arrows, Going};
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::Palette;
+use super::pointer::{Going, Pointers};
 use super::{Mark, MarkShape};
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;
@@ -35,7 +35,7 @@ pub(super) struct Hands<'a> {
     pub(super) viewport: Rectangle,
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
-    pub(super) arrows: &'a Arrows<'a>,
+    pub(super) pointers: &'a Pointers<'a>,
 }
 
 impl Hands<'_> {
@@ -56,8 +56,8 @@ impl Hands<'_> {
             if dragged {
                 let points: Vec<_> = nodes().map(|&node| self.position[node as usize]).collect();
                 let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-                let gap = HAND[usize::from(self.arrows.lens.orthographic)] + 3.0;
-                self.arrows.draw(middle, self.going(grip), false, gap, marks);
+                let gap = HAND[usize::from(self.pointers.lens.orthographic)] + 3.0;
+                self.pointers.draw(middle, self.going(grip), false, gap, marks);
             }
         }
     }
@@ -72,7 +72,7 @@ impl Hands<'_> {
 
     /// Whether each node lies on a side of the body that is turned towards the viewer.
     fn visible(&self) -> Vec<bool> {
-        let lens = self.arrows.lens;
+        let lens = self.pointers.lens;
         if lens.orthographic {
             return vec![true; self.position.len()];
         }
@@ -90,9 +90,9 @@ impl Hands<'_> {
 
     fn mark(&self, point: DVec3, visible: bool, ringed: bool, marks: &mut Vec<Mark>) {
         let sizes = if ringed { HAND } else { PIN };
-        let flat = self.arrows.lens.orthographic;
+        let flat = self.pointers.lens.orthographic;
         let radius = (sizes[usize::from(flat)] * self.scale.line()).min(SHARE * self.element);
-        let Some((pixel, _)) = self.arrows.lens.project(point).filter(|_| radius >= NARROWEST / 2.0) else { return };
+        let Some((pixel, _)) = self.pointers.lens.project(point).filter(|_| radius >= NARROWEST / 2.0) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let inside = |at: f64, low: f64, length: f64| (low + radius..=low + length - radius).contains(&at);
         if !inside(pixel[0], left, width) || !inside(pixel[1], top, height) {

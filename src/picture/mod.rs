@@ -8,28 +8,34 @@
 //! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
 //! out depends on the scene and that frame alone.
 
-mod arrow;
+mod arrows;
 mod camera;
 mod caption;
 mod compose;
 mod ears;
+mod field;
 mod grip;
 mod layout;
+mod legend;
 mod narrow;
 mod number;
 mod obstacle;
 mod obstacle_plane;
 mod palette;
 mod plane;
+mod pointer;
+mod ramp;
 mod shadow;
 mod surface;
 mod tally;
 mod text;
+mod wire;
 
 pub use camera::{Framing, Lens, Middles, framing};
 pub use compose::{Composer, compose};
 pub use layout::Rectangle;
 pub use palette::{Colour, Palette};
+pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Glyph, TextRun, Weight, font, shortened, width};
 
@@ -42,6 +48,8 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Its colours.
     pub palette: Palette,
+    /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
+    pub ramp: Vec<Colour>,
     /// One for each run shown.
     pub panels: Vec<Panel>,
     /// Flat marks below the bodies, in the order in which they are drawn.
@@ -71,6 +79,10 @@ pub struct Panel {
     pub lines: Vec<Line>,
     /// What the body bounces off, besides the floor.
     pub obstacles: Obstacles,
+    /// Springs and other lines with colours of their own, above the surfaces, in the order in which they are drawn.
+    pub strokes: Vec<Stroke>,
+    /// Nodes in space, above the strokes, in the order in which they are drawn.
+    pub beads: Vec<Bead>,
 }
 
 /// The obstacles of a panel.
@@ -185,6 +197,9 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
     pub triangles: Vec<[u32; 3]>,
+    /// Where each corner stands on the scale of a field, from 0 to 1; −1 where there is no value. Empty if no field
+    /// is shown.
+    pub shades: Vec<f32>,
 }
 
 /// A corner of a surface.
@@ -228,6 +243,45 @@ pub enum LineKind {
     ObstacleContour = 9,
 }
 
+/// A straight line in space with colours of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Its ends.
+    pub ends: [[f32; 3]; 2],
+    /// The colours at its ends.
+    pub colours: [Colour; 2],
+    /// What else there is to its colour.
+    pub second: Second,
+    /// Opacity of what lies behind a surface.
+    pub behind: u8,
+    /// Its width (px).
+    pub width: f32,
+}
+
+/// The second colour of a stroke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Second {
+    /// There is none.
+    None,
+    /// It takes the place of the others over surfaces.
+    OnBody(Colour),
+    /// It runs along both sides, so that light colours show on light ground.
+    Casing(Colour),
+}
+
+/// A node in space: a disc that always faces the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bead {
+    /// Its middle.
+    pub at: [f32; 3],
+    /// Its radius (px).
+    pub radius: f32,
+    /// Its colour.
+    pub colour: Colour,
+    /// The colour of its rim.
+    pub rim: Colour,
+}
+
 /// A flat mark on the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
@@ -267,8 +321,13 @@ pub enum MarkShape {
     Shadow,
     /// A filled rectangle with smooth borders, a pixel wide inside it.
     Smooth,
-    /// An arrow along the whole width, with a halo of the second colour.
+    /// An arrow along the width with a halo of the second colour. The halo fills the rectangle's border, 3/23 of the
+    /// height wide; the tip stands before it.
     Arrow,
+    /// A filled rectangle that goes from its colour to the second one along its width.
+    Blend,
+    /// A triangle that points along the width.
+    Point,
     /// A diamond with a halo of the second colour.
     Pin,
     /// The same, faint: of something hidden.

@@ -44,6 +44,109 @@ fn with_minus(text: String) -> String {
     zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
 }
 
+/// Powers of a thousand that a unit's prefix stands for.
+const PREFIXES: [(f64, &str); 7] =
+    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+
+/// The prefix that leaves one to three digits before the point, and what it stands for.
+fn prefix(size: f64) -> (f64, &'static str) {
+    // A thousandth less than whole numbers still has their prefix, whatever was rounded.
+    PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
+pub(super) fn round_below(value: f64) -> f64 {
+    let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));
+    let digit = value / libm::pow(10.0, power);
+    times_ten(
+        if digit >= 5.0 {
+            5.0
+        } else if digit >= 2.0 {
+            2.0
+        } else {
+            1.0
+        },
+        power,
+    )
+}
+
+/// A number times a power of ten, as exact as it is typed.
+fn times_ten(digits: f64, power: f64) -> f64 {
+    format!("{digits}e{power}").parse().unwrap_or(digits)
+}
+
+/// A round length (m) with the prefix that suits it.
+pub(super) fn metres(length: f64) -> String {
+    let (factor, prefix) = prefix(length);
+    let value = length / factor;
+    let plain = (0.01..1e4).contains(&value);
+    if plain { format!("{} {prefix}m", crate::sim::words::rounded(value, 3)) } else { format!("{value:.0e} {prefix}m") }
+}
+
+/// Round numbers along a scale.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Ticks {
+    /// Where they stand, from 0 at the low end to 1 at the high one.
+    pub(super) places: Vec<f64>,
+    /// What stands there.
+    pub(super) texts: Vec<String>,
+    /// The unit with its prefix.
+    pub(super) unit: String,
+}
+
+impl Ticks {
+    /// Three to five ticks of a rising range, in a unit that has prefixes unless it is empty.
+    pub(super) fn new([low, high]: [f64; 2], unit: &str) -> Self {
+        let largest = low.abs().max(high.abs());
+        let (factor, prefix) = if unit.is_empty() { (1.0, "") } else { prefix(largest) };
+        let [low, high] = [low / factor, high / factor];
+        let (values, decimals) = round_values(low, high);
+        let place = |value: f64| ((value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0)).clamp(0.0, 1.0);
+        let plain = decimals <= 5 && largest / factor < 99_999.5;
+        let text = |value: f64| match plain {
+            true => with_minus(format!("{value:.decimals$}")),
+            false => with_minus(format!("{:e}", crate::sim::words::rounded(value, 3))),
+        };
+        Self {
+            places: values.iter().copied().map(place).collect(),
+            texts: values.iter().copied().map(text).collect(),
+            unit: format!("{prefix}{unit}"),
+        }
+    }
+
+    /// Keeps every second tick, with the first.
+    pub(super) fn halve(&mut self) {
+        self.places = self.places.iter().copied().step_by(2).collect();
+        self.texts = self.texts.iter().step_by(2).cloned().collect();
+    }
+}
+
+/// Three to five round values in a range, and how many decimals they need. Of the possible ones those that hold both
+/// ends, then the most.
+fn round_values(low: f64, high: f64) -> (Vec<f64>, usize) {
+    let power = libm::floor(libm::log10((high / 2.0 - low / 2.0).clamp(1e-300, 1e300)));
+    let mut best = (Vec::new(), 0);
+    let mut best_rank = (false, 0);
+    for (down, digits) in [(0, 5.0), (0, 2.5), (0, 2.0), (0, 1.0), (1, 5.0), (1, 2.5), (1, 2.0), (1, 1.0)] {
+        let power = power - f64::from(down);
+        let step = times_ten(digits, power);
+        let [from, to] = [low / step, high / step];
+        let [first, last] = [libm::ceil(from - 1e-9), libm::floor(to + 1e-9)];
+        let count = last - first + 1.0;
+        if !(3.0..=5.0).contains(&count) {
+            continue;
+        }
+        let ends = first - from < 1e-6 && to - last < 1e-6;
+        let count = count as usize;
+        if best.0.is_empty() || (ends, count) > best_rank {
+            let decimals = (-power).clamp(0.0, 300.0) as usize + usize::from(digits == 2.5 && power <= 0.0);
+            best = ((0..count).map(|at| (first + at as f64) * step).collect(), decimals);
+            best_rank = (ends, count);
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,5 +174,45 @@ mod tests {
     #[test]
     fn ratios_have_two_decimals_and_a_real_minus() {
         assert_eq!([0.987, -1.0, -0.001, f64::INFINITY].map(ratio), ["0.99", "−1.00", "0.00", "∞"]);
+    }
+
+    #[test]
+    fn ticks_are_round_and_in_the_range() {
+        let expected: [(_, _, &[&str], _); 8] = [
+            ([0.0, 0.5], "", &["0.00", "0.25", "0.50"], ""),
+            ([0.0, 1.0], "", &["0.00", "0.25", "0.50", "0.75", "1.00"], ""),
+            ([0.0, 9.9], "m/s", &["0", "2", "4", "6", "8"], "m/s"),
+            ([0.0, 0.05], "m", &["0", "10", "20", "30", "40", "50"][..0], "mm"),
+            ([-0.02, 0.02], "m", &["−20", "−10", "0", "10", "20"], "mm"),
+            ([0.0, 12.5], "J", &["0.0", "2.5", "5.0", "7.5", "10.0", "12.5"][..0], "J"),
+            ([0.0, 2e6], "J", &["0.0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
+            ([0.0, 3e-7], "", &["0e0", "1e−7", "2e−7", "3e−7"], ""),
+        ];
+        for (range, unit, texts, prefixed) in expected {
+            let ticks = Ticks::new(range, unit);
+            assert!(texts.is_empty() || ticks.texts == texts, "{range:?}: {ticks:?}");
+            assert_eq!(ticks.unit, prefixed, "{range:?}");
+        }
+        for step in 0..4000 {
+            let high = 1e-8 * libm::pow(10.0, f64::from(step) * 0.004_37);
+            for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high] {
+                let ticks = Ticks::new([low, high], "m");
+                assert!((3..=5).contains(&ticks.places.len()), "{low} {high}: {ticks:?}");
+                assert!(ticks.places.windows(2).all(|two| two[0] < two[1]), "{low} {high}: {ticks:?}");
+                assert!(ticks.places.iter().all(|place| (0.0..=1.0).contains(place)), "{low} {high}: {ticks:?}");
+                let distinct: std::collections::BTreeSet<_> = ticks.texts.iter().collect();
+                assert_eq!(distinct.len(), ticks.texts.len(), "{low} {high}: {ticks:?}");
+            }
+        }
+        for odd in [[0.0, f64::MAX], [-f64::MAX, f64::MAX], [1.0, 1.0 + 1e-15], [0.0, 5e-324], [1e-310, 2e-310]] {
+            assert!(Ticks::new(odd, "J").places.iter().all(|place| (0.0..=1.0).contains(place)), "{odd:?}");
+        }
+    }
+
+    #[test]
+    fn round_lengths_have_a_prefix() {
+        let lengths = [0.0123, 0.05, 0.99, 1.0, 2.6, 4000.0, 3e-6, 7e-13, 6e13];
+        let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "5e-4 nm", "5e4 Gm"];
+        assert_eq!(lengths.map(|length| metres(round_below(length))), expected);
     }
 }

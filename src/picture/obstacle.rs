@@ -1,10 +1,10 @@
 //! Obstacles in space. Balls, rods and boxes are solids with light on them; plates and all floors but the ground are
 //! transparent slabs, so that body and alarm stay visible behind them.
 
-use super::arrow::{Arrows, Going};
 use super::camera::Lens;
 use super::narrow::{narrow, narrow_point};
 use super::palette::Palette;
+use super::pointer::{Going, Pointers};
 use super::shadow::Plane;
 use super::{Line, LineKind, Mark, Mesh, Obstacles, Pane, PaneCorner, Slab, Solid, Vertex};
 use crate::sim::contact::{Motion, Obstacle, Pose, Shape};
@@ -134,7 +134,7 @@ impl Staging<'_> {
     }
 
     /// The arrows of plates that move.
-    pub(super) fn arrows(&self, arrows: &Arrows<'_>, marks: &mut Vec<Mark>) {
+    pub(super) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
         for obstacle in self.obstacles {
             let Shape::Plate { normal, .. } = obstacle.shape else { continue };
             if obstacle.motion == Motion::Still {
@@ -146,7 +146,7 @@ impl Staging<'_> {
             let going = going(obstacle, middle, self.time, self.frame, half.max_element());
             // Always on the side that is not the body's.
             let arriving = going.velocity.dot(out) > 0.0;
-            arrows.draw(middle - THICKNESS * self.extent * out, going, arriving, 3.0, marks);
+            pointers.draw(middle - THICKNESS * self.extent * out, going, arriving, 3.0, marks);
         }
     }
 
@@ -242,7 +242,11 @@ impl Staging<'_> {
             normal: narrow_point(normal).to_array(),
             hatch: 0.0,
         };
-        Mesh { vertices: lathe.rings.iter().flatten().map(vertex).collect(), triangles: lathe.triangles() }
+        Mesh {
+            vertices: lathe.rings.iter().flatten().map(vertex).collect(),
+            triangles: lathe.triangles(),
+            shades: Vec::new(),
+        }
     }
 
     /// Where a round surface turns away from the viewer, and where it goes through the ground.

@@ -1,11 +1,11 @@
 //! Obstacles in the plane: discs, rods with round ends and rectangles, flat and behind the body. Plates are drawn as
 //! floors are.
 
-use super::arrow::Arrows;
 use super::camera::Lens;
 use super::narrow::narrow_point;
 use super::obstacle::{HalfSpace, Staged, clipped_polygon, going};
 use super::palette::{Colour, Palette};
+use super::pointer::Pointers;
 use super::{Mark, Mesh, Obstacles, Solid, Vertex};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use glam::DVec3;
@@ -47,7 +47,7 @@ pub(super) fn half_space(obstacle: &Obstacle, time: f64) -> Option<HalfSpace> {
 
 impl Flat<'_> {
     /// The arrows of plates that move, on the side that is solid.
-    pub(super) fn arrows(&self, arrows: &Arrows<'_>, marks: &mut Vec<Mark>) {
+    pub(super) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
         for obstacle in self.obstacles {
             let Shape::Plate { point, .. } = obstacle.shape else { continue };
             let Some((normal, _)) = half_space(obstacle, self.time).filter(|_| obstacle.motion != Motion::Still) else {
@@ -55,7 +55,7 @@ impl Flat<'_> {
             };
             let point = obstacle.pose(self.time).apply(point, point);
             let going = going(obstacle, point, self.time, self.frame, self.extent);
-            arrows.draw(point, going, going.velocity.dot(normal) > 0.0, 5.0, marks);
+            pointers.draw(point, going, going.velocity.dot(normal) > 0.0, 5.0, marks);
         }
     }
 
@@ -125,7 +125,8 @@ impl Flat<'_> {
             hatch: 0.0,
         };
         let triangles = (2..polygon.len() as u32).map(|at| [0, at - 1, at]);
-        let mesh = Mesh { vertices: polygon.iter().map(vertex).collect(), triangles: triangles.collect() };
+        let mesh =
+            Mesh { vertices: polygon.iter().map(vertex).collect(), triangles: triangles.collect(), shades: Vec::new() };
         (polygon.len() > 2).then_some(Solid { mesh, colour })
     }
 }

@@ -60,6 +60,14 @@ pub struct Palette {
     pub hairline: Colour,
     /// A square of the tally for a sound element.
     pub tally: Colour,
+    /// A spring on the ground.
+    pub spring: Colour,
+    /// A spring on a surface.
+    pub spring_on_body: Colour,
+    /// The sides of lines that a field colours.
+    pub casing: Colour,
+    /// An arrow of a model without springs, and of one with springs.
+    pub arrows: [Colour; 2],
 }
 
 impl Palette {
@@ -109,6 +117,10 @@ const LIGHT: Palette = Palette {
     axis: [0x7a, 0x84, 0x91],
     hairline: [0xd8, 0xdc, 0xe1],
     tally: [0xc0, 0xca, 0xd6],
+    spring: [0x3c, 0x43, 0x4d],
+    spring_on_body: [0x3c, 0x43, 0x4d],
+    casing: [0x5c, 0x66, 0x72],
+    arrows: [[0x00, 0x72, 0xb2], [0x3c, 0x43, 0x4d]],
 };
 
 const DARK: Palette = Palette {
@@ -138,6 +150,10 @@ const DARK: Palette = Palette {
     axis: [0x6b, 0x76, 0x83],
     hairline: [0x2c, 0x34, 0x3f],
     tally: [0x56, 0x63, 0x73],
+    spring: [0xc3, 0xcb, 0xd5],
+    spring_on_body: [0x1d, 0x25, 0x30],
+    casing: [0x0b, 0x10, 0x17],
+    arrows: [[0x56, 0xb4, 0xe9], [0xc3, 0xcb, 0xd5]],
 };
 
 #[cfg(test)]

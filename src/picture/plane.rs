@@ -19,8 +19,11 @@ const NODE: f64 = 5.2;
 const RING: [f64; 2] = [13.0, 17.0];
 /// Elements whose middle is nearer to a side than this get no arrow (px in the reference picture).
 const LEAST_ROOM: f64 = 18.0;
-/// Bodies of more nodes than this are drawn without nodes and arrows.
+/// Bodies of more nodes than this are drawn without arrows.
 const MANY_NODES: usize = 150;
+/// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
+const CROWDED: f64 = 0.14;
+const SMALLEST_NODE: f64 = 1.4;
 /// How far the floor reaches down (px in the reference picture).
 const FLOOR_DEPTH: f64 = 50.0;
 /// Floors whose normal rises or falls less than this are walls.
@@ -130,7 +133,7 @@ impl Flat<'_> {
         marks.push(mark([left + margin, y, length, thickness], self.palette.axis, MarkShape::Filled));
     }
 
-    /// Arrows and nodes, above the body.
+    /// Arrows that say which way round elements are, above the body.
     pub(super) fn signs(&self, marks: &mut Vec<Mark>) {
         if self.body.len() > MANY_NODES || self.position.is_empty() {
             return;
@@ -151,9 +154,17 @@ impl Flat<'_> {
         for &(_, place) in &turned_over {
             self.alarm_arrow(place, marks);
         }
-        let unit = self.scale.line();
-        for pixel in self.position.iter().filter_map(|&point| self.pixel(point)) {
-            self.round(pixel, NODE * unit, self.palette.node, self.palette.edge, MarkShape::Node, marks);
+    }
+
+    /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are those of the nodes if
+    /// they have colours of their own.
+    pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Mark>) {
+        let usual = NODE * self.scale.line();
+        let radius = if self.body.len() > MANY_NODES { node_radius(self.scale, element) } else { usual };
+        for (node, &point) in self.position.iter().enumerate() {
+            let Some(pixel) = self.pixel(point) else { continue };
+            let colour = colours(node).unwrap_or(self.palette.node);
+            self.round(pixel, radius, colour, self.palette.edge, MarkShape::Node, marks);
         }
     }
 
@@ -209,6 +220,11 @@ impl Flat<'_> {
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.lens.project(point).map(|(pixel, _)| DVec2::from(pixel))
     }
+}
+
+/// The radius of a node where elements have edges of a length (px): smaller than usual where they are short.
+pub(super) fn node_radius(scale: Scale, element: f64) -> f64 {
+    (NODE * scale.line()).min((CROWDED * element).max(SMALLEST_NODE))
 }
 
 /// From where to where a straight line, given by a point and a direction of length one, lies in a rectangle.

@@ -2,6 +2,7 @@
 
 use super::camera::Lens;
 use super::ears::Ears;
+use super::field::Shades;
 use super::narrow::{narrow, narrow_point};
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::sim::body::Body;
@@ -16,20 +17,28 @@ const FLATNESS: f64 = 0.35;
 /// The finest cut of a patch in each direction.
 const FINEST_CUT: usize = 6;
 
+/// A face that bounds a set of elements.
+pub(super) struct Side {
+    /// Its corners, seen from outside of the set counter-clockwise.
+    nodes: Vec<u32>,
+    /// The element of the set that it belongs to.
+    element: Option<u32>,
+}
+
 /// Faces that bound a set of elements, seen from outside of it counter-clockwise.
 ///
 /// A face bounds a set when exactly one of its two sides is in it. The side of a face that belongs to no element counts
 /// as outside of every set; a face that bounds no element at all belongs to the sound ones.
-pub(super) fn boundary(body: &Body, turned_over: &[bool], over: bool) -> Vec<Vec<u32>> {
+pub(super) fn boundary(body: &Body, turned_over: &[bool], over: bool) -> Vec<Side> {
     let inside =
         |element: Option<u32>| element.is_some_and(|at| turned_over.get(at as usize).copied().unwrap_or(false) == over);
     let faces = &body.faces;
     let sides = faces.inner.iter().zip(&faces.outer);
     let bounding =
         faces.nodes.iter().zip(sides).filter_map(|(nodes, (&inner, &outer))| match (inside(inner), inside(outer)) {
-            (true, false) => Some(nodes.to_vec()),
-            (false, true) => Some(nodes.iter().rev().copied().collect()),
-            _ if inner.is_none() && outer.is_none() && !over => Some(nodes.to_vec()),
+            (true, false) => Some(Side { nodes: nodes.to_vec(), element: inner }),
+            (false, true) => Some(Side { nodes: nodes.iter().rev().copied().collect(), element: outer }),
+            _ if inner.is_none() && outer.is_none() && !over => Some(Side { nodes: nodes.to_vec(), element: None }),
             _ => None,
         });
     bounding.collect()
@@ -47,6 +56,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) side: f64,
     /// The unit of the hatch (m).
     pub(super) soft: f64,
+    /// The field that colours the surfaces.
+    pub(super) shades: Option<&'a Shades>,
 }
 
 /// Kinds of lines on a surface.
@@ -69,14 +80,15 @@ impl Surroundings<'_> {
     }
 
     /// Adds a surface to a mesh and its lines to the lines.
-    pub(super) fn add(&self, faces: &[Vec<u32>], kinds: Lines, mesh: &mut Mesh, lines: &mut Vec<Line>) {
+    pub(super) fn add(&self, faces: &[Side], kinds: Lines, mesh: &mut Mesh, lines: &mut Vec<Line>) {
         let cut = self.cut(faces);
         // For each pair of points, the facing of the triangles beside it: the same as the first, or not.
         let mut borders: HashMap<(u32, u32, usize), Facing> = HashMap::new();
         let mut edges: Vec<[u32; 2]> = Vec::new();
-        for face in faces {
+        for side in faces {
+            let face = &side.nodes[..];
             let patch = self.patch(face, cut);
-            let facing = self.emit(face, &patch, mesh);
+            let facing = self.emit(side, &patch, mesh);
             self.inner_contours(&patch, &facing, kinds, lines);
             self.note_borders(face, cut, &facing, &mut borders);
             edges.extend(around(face).map(ordered));
@@ -101,14 +113,15 @@ impl Surroundings<'_> {
     }
 
     /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
-    fn cut(&self, faces: &[Vec<u32>]) -> usize {
-        let warp = |face: &Vec<u32>| match face[..] {
+    fn cut(&self, faces: &[Side]) -> usize {
+        let warp = |face: &[u32]| match face[..] {
             [a, b, c, d] if self.ears.of(face).is_none() => {
                 (self.at(a) - self.at(b) + self.at(c) - self.at(d)).length()
             }
             _ => 0.0,
         };
-        let deviation = |face: &Vec<u32>| {
+        let deviation = |side: &Side| {
+            let face = &side.nodes[..];
             let (_, distance) = self.lens.project(self.at(face[0]))?;
             let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
             // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
@@ -141,7 +154,8 @@ impl Surroundings<'_> {
     }
 
     /// Adds the triangles of a patch to a mesh and says of each whether it shows its outside.
-    fn emit(&self, face: &[u32], patch: &Patch, mesh: &mut Mesh) -> Vec<bool> {
+    fn emit(&self, side: &Side, patch: &Patch, mesh: &mut Mesh) -> Vec<bool> {
+        let face = &side.nodes[..];
         let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
         let corners: Vec<_> = face.iter().map(|&node| self.at(node)).collect();
         let phases: Vec<_> = face
@@ -161,6 +175,13 @@ impl Surroundings<'_> {
                 normal: narrow_point(normal / (self.side * self.side)).to_array(),
                 hatch: narrow(phase),
             });
+        }
+        if let Some(shades) = self.shades {
+            let corners = shades.corners(face, side.element);
+            mesh.shades.extend(weights.iter().map(|weight| {
+                let shares = weight.of_corner.iter().zip(&corners);
+                narrow(shares.map(|(weight, &corner)| weight * f64::from(corner)).sum())
+            }));
         }
         let mut facing = Vec::with_capacity(patch.triangles.len());
         for triangle in &patch.triangles {

@@ -6,7 +6,10 @@
 //! 3. `line`: edges and contours as opacities, one sample a pixel with smooth borders of their own.
 //! 4. `ground`: the floor, its grid and its shadows, into the picture.
 //! 5. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
-//! 6. `overlay`: marks and words.
+//! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
+//! 7. `overlay`: marks and words.
+//!
+//! With a scalar field, `tint` takes the place of `surface`.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
@@ -20,8 +23,10 @@ mod panel;
 mod pipeline;
 #[cfg(test)]
 mod shader_tests;
+mod stroke;
 mod surface;
 mod target;
+mod tint;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
@@ -82,6 +87,9 @@ pub struct Renderer {
     slabs: Option<Slabs>,
     grounds: ground::Grounds,
     composite: composite::Composite,
+    /// Made when first needed, like the tint.
+    strokes: Option<stroke::Strokes>,
+    tint: Option<tint::Tint>,
     overlay: overlay::Overlay,
     canvas: Canvas,
     bodies: Option<Bodies>,
@@ -112,6 +120,8 @@ impl Renderer {
             slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
             composite: composite::Composite::new(gpu, &panels, samples),
+            strokes: None,
+            tint: None,
             overlay: overlay::Overlay::new(gpu),
             canvas: Canvas::new(gpu, size),
             bodies: None,
@@ -153,6 +163,8 @@ impl Renderer {
                 if let Some(slabs) = &mut self.slabs {
                     slabs.retarget(&gpu, &bodies);
                 }
+                self.strokes.iter_mut().for_each(|strokes| strokes.retarget(&gpu, &bodies));
+                self.tint.iter_mut().for_each(|tint| tint.retarget(&gpu, &bodies));
                 bodies
             }
         };
@@ -177,15 +189,25 @@ impl Renderer {
         }
         let solids = self.solids.as_ref().filter(|_| with_solids);
         let slabs = self.slabs.as_ref().filter(|_| with_slabs);
+        if !picture.ramp.is_empty() {
+            let made = || tint::Tint::new(&gpu, &self.panels, &bodies, self.samples);
+            self.tint.get_or_insert_with(made).write(&gpu, picture);
+        }
+        let tint = self.tint.as_ref().filter(|_| !picture.ramp.is_empty());
+        if stroke::Strokes::are_in(picture) {
+            let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies, self.samples);
+            self.strokes.get_or_insert_with(made).write(&gpu, picture);
+        }
+        let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places);
+            self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint);
         }
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places);
+            self.surfaces.draw_all(&mut pass, &self.panels, &places, tint);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
@@ -210,6 +232,9 @@ impl Renderer {
                 slabs.draw(&mut pass, &self.panels, picture, false);
             }
             self.composite.draw(&mut pass, &self.panels, picture);
+            if let Some(strokes) = strokes {
+                strokes.draw(&mut pass, &self.panels, picture);
+            }
             if let Some(slabs) = slabs {
                 slabs.draw(&mut pass, &self.panels, picture, true);
             }

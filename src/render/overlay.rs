@@ -157,11 +157,13 @@ fn plain(mark: &picture::Mark) -> Mark {
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
-            MarkShape::Arrow => 16,
-            MarkShape::Pin => 17,
-            MarkShape::HiddenPin => 18,
-            MarkShape::Hand => 19,
-            MarkShape::HiddenHand => 20,
+            MarkShape::Arrow => 9,
+            MarkShape::Blend => 10,
+            MarkShape::Point => 11,
+            MarkShape::Pin => 12,
+            MarkShape::HiddenPin => 13,
+            MarkShape::Hand => 14,
+            MarkShape::HiddenHand => 15,
         },
     }
 }

@@ -92,7 +92,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         element: sight.element,
         alarm: linear(palette.alarm),
         line_scale: sight.line_scale,
-        alarm_line: linear(palette.alarm_line),
+        // Beside the dark end of a scale, vermilion is seen better.
+        alarm_line: linear(if picture.ramp.is_empty() { palette.alarm_line } else { palette.alarm }),
         outline_alpha: palette.outline_alpha,
         edge: linear(palette.edge),
         focal: sight.focal,

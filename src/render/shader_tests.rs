@@ -3,7 +3,9 @@
 use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
-use super::{MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, obstacle, overlay, surface};
+use super::{
+    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, obstacle, overlay, stroke, surface, tint,
+};
 use std::mem::offset_of;
 
 fn parse(parts: &[&str]) -> naga::Module {
@@ -20,6 +22,7 @@ fn parse(parts: &[&str]) -> naga::Module {
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, surface::SHADER]);
     parse(&[PANEL_SHADER, surface::SHADER, obstacle::SHADER]);
+    parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
     for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
@@ -28,6 +31,7 @@ fn shaders_are_valid() {
         }
         parse(&[PANEL_SHADER, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
+        parse(&[PANEL_SHADER, reading, stroke::SHADER]);
     }
 }
 
@@ -84,4 +88,16 @@ fn structs_are_laid_out_alike_on_both_sides() {
         [first, second, middle, fade, key, sky, background, floor, grid, shadow, viewport]
     );
     same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, [size, unused]);
+}
+
+#[test]
+fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
+    let module = parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
+    let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
+    let (_, ramp) = ramp.expect("the scale");
+    let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner
+    else {
+        panic!("the scale is an array")
+    };
+    assert_eq!([count.get() as usize, stride as usize], [crate::picture::SHADES, 16]);
 }

@@ -3,6 +3,7 @@
 use super::panel::{Panels, is_visible, limit};
 use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
+use super::tint::Tint;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Mesh, Picture, Rectangle, Vertex};
 use std::ops::Range;
@@ -10,6 +11,15 @@ use std::ops::Range;
 pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
+
+/// How corners lie in their buffer.
+pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<Vertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &ATTRIBUTES,
+    }
+}
 
 /// The pipelines of the surfaces, and the meshes of one picture.
 #[derive(Debug)]
@@ -29,18 +39,13 @@ impl Surfaces {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
         let module = shader(gpu, "surface", &[super::PANEL_SHADER, SHADER]);
         let behind_layout = group_layout(gpu, "turned over", &[texture_entry(0, false, 1), texture_entry(1, true, 1)]);
-        let layout = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &ATTRIBUTES,
-        };
         let build = |label, entries, groups: &[&wgpu::BindGroupLayout], samples| {
             let recipe = Recipe {
                 label,
                 shader: &module,
                 entries,
                 groups,
-                vertices: &[Some(layout.clone())],
+                vertices: &[Some(vertices())],
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 target: BODY_FORMAT,
                 blend: None,
@@ -81,16 +86,43 @@ impl Surfaces {
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
     }
 
-    /// Draws the turned-over sets by themselves.
-    pub(super) fn draw_behind(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
-        self.draw(pass, &self.alarm_behind, panels, places, 1);
+    /// Draws the turned-over sets by themselves, coloured by a field if there is a tint.
+    pub(super) fn draw_behind(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        panels: &Panels,
+        places: &[Rectangle],
+        tint: Option<&Tint>,
+    ) {
+        let pipeline = match tint {
+            Some(tint) => {
+                pass.set_bind_group(1, &tint.alarm_group, &[]);
+                pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
+                &tint.alarm_behind
+            }
+            None => &self.alarm_behind,
+        };
+        self.draw(pass, pipeline, panels, places, 1);
     }
 
-    /// Draws everything.
-    pub(super) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
-        self.draw(pass, &self.alarm, panels, places, 1);
-        pass.set_bind_group(1, self.behind.as_ref(), &[]);
-        self.draw(pass, &self.sound, panels, places, 0);
+    /// Draws everything, coloured by a field if there is a tint.
+    pub(super) fn draw_all(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        panels: &Panels,
+        places: &[Rectangle],
+        tint: Option<&Tint>,
+    ) {
+        let Some(tint) = tint else {
+            self.draw(pass, &self.alarm, panels, places, 1);
+            pass.set_bind_group(1, self.behind.as_ref(), &[]);
+            return self.draw(pass, &self.sound, panels, places, 0);
+        };
+        pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
+        pass.set_bind_group(1, &tint.alarm_group, &[]);
+        self.draw(pass, &tint.alarm, panels, places, 1);
+        pass.set_bind_group(1, &tint.sound_group, &[]);
+        self.draw(pass, &tint.sound, panels, places, 0);
     }
 
     fn draw(

@@ -1,5 +1,6 @@
 //! How a scene is looked at, resolved.
 
+use crate::sim::body::Dimension;
 use crate::sim::field::Field;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -39,6 +40,15 @@ pub struct Visible {
     pub springs: bool,
     /// An arrow to each node from where the best rigid placement of the rest shape has it.
     pub displacements: bool,
+}
+
+impl Visible {
+    /// What a scene that says nothing about it shows of a body of a number of nodes: its surfaces, and in the plane the
+    /// nodes, too, unless they are many.
+    pub fn usual(dimension: Dimension, nodes: usize) -> Self {
+        const MANY_NODES: usize = 150;
+        Self { surfaces: true, nodes: dimension == Dimension::Plane && nodes <= MANY_NODES, ..Self::default() }
+    }
 }
 
 /// The colours of a scalar field. They do not depend on the motion, so that any frame can be drawn by itself.

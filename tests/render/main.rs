@@ -3,6 +3,7 @@
 //! Without a graphics adapter these tests say that they are skipped. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 #![cfg(feature = "render")]
 
+mod fields;
 mod obstacles;
 mod pictures;
 mod shown;

@@ -644,3 +644,20 @@ fn bodies_that_no_rule_makes() {
     );
     body("file = ''", &[(5, 8, "`body.file` is empty; expected at least 1")]);
 }
+
+#[test]
+fn mistakes_of_what_is_shown() {
+    let view = |to: &str, expected: &[(usize, usize, &str)]| {
+        case(PLANE, "size = [640, 360]", to, expected);
+    };
+    view("colour = { by = 'sped' }", &[(20, 17, "is \"sped\"; expected \"strain\"")]);
+    view("colour = { by = 'sped' }", &[(20, 17, "did you mean \"speed\"?")]);
+    view("colour = { range = [0, 1] }", &[(20, 10, "`view.colour` has no `by`")]);
+    view("colour = { by = 'speed', range = [3, 1] }", &[(20, 34, "runs from 3 to 1; expected a rising range")]);
+    view("colour = { by = 'speed', range = [0, inf] }", &[(20, 38, "is inf; expected a finite number")]);
+    view("show = []", &[(20, 8, "`view.show` is empty; expected at least 1")]);
+    view("show = ['spring']", &[(20, 9, "did you mean \"springs\"?")]);
+    view("arrow_scale = 0", &[(20, 15, "expected a number greater than 0")]);
+    view("panels = 'rows'", &[(20, 10, "did you mean \"row\"?")]);
+    view("panels = 'row'\ncolumns = 2", &[(21, 1, "exclude each other")]);
+}

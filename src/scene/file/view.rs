@@ -26,12 +26,16 @@ pub(in crate::scene) struct ViewFile {
     /// How the panels stand: beside each other, below each other, or in as many rows as leave them most room. Not
     /// together with `columns`.
     pub(in crate::scene) panels: Option<ArrangementFile>,
-    /// What is drawn of the body. Default: its surfaces, and in the plane its nodes, too.
+    /// What is drawn of the body. Without `surfaces`, lines take their place: the springs if they are shown and the model
+    /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: its
+    /// surfaces, and in the plane its nodes, too, unless there are more than 150.
     #[schemars(length(min = 1))]
     pub(in crate::scene) show: Option<Vec<ShowFile>>,
-    /// A scalar field that colours the body. Default: none.
+    /// A scalar field that colours the body: its surfaces, or its lines and nodes if surfaces are not shown. All panels
+    /// share one scale, drawn below them. Default: none.
     pub(in crate::scene) colour: Option<ColourFile>,
-    /// How many times longer than the displacements their arrows are drawn.
+    /// How many times longer than the displacements their arrows are drawn. Each begins where the rigid placement has
+    /// its node; at 1 it ends at the node.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) arrow_scale: f64,
     /// From where the scene is seen.
@@ -74,9 +78,10 @@ pub(in crate::scene) enum ShowFile {
     Surfaces,
     /// The nodes, as discs.
     Nodes,
-    /// The springs of models that have them, as lines.
+    /// The springs of models that have them, as lines; faint where surfaces hide them.
     Springs,
-    /// An arrow to each node from where the rigid placement of the rest shape nearest to the body has it.
+    /// An arrow to each node from where the rigid placement of the rest shape nearest to the body has it. Only nodes on
+    /// the surface get one, in space those that face the viewer, and at most 500.
     Displacements,
 }
 
@@ -86,7 +91,8 @@ pub(in crate::scene) enum ShowFile {
 pub(in crate::scene) struct ColourFile {
     /// The field.
     pub(in crate::scene) by: Field,
-    /// The values at both ends of the scale, in the field's unit. Default: from zero to what the scene lets expect: a
+    /// The values at both ends of the scale, in the field's unit. Values beyond it have the colours of its ends, and the
+    /// bar then ends in a point. Default: from zero to what the scene lets expect: a
     /// strain of 0.5, a displacement of half an element's edge, the speed of a fall through the scene or at the start,
     /// the energy of an element strained by 0.5.
     pub(in crate::scene) range: Option<[f64; 2]>,

@@ -88,7 +88,7 @@ pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<
             springs: shown.contains(&ShowFile::Springs),
             displacements: shown.contains(&ShowFile::Displacements),
         },
-        None => Visible { surfaces: true, nodes: dimension == Dimension::Plane, ..Visible::default() },
+        None => Visible::usual(dimension, body.body.len()),
     };
     Some(View {
         size: typed.size,

@@ -1,10 +1,10 @@
 //! Arrows that say where obstacles and hands are going.
 
+use super::Mark;
+use super::arrows::arrow;
 use super::camera::Lens;
 use super::layout::{Rectangle, Scale};
-use super::narrow::narrow;
 use super::palette::Palette;
-use super::{Mark, MarkShape};
 use glam::{DVec2, DVec3};
 
 /// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).
@@ -25,14 +25,14 @@ pub(super) struct Going {
 }
 
 /// Draws arrows into one panel.
-pub(super) struct Arrows<'a> {
+pub(super) struct Pointers<'a> {
     pub(super) lens: &'a Lens,
     pub(super) viewport: Rectangle,
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
 }
 
-impl Arrows<'_> {
+impl Pointers<'_> {
     /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
     /// of the speed, so that it comes and goes gently; nothing is drawn of what rests, and nothing outside the panel.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
@@ -65,13 +65,7 @@ impl Arrows<'_> {
         if !inside(tail) || !inside(tail + length * along) {
             return;
         }
-        let corner = tail - 0.5 * height * along.perp();
-        marks.push(Mark {
-            rectangle: [corner.x, corner.y, length, height].map(narrow),
-            along: along.to_array().map(narrow),
-            colour: self.palette.pointer,
-            second: self.palette.background,
-            shape: MarkShape::Arrow,
-        });
+        let ends = [tail, tail + length * along];
+        marks.push(arrow(ends, self.scale.line(), self.palette.pointer, self.palette.background));
     }
 }

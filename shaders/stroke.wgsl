@@ -1,0 +1,126 @@
+// Lines with colours of their own, and nodes as discs that face the viewer, over the finished bodies. What a surface
+// hides is fainter or not drawn.
+
+struct Stroke {
+    @builtin(position) place: vec4<f32>,
+    @location(0) @interpolate(flat) ends: vec4<f32>,
+    @location(1) @interpolate(flat) depths: vec2<f32>,
+    @location(2) @interpolate(flat) first: vec4<f32>,
+    @location(3) @interpolate(flat) second: vec4<f32>,
+    @location(4) @interpolate(flat) other: vec4<f32>,
+    // Width of a line or radius of a disc (px).
+    @location(5) @interpolate(flat) size: f32,
+    @location(6) @interpolate(flat) kind: u32,
+}
+
+// Besides plain lines: a line with another colour over surfaces, a disc, and a line with another colour at its sides.
+const LINE_ON_BODY = 1u;
+const DISC = 2u;
+const CASED_LINE = 3u;
+
+// As for the surfaces of turned-over elements.
+const NEARER = 0.02;
+// A line lies this much before its surface, as a part of the distance.
+const OFFSET = 0.0016;
+// The width of a casing, in parts of the line's, and the least (px).
+const CASING = 0.24;
+const LEAST_CASING = 0.6;
+// The rim of a disc, in parts of its radius.
+const RIM = 0.32;
+// A disc is cut off by what is nearer than the front of a ball this much larger.
+const FRONT = 2.0;
+
+@vertex
+fn stroke(
+    @builtin(vertex_index) corner: u32,
+    @location(0) start: vec3<f32>,
+    @location(1) end: vec3<f32>,
+    @location(2) first: vec4<f32>,
+    @location(3) second: vec4<f32>,
+    @location(4) other: vec4<f32>,
+    @location(5) size: f32,
+    @location(6) kind: u32,
+) -> Stroke {
+    var a = panel.clip * vec4(start, 1.0);
+    var b = panel.clip * vec4(end, 1.0);
+    // What lies behind the eye is cut off.
+    let near = panel.near;
+    if a.w < near && b.w < near {
+        return Stroke(vec4(0.0, 0.0, -1.0, 1.0), vec4(0.0), vec2(0.0), first, second, other, size, kind);
+    }
+    if a.w < near {
+        a = mix(a, b, (near - a.w) / (b.w - a.w));
+    } else if b.w < near {
+        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    }
+    let room = panel.region.zw;
+    let flip = vec2(0.5, -0.5);
+    let from_pixel = (a.xy / a.w * flip + 0.5) * room;
+    let to_pixel = (b.xy / b.w * flip + 0.5) * room;
+    let depths = vec2(a.z / max(a.w - NEARER, near), b.z / max(b.w - NEARER, near));
+    let difference = to_pixel - from_pixel;
+    let extent = length(difference);
+    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
+    let across = vec2(-along.y, along.x);
+    let reach = select(0.5 * size, size, kind == DISC) + 1.0;
+    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
+        + across * select(-reach, reach, (corner & 1u) == 1u);
+    let place = vec4((pixel / room - 0.5) / flip, 0.5, 1.0);
+    return Stroke(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, first, second, other, size, kind);
+}
+
+// The depth of the bodies at a pixel of the textures that hold them.
+fn depth_at(pixel: vec2<f32>) -> f32 {
+    let low = panel.region.xy;
+    let high = low + panel.region.zw - 1.0;
+    return load_depth(vec2<i32>(clamp(floor(pixel), low, high)));
+}
+
+// An sRGB colour as linear light.
+fn decoded(colour: vec3<f32>) -> vec3<f32> {
+    return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
+}
+
+@fragment
+fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
+    let start = stroke.ends.xy;
+    let difference = stroke.ends.zw - start;
+    let pixel = stroke.place.xy - panel.place.xy;
+    let unbounded = dot(pixel - start, difference) / max(dot(difference, difference), 1e-6);
+    let share = saturate(unbounded);
+    let middle = start + share * difference;
+    let distance = length(pixel - middle);
+    let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
+    let here = depth_at(middle);
+    if stroke.kind == DISC {
+        // At an outline, the next pixel may be the background's.
+        let beside = min(
+            min(depth_at(middle + vec2(1.5, 0.0)), depth_at(middle - vec2(1.5, 0.0))),
+            min(depth_at(middle + vec2(0.0, 1.5)), depth_at(middle - vec2(0.0, 1.5))),
+        );
+        let front = before / (1.0 - min(0.5, FRONT * stroke.size / panel.focal));
+        let shown = panel.flatness > 0.5 || (before >= min(here, beside) && front >= depth_at(pixel));
+        let inward = stroke.size - distance;
+        let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - RIM * stroke.size + 0.5));
+        return vec4(decoded(colour), select(0.0, saturate(inward), shown));
+    }
+    let visible = before >= here || panel.flatness > 0.5;
+    // Lines thinner than a pixel are fainter instead.
+    let drawn = max(stroke.size, 1.0);
+    var covered = saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
+    var own = mix(stroke.first.rgb, stroke.second.rgb, share);
+    if stroke.kind == CASED_LINE {
+        let casing = max(CASING * stroke.size, LEAST_CASING);
+        own = mix(stroke.other.rgb, own, saturate(0.5 * stroke.size - casing + 0.5 - distance));
+        // Pieces of one line fit together only with straight ends.
+        covered *= saturate(0.5 + min(unbounded, 1.0 - unbounded) * length(difference));
+    }
+    // Along an outline a line is seen before the ground.
+    let along = difference / max(length(difference), 1e-6);
+    let across = 2.0 * vec2(-along.y, along.x);
+    let inside = here > 0.0 && min(depth_at(middle + across), depth_at(middle - across)) > 0.0;
+    let colour = select(own, stroke.other.rgb, stroke.kind == LINE_ON_BODY && inside);
+    // Where many faint lines meet, their round ends would add up to a dot.
+    let hidden = select(0.0, stroke.other.a, unbounded == share);
+    return vec4(decoded(colour), covered * select(hidden, 1.0, visible));
+}

@@ -1,0 +1,75 @@
+// Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
+// elements are coloured by it, too, and keep their hatch, in vermilion; through the body only that is seen.
+
+// The colours of the scale, linear.
+@group(1) @binding(2) var<uniform> ramp: array<vec4<f32>, SHADES>;
+
+const SHADES = 64;
+// The darkest light leaves this part of a colour, and light of this brightness and below it is the darkest.
+const SHADED = 0.68;
+const DARKEST = 0.35;
+// How strong stripes are that are seen through the body.
+const THROUGH = 0.75;
+
+struct TintedCorner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hatch: f32,
+    @location(3) shade: f32,
+}
+
+@vertex
+fn tinted_corner(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hatch: f32,
+    @location(3) shade: f32,
+) -> TintedCorner {
+    return TintedCorner(panel.clip * vec4(position, 1.0), position, normal, hatch, shade);
+}
+
+@vertex
+fn tinted_alarm_corner(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hatch: f32,
+    @location(3) shade: f32,
+) -> TintedCorner {
+    return TintedCorner(moved_nearer(position), position, normal, hatch, shade);
+}
+
+fn tint(corner: TintedCorner) -> vec3<f32> {
+    let at = saturate(corner.shade) * f32(SHADES - 1);
+    let cell = min(u32(at), u32(SHADES - 2));
+    let shade = mix(ramp[cell].rgb, ramp[cell + 1u].rgb, at - f32(cell));
+    // Below zero there is no value.
+    let colour = select(panel.sound, shade, corner.shade > -0.5);
+    let brightness = dot(light(corner.position, corner.normal).diffuse, LUMINANCE);
+    return colour * mix(SHADED, 1.0, smoothstep(DARKEST, 1.0, brightness));
+}
+
+// The hatch of the turned-over set by itself, for those who look through the body: how much of a pixel it covers.
+@fragment
+fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
+    return vec4(0.0, 0.0, 0.0, stripes(corner.hatch, corner.place.xy));
+}
+
+@fragment
+fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
+    let colour = mix(tint(corner), panel.alarm, stripes(corner.hatch, corner.place.xy));
+    return vec4(sqrt(saturate(colour)), 1.0);
+}
+
+@fragment
+fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
+    var colour = tint(corner);
+    let at = vec2<i32>(corner.place.xy);
+    let behind = textureLoad(alarm_depth, at, 0);
+    if behind > 0.0 && panel.flatness < 0.5 {
+        let depth = panel.near / behind - 1.0 / corner.place.w;
+        let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+        colour = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * textureLoad(alarm_colour, at, 0).a);
+    }
+    return vec4(sqrt(saturate(colour)), 1.0);
+}

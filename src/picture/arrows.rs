@@ -1,0 +1,134 @@
+//! Displacements as arrows: from where the best rigid placement of the rest shape has each node to where it is.
+
+use super::camera::Lens;
+use super::layout::Rectangle;
+use super::narrow::narrow;
+use super::palette::Colour;
+use super::{Mark, MarkShape};
+use crate::sim::snapshot::Placement;
+use glam::{DVec2, DVec3};
+
+/// An arrow's halo and the width of its head with it, in parts of the head's own width. The shader knows them, too.
+const HALO: f64 = 3.0 / 17.0;
+const HEIGHT: f64 = 1.0 + 2.0 * HALO;
+/// Width of the head of a long arrow (px in the reference picture).
+const HEAD: f64 = 17.0;
+/// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
+const ROOMY_ELEMENT: f64 = 105.0;
+const SMALLEST: f64 = 0.36;
+/// No arrow is smaller than this beside those of the reference picture, or it could not be seen.
+const FAINTEST: f64 = 0.33;
+/// Arrows shorter than this are left out (parts of the size, and px): they would be specks on the nodes.
+const SHORTEST: [f64; 2] = [9.0, 2.5];
+/// More arrows than this hide each other.
+const MOST_ARROWS: usize = 500;
+
+/// The nodes that get an arrow: those on the surface, and of very many a part that looks even but follows no rows.
+pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
+    let mut nodes = on_surface.to_vec();
+    if nodes.len() > MOST_ARROWS {
+        // Fibonacci hashing: the same nodes in every frame, run and picture.
+        nodes.sort_by_key(|&node| (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node));
+        nodes.truncate(MOST_ARROWS);
+    }
+    nodes.sort_unstable();
+    nodes
+}
+
+/// How large arrows are beside those of the reference picture, for elements of a length (px) in type of a unit.
+pub(super) fn size(element: f64, unit: f64) -> f64 {
+    (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
+}
+
+/// An arrow from one pixel to another; the tip stands exactly at the second one.
+pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Mark {
+    let length = (to - from).length();
+    let along = if length > 0.0 { (to - from) / length } else { DVec2::X };
+    let (height, pad) = (HEAD * HEIGHT * size, HEAD * HALO * size);
+    let corner = from - pad * along - 0.5 * height * along.perp();
+    Mark {
+        rectangle: [corner.x, corner.y, length + 2.0 * pad, height].map(narrow),
+        along: [along.x, along.y].map(narrow),
+        colour,
+        second: halo,
+        shape: MarkShape::Arrow,
+    }
+}
+
+/// What is needed to draw the arrows of one panel.
+pub(super) struct Arrows<'a> {
+    pub(super) lens: &'a Lens,
+    /// Where arrows may be (px).
+    pub(super) room: Rectangle,
+    /// See [`size`].
+    pub(super) size: f64,
+    /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
+    pub(super) node: f64,
+    /// How many times longer than the displacements they are.
+    pub(super) times: f64,
+    pub(super) colour: Colour,
+    pub(super) halo: Colour,
+}
+
+impl Arrows<'_> {
+    /// Adds an arrow for each of the nodes, the farthest first.
+    pub(super) fn draw(
+        &self,
+        nodes: &[u32],
+        rest: &[DVec3],
+        position: &[DVec3],
+        placement: &Placement,
+        marks: &mut Vec<Mark>,
+    ) {
+        let ends = nodes.iter().filter_map(|&node| {
+            let start = placement.place(rest[node as usize]);
+            let end = start + self.times * (position[node as usize] - start);
+            let (from, _) = self.lens.project(start)?;
+            let (to, depth) = self.lens.project(end)?;
+            Some((depth, [from, to].map(DVec2::from)))
+        });
+        let mut ends: Vec<_> = ends.collect();
+        ends.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let arrows = ends.into_iter().filter_map(|(_, ends)| self.inside(ends));
+        marks.extend(arrows.map(|ends| arrow(ends, self.size, self.colour, self.halo)));
+    }
+
+    /// An arrow that begins and ends where arrows may be; others are left out, for a cut one would say something else.
+    fn inside(&self, ends: [DVec2; 2]) -> Option<[DVec2; 2]> {
+        let [left, top, width, height] = self.room.map(f64::from);
+        let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
+        let holds = |at: &DVec2| (left..=left + width).contains(&at.x) && (top..=top + height).contains(&at.y);
+        (ends.iter().all(holds) && ends[0].distance(ends[1]) >= shortest).then_some(ends)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrow_ends_where_it_should() {
+        let [from, to] = [DVec2::new(100.0, 50.0), DVec2::new(130.0, 90.0)];
+        let mark = arrow([from, to], 1.0, [0; 3], [255; 3]);
+        let [left, top, width, height] = mark.rectangle.map(f64::from);
+        let along = DVec2::from(mark.along.map(f64::from));
+        let middle = DVec2::new(left, top) + 0.5 * height * along.perp();
+        assert!((middle + (width - 3.0) * along - to).length() < 1e-4);
+        assert!((middle + 3.0 * along - from).length() < 1e-4);
+    }
+
+    #[test]
+    fn few_nodes_of_many_get_arrows_and_always_the_same() {
+        let all: Vec<u32> = (0..10_000).collect();
+        let chosen = bearers(&all);
+        assert_eq!(chosen.len(), MOST_ARROWS);
+        assert!(chosen.windows(2).all(|two| two[0] < two[1]));
+        assert_eq!(chosen, bearers(&all));
+        // Each tenth of the nodes has about a tenth of the arrows.
+        for tenth in 0..10 {
+            let here = chosen.iter().filter(|&&node| node / 1000 == tenth).count();
+            assert!((40..=60).contains(&here), "{here}");
+        }
+        assert_eq!(bearers(&all[..64]), all[..64]);
+    }
+}

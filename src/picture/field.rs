@@ -1,0 +1,109 @@
+//! Where the numbers of a scalar field stand on their scale of colours.
+
+use super::narrow::narrow;
+use crate::scene::ColourScale;
+use crate::sim::body::Body;
+use crate::sim::field::Support;
+
+/// The place of what has no number: such parts keep the body's own colour.
+pub(super) const NOWHERE: f32 = -1.0;
+
+/// One run's field, as places on the scale: 0 at its low end, 1 at its high end, or [`NOWHERE`].
+pub(super) struct Shades {
+    support: Support,
+    places: Vec<f32>,
+}
+
+impl Shades {
+    /// The places of a field. Values beyond the scale, also infinite ones, come to its ends; NaN is nowhere. A field of
+    /// another length than the body is nowhere altogether.
+    pub(super) fn new(body: &Body, scale: &ColourScale, values: &[f64]) -> Self {
+        let support = scale.field.support();
+        let expected = match support {
+            Support::Nodes => body.len(),
+            Support::Elements => body.elements.len(),
+        };
+        let places = match values.len() == expected {
+            true => values.iter().map(|&value| place(value, scale.range)).collect(),
+            false => vec![NOWHERE; expected],
+        };
+        Self { support, places }
+    }
+
+    /// The place of a node where it is a corner of an element.
+    fn corner(&self, node: u32, element: Option<u32>) -> f32 {
+        match self.support {
+            Support::Nodes => self.places[node as usize],
+            Support::Elements => element.map_or(NOWHERE, |element| self.places[element as usize]),
+        }
+    }
+
+    /// The places of the corners of a face; all nowhere if one of them is, for nothing lies between nowhere and a place.
+    pub(super) fn corners(&self, nodes: &[u32], element: Option<u32>) -> Vec<f32> {
+        let corners: Vec<_> = nodes.iter().map(|&node| self.corner(node, element)).collect();
+        if corners.contains(&NOWHERE) { vec![NOWHERE; nodes.len()] } else { corners }
+    }
+
+    /// A place for each node, for lines and discs: its own, or the mean of its elements'.
+    pub(super) fn of_nodes(&self, body: &Body) -> Vec<f32> {
+        if self.support == Support::Nodes {
+            return self.places.clone();
+        }
+        let mut sums = vec![(0.0, 0.0); body.len()];
+        for (nodes, &place) in body.elements.iter().zip(&self.places).filter(|(_, place)| **place != NOWHERE) {
+            for &node in nodes {
+                let (sum, count) = &mut sums[node as usize];
+                (*sum, *count) = (*sum + place, *count + 1.0);
+            }
+        }
+        sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { NOWHERE }).collect()
+    }
+}
+
+/// Where a value stands between two others.
+fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
+    if value.is_nan() {
+        return NOWHERE;
+    }
+    // Halves, so that the widest range has a length.
+    let share = (value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0);
+    narrow(share.clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::body::{Dimension, IndexLists};
+    use crate::sim::field::Field;
+    use glam::DVec3;
+
+    fn body() -> Body {
+        let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].to_vec();
+        let elements: IndexLists = [&[0, 1, 2][..], &[1, 3, 2]].into_iter().collect();
+        Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, None)
+    }
+
+    #[test]
+    fn values_stand_between_the_ends_of_the_scale() {
+        let values = [0.0, 1.0, 2.0, 3.0, 9.0, -9.0, f64::INFINITY, f64::NEG_INFINITY];
+        assert_eq!(values.map(|value| place(value, [1.0, 3.0])), [0.0, 0.0, 0.5, 1.0, 1.0, 0.0, 1.0, 0.0]);
+        assert_eq!(place(f64::NAN, [1.0, 3.0]), NOWHERE);
+        assert_eq!(place(0.0, [-f64::MAX, f64::MAX]), 0.5);
+        assert_eq!(place(5.0, [0.0, 5e-324]), 1.0);
+    }
+
+    #[test]
+    fn nodes_and_elements_have_their_own_numbers() {
+        let body = body();
+        let scale = |field| ColourScale { field, range: [0.0, 4.0] };
+        let speed = Shades::new(&body, &scale(Field::Speed), &[0.0, 1.0, 2.0, f64::NAN]);
+        assert_eq!(speed.corners(&[0, 1, 2], Some(0)), [0.0, 0.25, 0.5]);
+        assert_eq!(speed.corners(&[1, 3, 2], Some(1)), [NOWHERE; 3]);
+        let strain = Shades::new(&body, &scale(Field::Strain), &[1.0, 3.0]);
+        assert_eq!(strain.corners(&[1, 3, 2], Some(1)), [0.75; 3]);
+        assert_eq!(strain.corners(&[1, 3, 2], None), [NOWHERE; 3]);
+        assert_eq!(strain.of_nodes(&body), [0.25, 0.5, 0.5, 0.75]);
+        // What a snapshot without the field gives.
+        assert_eq!(Shades::new(&body, &scale(Field::Strain), &[]).of_nodes(&body), [NOWHERE; 4]);
+    }
+}

@@ -1,0 +1,206 @@
+//! What colours and arrows mean: one key for all panels, below them on ground of its own, so that it collides with
+//! nothing.
+
+use super::arrows;
+use super::caption::Writer;
+use super::layout::Scale;
+use super::narrow::narrow;
+use super::number::{self, Ticks};
+use super::palette::Colour;
+use super::text::{Weight, lay_out, width};
+use super::{Mark, MarkShape};
+use crate::scene::ColourScale;
+use crate::sim::snapshot::Frame;
+use glam::DVec2;
+
+/// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
+const HEIGHT: f64 = 50.0;
+const ABOVE: f64 = 4.0;
+/// Its type is no smaller than this part of the reference, as long as it takes no more than this of the picture.
+const LEAST_UNIT: f64 = 0.66;
+const MOST_HEIGHT: f64 = 0.1;
+/// The room that the arrow with its words and the bar with its name take at least (px in the reference picture).
+const ARROW_ROOM: f64 = 250.0;
+const BAR_ROOM: f64 = 390.0;
+/// Size of the numbers at the ticks (px in the reference picture).
+const NUMBERS: f64 = 14.0;
+/// Height of the bar, its least and largest length, and the length of a tick (px in the reference picture).
+const BAR: f64 = 12.0;
+const LENGTHS: [f64; 2] = [190.0, 340.0];
+/// Numbers nearer to each other than this are thinned out (px in the reference picture).
+const NUMBERS_APART: f64 = 9.0;
+const TICK: f64 = 5.0;
+/// Between the two parts of the key (px in the reference picture).
+const APART: f64 = 44.0;
+/// About how long the key's arrow is where nothing moves (px in the reference picture).
+const ARROW: f64 = 64.0;
+
+/// Sizes of the key of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Legend {
+    /// Pixels for one pixel of the reference picture.
+    unit: f64,
+    /// Height of its ground (px).
+    pub(super) height: u32,
+}
+
+impl Legend {
+    /// The key of a picture of a size (px) whose panels have a scale, with an arrow, a bar or both; `None` where it could not be read.
+    pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, bar]: [bool; 2]) -> Option<Self> {
+        let [width, height] = size.map(f64::from);
+        let apart = if arrow && bar { APART } else { 0.0 };
+        let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + if bar { BAR_ROOM } else { 0.0 };
+        let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
+        let unit = scale.unit.max(roomy).min((width - 2.0 * scale.margin()) / needed);
+        let height = (HEIGHT * unit).round() as u32;
+        Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
+    }
+
+    /// Draws the key over its ground, the lowest part of a picture of a size (px). `arrow` is the length that the arrow
+    /// stands for (m), its own (px), and how large it is beside those of the reference picture.
+    pub(super) fn draw(
+        self,
+        writer: &mut Writer<'_>,
+        size: [u32; 2],
+        arrow: Option<[f64; 3]>,
+        colours: Option<(&ColourScale, &[Colour], [bool; 2])>,
+    ) {
+        let unit = self.unit;
+        let [picture_width, picture_height] = size.map(f64::from);
+        let margin = writer.scale.margin();
+        let top = (picture_height - f64::from(self.height) - ABOVE * writer.scale.unit).round();
+        let middle = top + 0.5 * (BAR * unit).round();
+        let mut left = margin;
+        if let Some([metres, length, size]) = arrow {
+            left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
+        }
+        if let Some((scale, ramp, beyond)) = colours {
+            self.bar(writer, [left, picture_width - margin], top, scale, ramp, beyond);
+        }
+    }
+
+    /// An arrow and what it stands for; says where that ends (px).
+    fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
+        let (unit, palette) = (self.unit, writer.palette);
+        let ends = [left, left + length].map(|x| DVec2::new(x, middle));
+        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.background));
+        // The words stand still when the camera moves.
+        let left = left + length.max(ARROW * unit) + 12.0 * unit;
+        self.write(
+            writer,
+            &format!("displacement {}", number::metres(metres)),
+            Weight::Regular,
+            16.0,
+            palette.second_text,
+            left,
+            middle + 5.5 * unit,
+        )
+    }
+
+    /// A bar of colours with its name before it and its numbers below; it stands in the middle of the picture if
+    /// it can.
+    fn bar(
+        self,
+        writer: &mut Writer<'_>,
+        [left, right]: [f64; 2],
+        top: f64,
+        scale: &ColourScale,
+        ramp: &[Colour],
+        beyond: [bool; 2],
+    ) {
+        let (unit, palette) = (self.unit, writer.palette);
+        let mut ticks = Ticks::new(scale.range, scale.field.unit());
+        let numbers = NUMBERS * unit;
+        let wide = |text: &String| width(text, Weight::Regular, numbers);
+        let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
+        let overhang = widths.last().map_or(0.0, |width| width / 2.0);
+        let name = scale.field.name();
+        let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
+        let caption = 16.0 * unit;
+        let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
+        let named = width(name, Weight::SemiBold, caption) + space + width(&unit_text, Weight::Regular, caption);
+        let gap = 20.0 * unit;
+        let free = right - left - named - gap - overhang;
+        let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
+        let room = widths.iter().sum::<f64>() + NUMBERS_APART * unit * widths.len() as f64;
+        if room > length && widths.len() == 5 {
+            ticks.halve();
+        }
+        let whole = named + gap + length;
+        let centred = (right + writer.scale.margin() - whole) / 2.0;
+        let left = centred.max(left).min(right - whole - overhang);
+        let height = (BAR * unit).round().max(2.0);
+        let baseline = top + 0.5 * height + 5.5 * unit;
+        let after = self.write(writer, name, Weight::SemiBold, 16.0, palette.text, left, baseline);
+        self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
+        let bar_left = (left + named + gap).round();
+        let rim = unit.round().max(1.0);
+        let mark = |rectangle: [f64; 4], colour, second, shape| Mark {
+            rectangle: rectangle.map(narrow),
+            along: Mark::UPRIGHT,
+            colour,
+            second,
+            shape,
+        };
+        // Values beyond the scale: the bar goes on in a point.
+        let cap = 0.8 * height;
+        for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {
+            let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];
+            for (out, colour) in [(rim, palette.axis), (0.0, colour)] {
+                let [wide, high] = [cap + 1.6 * out, height + 2.0 * out];
+                let along = if end == 0 { [-1.0, 0.0] } else { Mark::UPRIGHT };
+                let y = if end == 0 { top + height + out } else { top - out };
+                let rectangle = [x, y, wide, high].map(narrow);
+                writer.marks.push(Mark { rectangle, along, colour, second: colour, shape: MarkShape::Point });
+            }
+        }
+        let sides = |end: usize| if beyond[end] { 0.0 } else { rim };
+        let framed = [bar_left - sides(0), top - rim, length + sides(0) + sides(1), height + 2.0 * rim];
+        writer.marks.push(mark(framed, palette.axis, palette.axis, MarkShape::Filled));
+        let pieces = ramp.len() - 1;
+        let at = |piece: usize| bar_left + (length * piece as f64 / pieces as f64).round();
+        for piece in 0..pieces {
+            let rectangle = [at(piece), top, at(piece + 1) - at(piece), height];
+            writer.marks.push(mark(rectangle, ramp[piece], ramp[piece + 1], MarkShape::Blend));
+        }
+        for (&share, text) in ticks.places.iter().zip(&ticks.texts) {
+            let x = bar_left + share * length;
+            let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
+            writer.marks.push(mark(line, palette.axis, palette.axis, MarkShape::Filled));
+            let baseline = top + height + (TICK + 14.5) * unit;
+            self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, baseline);
+        }
+    }
+
+    /// Writes a text of a size in the reference picture and says where it ends (px).
+    #[expect(clippy::too_many_arguments, reason = "a line of text is all of these")]
+    fn write(
+        self,
+        writer: &mut Writer<'_>,
+        text: &str,
+        weight: Weight,
+        size: f64,
+        colour: Colour,
+        left: f64,
+        baseline: f64,
+    ) -> f64 {
+        let size = size * self.unit;
+        if !text.is_empty() {
+            writer.words.push(lay_out(text, weight, size, colour, left, baseline));
+        }
+        left + width(text, weight, size)
+    }
+
+    /// The length (m) that the key's arrow stands for: a round one of about the length of the key where a metre has
+    /// `pixels`.
+    pub(super) fn arrow_metres(self, pixels: f64) -> f64 {
+        number::round_below(ARROW * self.unit / pixels)
+    }
+}
+
+/// Whether any value lies below or above a scale.
+pub(super) fn beyond(scale: &ColourScale, frame: &Frame) -> [bool; 2] {
+    let [low, high] = scale.range;
+    let values = || frame.runs.iter().flat_map(|run| &run.snapshot.field);
+    [values().any(|&value| value < low), values().any(|&value| value > high)]
+}

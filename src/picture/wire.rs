@@ -1,0 +1,252 @@
+//! Lines in place of surfaces: the springs of a model, or the edges of the elements.
+
+use super::field::NOWHERE;
+use super::narrow::{narrow, narrow_point};
+use super::palette::{Colour, Palette};
+use super::ramp;
+use super::{Bead, Second, Stroke};
+use crate::sim::body::Body;
+use glam::DVec3;
+
+/// Width of springs, of edges, of edges of turned-over elements and of elements without faces that a field colours (px
+/// in the reference picture).
+const SPRING: f64 = 1.9;
+const EDGE: f64 = 1.3;
+const ALARM_EDGE: f64 = 2.2;
+const BARE: f64 = 2.0;
+/// How much wider lines are that a field colours, to have room for a casing.
+const CASED: f64 = 1.9;
+/// Opacity of a spring behind a surface (of 255).
+const BEHIND: f64 = 28.0;
+/// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
+/// or there would be nothing but lines.
+const SMALL_ELEMENT: f64 = 26.0;
+const THINNEST: f64 = 0.4;
+/// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
+const HAZE: f64 = 0.62;
+/// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
+const LONGEST_STEP: f64 = 0.05;
+
+/// The edges of elements, once for all frames.
+#[derive(Debug, Default)]
+pub(super) struct Edges {
+    /// Each edge once.
+    all: Vec<[u32; 2]>,
+    /// The edges of each element, and the nodes of those that have none.
+    of_elements: Vec<Vec<[u32; 2]>>,
+}
+
+impl Edges {
+    /// The edges of all elements of a body.
+    pub(super) fn new(body: &Body) -> Self {
+        let of_elements: Vec<_> = (0..body.elements.len()).map(|element| body.topology().edges_of(element)).collect();
+        let mut all = of_elements.concat();
+        all.iter_mut().for_each(|edge| edge.sort_unstable());
+        all.sort_unstable();
+        all.dedup();
+        Self { all, of_elements }
+    }
+}
+
+/// What is needed to draw lines in one panel.
+pub(super) struct Wire<'a> {
+    pub(super) body: &'a Body,
+    pub(super) position: &'a [DVec3],
+    /// The panel's origin (m).
+    pub(super) origin: DVec3,
+    /// The panel's unit of length (m).
+    pub(super) side: f64,
+    /// Unit vector away from the viewer.
+    pub(super) forward: DVec3,
+    pub(super) palette: &'a Palette,
+    /// Thickness of lines, in parts of that in the reference picture.
+    pub(super) line: f64,
+    /// Length of an element's edge (px).
+    pub(super) element: f64,
+    /// Whether surfaces are drawn, too.
+    pub(super) surfaces: bool,
+    /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
+    pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
+}
+
+impl Wire<'_> {
+    /// The same for what a field colours only where it colours no surfaces.
+    pub(super) fn without_surfaces(&self) -> Self {
+        Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
+    }
+
+    /// Springs, the farthest first.
+    pub(super) fn springs(&self, springs: &[[u32; 2]]) -> Vec<Stroke> {
+        let haze = self.haze();
+        let mut strokes = Vec::with_capacity(springs.len());
+        for &ends in springs {
+            self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes);
+        }
+        if self.surfaces {
+            let second = Second::OnBody(self.palette.spring_on_body);
+            strokes.iter_mut().for_each(|stroke| stroke.second = second);
+        }
+        self.sorted(strokes)
+    }
+
+    /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.
+    pub(super) fn edges(&self, edges: &Edges, turned_over: &[bool], only_turned_over: bool) -> Vec<Stroke> {
+        let haze = self.haze();
+        let mut strokes = Vec::new();
+        if !only_turned_over {
+            for &ends in &edges.all {
+                self.stroke(ends, self.palette.spring, EDGE, &haze, &mut strokes);
+            }
+            let elements = edges.of_elements.iter().enumerate().filter(|(_, edges)| edges.is_empty());
+            elements.for_each(|(element, _)| self.spokes(element, self.palette.spring, EDGE, &mut strokes));
+        }
+        let mut strokes = self.sorted(strokes);
+        let mut alarm = Vec::new();
+        let plain = Wire { shades: None, ..*self };
+        for (element, of_element) in edges.of_elements.iter().enumerate() {
+            if turned_over.get(element).copied().unwrap_or(false) {
+                for &ends in of_element {
+                    plain.stroke(ends, self.palette.alarm, ALARM_EDGE, &haze, &mut alarm);
+                }
+                if of_element.is_empty() {
+                    plain.spokes(element, self.palette.alarm, ALARM_EDGE, &mut alarm);
+                }
+            }
+        }
+        strokes.extend(self.sorted(alarm));
+        strokes
+    }
+
+    /// Elements without faces, coloured by a field like the surfaces beside them.
+    pub(super) fn bare(&self, elements: &[usize], turned_over: &[bool]) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        for &element in elements {
+            let over = turned_over.get(element).copied().unwrap_or(false);
+            let edges = self.body.topology().edges_of(element);
+            if edges.is_empty() {
+                self.spokes(element, self.palette.edge, BARE, &mut strokes);
+            }
+            edges.iter().for_each(|&ends| self.stroke(ends, self.palette.edge, BARE, &|_| 0.0, &mut strokes));
+            if over {
+                let plain = Wire { shades: None, ..*self };
+                edges.iter().for_each(|&ends| plain.stroke(ends, self.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
+            }
+        }
+        strokes
+    }
+
+    /// Nodes, the farthest first.
+    pub(super) fn beads(&self, radius: f64) -> Vec<Bead> {
+        let haze = self.haze();
+        let mut order: Vec<usize> = (0..self.position.len()).collect();
+        let depth = |node: &usize| self.position[*node].dot(self.forward);
+        order.sort_by(|a, b| depth(b).total_cmp(&depth(a)).then(a.cmp(b)));
+        let bead = |node: usize| {
+            // A disc is light so that its rim shows; the farther it is, the fainter is the rim.
+            let faded = 0.8 * haze(self.position[node]);
+            Bead {
+                at: self.relative(self.position[node]),
+                radius: narrow(radius),
+                colour: mixed(
+                    self.place_colour(node as u32).unwrap_or(self.palette.node),
+                    self.palette.background,
+                    0.5 * faded,
+                ),
+                rim: mixed(self.palette.edge, self.palette.background, faded),
+            }
+        };
+        order.into_iter().map(bead).collect()
+    }
+
+    /// Lines from the middle of an element that has no edges of its own to its nodes.
+    fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Stroke>) {
+        let nodes = &self.body.elements[element];
+        let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+        for &node in nodes {
+            let ends = [middle, self.position[node as usize]];
+            strokes.push(match self.place_colour(node) {
+                None => self.straight(ends, [colour; 2], width),
+                Some(own) => {
+                    let second = Second::Casing(self.palette.casing);
+                    Stroke { second, ..self.straight(ends, [own; 2], CASED * width) }
+                }
+            });
+        }
+    }
+
+    /// A line between two nodes, cut where its colours need it.
+    fn stroke(
+        &self,
+        [a, b]: [u32; 2],
+        colour: Colour,
+        width: f64,
+        haze: &dyn Fn(DVec3) -> f64,
+        strokes: &mut Vec<Stroke>,
+    ) {
+        let [from, to] = [a, b].map(|node| self.position[node as usize]);
+        let faded = |colour, point| mixed(colour, self.palette.background, haze(point));
+        let places = self.shades.map(|(ramp, places)| (ramp, [a, b].map(|node| places[node as usize])));
+        let Some((ramp, places)) = places.filter(|(_, places)| !places.contains(&NOWHERE)) else {
+            return strokes.push(self.straight([from, to], [faded(colour, from), faded(colour, to)], width));
+        };
+        let places = places.map(f64::from);
+        let pieces = ((places[1] - places[0]).abs() / LONGEST_STEP).ceil().max(1.0);
+        for piece in 0..pieces as usize {
+            let shares = [piece, piece + 1].map(|at| at as f64 / pieces);
+            let ends = shares.map(|share| from.lerp(to, share));
+            let colours = shares.map(|share| ramp::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
+            let casing = faded(self.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
+            let plain = self.straight(ends, colours, CASED * width);
+            strokes.push(Stroke { second: Second::Casing(casing), ..plain });
+        }
+    }
+
+    fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Stroke {
+        let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
+        let behind = (BEHIND * strength * strength).round() as u8;
+        Stroke {
+            ends: ends.map(|end| self.relative(end)),
+            colours,
+            second: Second::None,
+            behind: if self.surfaces { behind.max(1) } else { 0 },
+            width: narrow(width * self.line * strength.max(THINNEST)),
+        }
+    }
+
+    fn place_colour(&self, node: u32) -> Option<Colour> {
+        let (ramp, places) = self.shades?;
+        let place = places.get(node as usize).copied().filter(|&place| place != NOWHERE)?;
+        Some(ramp::colour(ramp, place))
+    }
+
+    fn relative(&self, point: DVec3) -> [f32; 3] {
+        narrow_point((point - self.origin) / self.side).to_array()
+    }
+
+    /// How far a point fades into the ground: not at all with surfaces, which show by themselves what is far.
+    fn haze(&self) -> impl Fn(DVec3) -> f64 {
+        let depth = |point: &DVec3| point.dot(self.forward);
+        let depths = self.position.iter().map(depth);
+        let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
+        let most = if self.surfaces || high - low < 1e-9 * self.side { 0.0 } else { HAZE };
+        let forward = self.forward;
+        move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+
+    /// The farthest first, so that nearer lines run over them.
+    fn sorted(&self, mut strokes: Vec<Stroke>) -> Vec<Stroke> {
+        let forward = narrow_point(self.forward);
+        let depth =
+            |stroke: &Stroke| (glam::Vec3::from(stroke.ends[0]) + glam::Vec3::from(stroke.ends[1])).dot(forward);
+        strokes.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        strokes
+    }
+}
+
+/// One colour on its way to another.
+fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
+    std::array::from_fn(|at| {
+        let [from, to] = [one[at], other[at]].map(f64::from);
+        (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8
+    })
+}

@@ -1,0 +1,113 @@
+//! Surfaces coloured by a scalar field, in place of the plain ones.
+
+use super::panel::{Panels, linear};
+use super::pipeline::{BODY_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
+use super::surface;
+use super::target::Bodies;
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{Picture, SHADES};
+use glam::Vec4;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/tint.wgsl");
+
+const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Float32];
+
+/// The pipelines of coloured surfaces with their scale, and where the corners of one picture stand on it. Made for the
+/// first picture that has a field.
+#[derive(Debug)]
+pub(super) struct Tint {
+    pub(super) alarm_behind: wgpu::RenderPipeline,
+    pub(super) alarm: wgpu::RenderPipeline,
+    pub(super) sound: wgpu::RenderPipeline,
+    /// For the turned-over sets: the scale; for the sound ones also what lies behind them.
+    pub(super) alarm_group: wgpu::BindGroup,
+    pub(super) sound_group: wgpu::BindGroup,
+    sound_layout: wgpu::BindGroupLayout,
+    ramp: GrowingBuffer<Vec4>,
+    pub(super) shades: GrowingBuffer<f32>,
+}
+
+impl Tint {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
+        let module = shader(gpu, "tint", &[super::PANEL_SHADER, surface::SHADER, SHADER]);
+        let scale = || uniform_entry(2, SHADES * size_of::<Vec4>(), false);
+        let alarm_layout = group_layout(gpu, "scale", &[scale()]);
+        let behind = [texture_entry(0, false, 1), texture_entry(1, true, 1), scale()];
+        let sound_layout = group_layout(gpu, "scale, turned over", &behind);
+        let vertices = [
+            Some(surface::vertices()),
+            Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<f32>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &ATTRIBUTES,
+            }),
+        ];
+        let build = |label, entries, layout, samples| {
+            let recipe = Recipe {
+                label,
+                shader: &module,
+                entries,
+                groups: &[&panels.layout, layout],
+                vertices: &vertices,
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                target: BODY_FORMAT,
+                blend: None,
+                depth: true,
+                samples,
+            };
+            recipe.build(gpu)
+        };
+        let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
+        let alarm_entries = [wgpu::BindGroupEntry { binding: 2, resource: ramp.buffer().as_entire_binding() }];
+        Self {
+            alarm_behind: build(
+                "turned over, behind, coloured",
+                ["tinted_alarm_corner", "tinted_behind"],
+                &alarm_layout,
+                1,
+            ),
+            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], &alarm_layout, samples),
+            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], &sound_layout, samples),
+            alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("scale"),
+                layout: &alarm_layout,
+                entries: &alarm_entries,
+            }),
+            sound_group: sound_group(gpu, &sound_layout, &ramp, bodies),
+            sound_layout,
+            ramp,
+            shades: GrowingBuffer::new(gpu, "shades", wgpu::BufferUsages::VERTEX, 1024),
+        }
+    }
+
+    /// Takes note of new textures.
+    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
+        self.sound_group = sound_group(gpu, &self.sound_layout, &self.ramp, bodies);
+    }
+
+    /// Uploads the scale of a picture and where its corners stand, in the order of its vertices.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+        let colours: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
+        self.ramp.write(gpu, &colours);
+        let meshes = picture.panels.iter().flat_map(|panel| [&panel.sound, &panel.turned_over]);
+        let shades: Vec<_> = meshes.flat_map(|mesh| mesh.shades.iter().copied()).collect();
+        self.shades.write(gpu, &shades);
+    }
+}
+
+fn sound_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    ramp: &GrowingBuffer<Vec4>,
+    bodies: &Bodies,
+) -> wgpu::BindGroup {
+    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("scale, turned over"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&bodies.alarm_colour) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&bodies.alarm_depth) },
+            wgpu::BindGroupEntry { binding: 2, resource: ramp.buffer().as_entire_binding() },
+        ],
+    })
+}
