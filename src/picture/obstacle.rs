@@ -424,6 +424,15 @@ impl Staging<'_> {
                 let corner = |&at: &DVec3| PaneCorner { position: self.relative(at), ..PaneCorner::default() };
                 slab.panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
             }
+            if seen[face] {
+                // Where it stands on a floor it has an edge, too.
+                let on = |point: DVec3, (out, height): HalfSpace| {
+                    (out.dot(point) - height).abs() < 1e-9 * (self.extent + height.abs())
+                };
+                let next = polygon.iter().cycle().skip(1);
+                let cut = polygon.iter().zip(next).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
+                slab.edges.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.relative(end))));
+            }
             kept.extend(polygon);
         }
         for ([a, b], [one, other]) in edges() {
