@@ -1,6 +1,6 @@
 //! The schema describes everything, and holds for what is shipped.
 
-use super::{good, shipped};
+use localshape::scene::{Limits, Scene};
 use serde_json::Value;
 
 /// Calls `visit` on a schema and all schemas in it, each with its way.
