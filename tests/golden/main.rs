@@ -31,7 +31,7 @@ const AT_LEAST: usize = 8;
 const LARGEST_FILE: u64 = 40 * 1024;
 
 /// Width and height of the pictures of scenes that ship (px).
-const SMALL: [u32; 2] = [400, 225];
+const SMALL: [u32; 2] = [320, 180];
 
 /// A folder of scenes, the folder of their goldens, and the size of these if it is not that of the scene.
 struct Set {
