@@ -120,7 +120,8 @@ impl Writer<'_> {
         };
         let wordings = numbers.iter().flat_map(|text| sizes.map(|size| (text, size)));
         let free = room.right - right_of_count;
-        if let Some((text, size)) = { wordings }.find(|&(text, size)| width(text, weight, size) <= free) {
+        // By the room of the widest number, or the words beside it would come and go.
+        if let Some((text, size)) = { wordings }.find(|&(text, size)| width(&widest(text), weight, size) <= free) {
             self.right(text, weight, size, colour, room.right, baseline);
         }
     }
@@ -166,6 +167,21 @@ impl Writer<'_> {
     fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
         let left = right - width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
+    }
+}
+
+/// A wording with the widest number that may stand in the place of its own.
+fn widest(text: &str) -> String {
+    const WIDEST: &str = "−0.00";
+    let is_part = |c: char| c.is_ascii_digit() || c == '−' || c == '.';
+    match (text.find(is_part), text.rfind(is_part)) {
+        (Some(first), Some(last))
+            if text[first..].chars().take_while(|&c| is_part(c)).count() < WIDEST.chars().count() =>
+        {
+            let after = text[last..].chars().next().map_or(last, |c| last + c.len_utf8());
+            format!("{}{WIDEST}{}", &text[..first], &text[after..])
+        }
+        _ => text.to_owned(),
     }
 }
 

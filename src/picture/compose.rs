@@ -51,6 +51,8 @@ const MOST_CELLS: f64 = 10.0;
 const SHEER: f64 = 0.38;
 /// Coordinates of what blew up are kept within this (sides).
 const FARTHEST: f64 = 1e12;
+/// Bodies as wide as their panel and higher than this part of it are kept off the words.
+const FILLED: f64 = 0.7;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
@@ -377,8 +379,9 @@ impl<'a> Composer<'a> {
         }
         let touched = position.iter().chain(&staged.outermost);
         let mut region = region(viewport, touched, &lens, room);
-        if diverged {
-            // What blew up may lie across everything; the words that say so stay on clean ground.
+        let fills_panel = region[2] == viewport[2] && f64::from(region[3]) > FILLED * f64::from(viewport[3]);
+        if diverged || fills_panel {
+            // What blows up may lie across everything; the words that say so stay on clean ground.
             region = overlap(region, layout::clear_of_words(viewport, scale));
         }
         Panel {

@@ -103,7 +103,9 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (pixel[1].round(), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
-        if y < top || y >= top + height || length <= 0.0 {
+        // Below the captions it would underline them.
+        let [_, clear, _, room] = layout::clear_of_words(self.viewport, self.scale).map(f64::from);
+        if y < top || y > clear + room || length <= 0.0 {
             return;
         }
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);
@@ -175,10 +177,14 @@ impl Flat<'_> {
         places.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((DVec2::ZERO, 0.0))
     }
 
-    /// The arrow of a sound element, unless a turned-over one lies over it.
+    /// The arrow of a sound element, unless a turned-over one covers it.
     fn sound_arrow(&self, (middle, room): Place, turned_over: &[(Vec<DVec2>, Place)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
-        if room > LEAST_ROOM * unit && !turned_over.iter().any(|(polygon, _)| is_inside(polygon, middle)) {
+        // Neither one that lies over it nor the disc of its arrow.
+        let covered = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
+            is_inside(polygon, middle) || disc.distance(middle) < (RING[0] + RING[1]) * unit
+        };
+        if room > LEAST_ROOM * unit && !turned_over.iter().any(covered) {
             let colour = self.palette.sign();
             self.round(middle, RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
         }

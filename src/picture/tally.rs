@@ -12,7 +12,7 @@ const MOST_SQUARES: usize = 200;
 /// The height of all rows together (px in the reference picture).
 const HEIGHT: f64 = 36.0;
 /// The widest tally (px in the reference picture).
-const WIDTH: f64 = 230.0;
+const WIDTH: f64 = 200.0;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];
 

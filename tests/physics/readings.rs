@@ -58,7 +58,7 @@ fn the_linear_update_swells_a_spinning_cube() {
 
 /// The shipped scene: Eqs. (2) and (3) as printed blow up, and the other methods do not.
 #[test]
-fn explicit_euler_blows_up_a_dropped_block() {
+fn explicit_euler_blows_up_a_spinning_block() {
     let scene = shipped("explicit-euler", &[]);
     assert!(matches!(after(&scene, "As printed", 2.0).status, Status::Diverged(_)));
     for run in ["Semi-implicit Euler", "Velocity Verlet"] {
