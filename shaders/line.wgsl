@@ -36,43 +36,27 @@ fn segment(
     @location(1) end: vec3<f32>,
     @location(2) kind: u32,
 ) -> Segment {
-    var a = panel.clip * vec4(start, 1.0);
-    var b = panel.clip * vec4(end, 1.0);
-    // What lies behind the eye is cut off.
-    let near = panel.near;
-    if a.w < near && b.w < near {
-        return Segment(vec4(0.0, 0.0, -1.0, 1.0), vec4(0.0), vec2(0.0), kind);
-    }
-    if a.w < near {
-        a = mix(a, b, (near - a.w) / (b.w - a.w));
-    } else if b.w < near {
-        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    let ends = ends_of(start, end);
+    if !ends.seen {
+        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind);
     }
     let size = panel.region.zw;
-    let flip = vec2(0.5, -0.5);
-    let from_pixel = (a.xy / a.w * flip + 0.5) * size;
-    let to_pixel = (b.xy / b.w * flip + 0.5) * size;
+    let from_pixel = pixel_of(ends.a, size);
+    let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
-    let depths = vec2(a.z / max(a.w - nearer, near), b.z / max(b.w - nearer, near));
-    let difference = to_pixel - from_pixel;
-    let extent = length(difference);
-    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
-    let across = vec2(-along.y, along.x);
-    let reach = REACH * panel.line_scale + 1.0;
-    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
-        + across * select(-reach, reach, (corner & 1u) == 1u);
-    let place = vec4((pixel / size - 0.5) / flip, 0.5, 1.0);
+    let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
+    let place = strip_corner(corner, from_pixel, to_pixel, REACH * panel.line_scale + 1.0, size);
     return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
 }
 
-fn pixel_of(place: vec2<f32>) -> vec2<i32> {
+fn texel_of(place: vec2<f32>) -> vec2<i32> {
     let low = panel.region.xy;
     let high = low + panel.region.zw - 1.0;
     return vec2<i32>(clamp(floor(place), low, high));
 }
 
 fn depth_at(pixel: vec2<f32>) -> f32 {
-    return load_depth(pixel_of(pixel));
+    return load_depth(texel_of(pixel));
 }
 
 fn distance_of(depth: f32) -> f32 {
@@ -101,7 +85,7 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let scale = panel.line_scale;
     // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
     let of_obstacle = segment.kind == OBSTACLE_EDGE || segment.kind == OBSTACLE_CONTOUR;
-    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(pixel_of(middle))) {
+    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(texel_of(middle))) {
         return vec4(0.0);
     }
     if segment.kind == OBSTACLE_EDGE {
@@ -135,7 +119,7 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let farther = min(sides.x, sides.y);
     // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
     var shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
-    let obstacles = vec2(is_obstacle(pixel_of(middle + across)), is_obstacle(pixel_of(middle - across)));
+    let obstacles = vec2(is_obstacle(texel_of(middle + across)), is_obstacle(texel_of(middle - across)));
     if segment.kind == OBSTACLE_CONTOUR {
         // Round ones come nearer still: only what is not of their kind hides them at once.
         let before_it = vec2(distance_of(depth)) - vec2(distance_of(sides.x), distance_of(sides.y));

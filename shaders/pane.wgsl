@@ -139,29 +139,15 @@ fn edge_corner(
     @location(3) size: vec2<f32>,
     @location(4) viewport: vec2<f32>,
 ) -> EdgePiece {
-    var a = panel.clip * vec4(start, 1.0);
-    var b = panel.clip * vec4(end, 1.0);
-    let near = panel.near;
-    if a.w < near && b.w < near {
-        return EdgePiece(vec4(0.0, 0.0, -1.0, 1.0), vec4(0.0), vec2(0.0), colour);
+    let ends = ends_of(start, end);
+    if !ends.seen {
+        return EdgePiece(NOWHERE, vec4(0.0), vec2(0.0), colour);
     }
-    if a.w < near {
-        a = mix(a, b, (near - a.w) / (b.w - a.w));
-    } else if b.w < near {
-        b = mix(b, a, (near - b.w) / (a.w - b.w));
-    }
-    let flip = vec2(0.5, -0.5);
-    let from_pixel = (a.xy / a.w * flip + 0.5) * size;
-    let to_pixel = (b.xy / b.w * flip + 0.5) * size;
-    let difference = to_pixel - from_pixel;
-    let extent = length(difference);
-    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
-    let across = vec2(-along.y, along.x);
-    let reach = EDGE.x * panel.line_scale + 1.0;
-    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
-        + across * select(-reach, reach, (corner & 1u) == 1u);
-    let place = vec4((pixel / size - 0.5) / flip, 0.5, 1.0);
-    return EdgePiece(place, vec4(from_pixel, to_pixel) + viewport.xyxy, vec2(a.z / a.w, b.z / b.w), colour);
+    let from_pixel = pixel_of(ends.a, size);
+    let to_pixel = pixel_of(ends.b, size);
+    let place = strip_corner(corner, from_pixel, to_pixel, EDGE.x * panel.line_scale + 1.0, size);
+    let depths = vec2(ends.a.z / ends.a.w, ends.b.z / ends.b.w);
+    return EdgePiece(place, vec4(from_pixel, to_pixel) + viewport.xyxy, depths, colour);
 }
 
 // Opacity and depth of an edge at a pixel.

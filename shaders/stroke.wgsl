@@ -41,31 +41,16 @@ fn stroke(
     @location(5) size: f32,
     @location(6) kind: u32,
 ) -> Stroke {
-    var a = panel.clip * vec4(start, 1.0);
-    var b = panel.clip * vec4(end, 1.0);
-    // What lies behind the eye is cut off.
-    let near = panel.near;
-    if a.w < near && b.w < near {
-        return Stroke(vec4(0.0, 0.0, -1.0, 1.0), vec4(0.0), vec2(0.0), first, second, other, size, kind);
-    }
-    if a.w < near {
-        a = mix(a, b, (near - a.w) / (b.w - a.w));
-    } else if b.w < near {
-        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    let ends = ends_of(start, end);
+    if !ends.seen {
+        return Stroke(NOWHERE, vec4(0.0), vec2(0.0), first, second, other, size, kind);
     }
     let room = panel.region.zw;
-    let flip = vec2(0.5, -0.5);
-    let from_pixel = (a.xy / a.w * flip + 0.5) * room;
-    let to_pixel = (b.xy / b.w * flip + 0.5) * room;
-    let depths = vec2(a.z / max(a.w - NEARER, near), b.z / max(b.w - NEARER, near));
-    let difference = to_pixel - from_pixel;
-    let extent = length(difference);
-    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
-    let across = vec2(-along.y, along.x);
+    let from_pixel = pixel_of(ends.a, room);
+    let to_pixel = pixel_of(ends.b, room);
+    let depths = vec2(ends.a.z / max(ends.a.w - NEARER, panel.near), ends.b.z / max(ends.b.w - NEARER, panel.near));
     let reach = select(0.5 * size, size, kind == DISC) + 1.0;
-    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
-        + across * select(-reach, reach, (corner & 1u) == 1u);
-    let place = vec4((pixel / room - 0.5) / flip, 0.5, 1.0);
+    let place = strip_corner(corner, from_pixel, to_pixel, reach, room);
     return Stroke(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, first, second, other, size, kind);
 }
 

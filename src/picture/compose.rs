@@ -12,7 +12,7 @@ use super::narrow::{narrow, narrow_point};
 use super::obstacle::{Staged, Staging};
 use super::obstacle_plane;
 use super::palette::Palette;
-use super::plane::{Flat, node_radius};
+use super::plane::{Flat, LEVEL, node_radius};
 use super::pointer::Pointers;
 use super::ramp;
 use super::shadow::{self, Plane};
@@ -38,8 +38,6 @@ const KEY_STEEPENING: f64 = 8.0;
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
 /// Distance of the camera above which the floor is drawn wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// Floors whose normal rises more than this are level.
-pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 /// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
 /// on clean ground.
 const FADE_ABOVE: f64 = 94.0;

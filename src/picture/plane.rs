@@ -2,7 +2,6 @@
 //! floor seen from its side.
 
 use super::camera::Lens;
-use super::compose::LEVEL;
 use super::ears::Ears;
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::narrow;
@@ -13,6 +12,8 @@ use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use glam::{DVec2, DVec3};
 
+/// Floors whose normal rises more than this are level.
+pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 /// Radius of a node (px in the reference picture).
 const NODE: f64 = 5.2;
 /// Radius of a ring arrow, and of the disc behind one of a turned-over element (px in the reference picture).

@@ -108,7 +108,8 @@ impl Lines {
 impl Way {
     fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
-        let parts = [super::PANEL_SHADER, super::reading_shader(samples), obstacles, ALARM_SHADER, SHADER];
+        let reading = super::reading_shader(samples);
+        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading, obstacles, ALARM_SHADER, SHADER];
         let module = shader(gpu, "line", &parts);
         let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
         if among {

@@ -36,6 +36,7 @@ use panel::Panels;
 use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
+const STRIP_SHADER: &str = include_str!("../../shaders/strip.wgsl");
 const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");
 const MULTISAMPLED_SHADER: &str = include_str!("../../shaders/multisampled.wgsl");
 

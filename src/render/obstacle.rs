@@ -149,7 +149,8 @@ impl Slabs {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let module = shader(gpu, "pane", &[super::PANEL_SHADER, super::reading_shader(samples), PANE_SHADER]);
+        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, super::reading_shader(samples), PANE_SHADER];
+        let module = shader(gpu, "pane", &parts);
         let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
         let group = group_layout(gpu, "pane", &entries);
         let build = |entries, vertices, topology| {

@@ -4,7 +4,8 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, composite, ground, line, obstacle, overlay, stroke, surface, tint,
+    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite, ground, line, obstacle, overlay, stroke,
+    surface, tint,
 };
 use std::mem::offset_of;
 
@@ -27,11 +28,11 @@ fn shaders_are_valid() {
     parse(&[overlay::SHADER]);
     for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
+            parse(&[PANEL_SHADER, STRIP_SHADER, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
         }
-        parse(&[PANEL_SHADER, reading, obstacle::PANE_SHADER]);
+        parse(&[PANEL_SHADER, STRIP_SHADER, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
-        parse(&[PANEL_SHADER, reading, stroke::SHADER]);
+        parse(&[PANEL_SHADER, STRIP_SHADER, reading, stroke::SHADER]);
     }
 }
 

@@ -1,0 +1,42 @@
+// A straight line in space as a strip of pixels: what all passes that draw lines share.
+
+// The ends of a line in clip space, without what lies behind the eye.
+struct Ends {
+    a: vec4<f32>,
+    b: vec4<f32>,
+    seen: bool,
+}
+
+fn ends_of(start: vec3<f32>, end: vec3<f32>) -> Ends {
+    var a = panel.clip * vec4(start, 1.0);
+    var b = panel.clip * vec4(end, 1.0);
+    let near = panel.near;
+    let seen = a.w >= near || b.w >= near;
+    if seen && a.w < near {
+        a = mix(a, b, (near - a.w) / (b.w - a.w));
+    } else if seen && b.w < near {
+        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    }
+    return Ends(a, b, seen);
+}
+
+const FLIP = vec2<f32>(0.5, -0.5);
+
+// Where a point in clip space lies in a target of a size (px).
+fn pixel_of(at: vec4<f32>, size: vec2<f32>) -> vec2<f32> {
+    return (at.xy / at.w * FLIP + 0.5) * size;
+}
+
+// A corner of the strip that reaches so far (px) around a line between two pixels.
+fn strip_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: f32, size: vec2<f32>) -> vec4<f32> {
+    let difference = to_pixel - from_pixel;
+    let extent = length(difference);
+    let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
+    let across = vec2(-along.y, along.x);
+    let pixel = select(from_pixel - along * reach, to_pixel + along * reach, corner >= 2u)
+        + across * select(-reach, reach, (corner & 1u) == 1u);
+    return vec4((pixel / size - 0.5) / FLIP, 0.5, 1.0);
+}
+
+// Outside of everything.
+const NOWHERE = vec4<f32>(0.0, 0.0, -1.0, 1.0);
