@@ -73,6 +73,7 @@ fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::body::Solids;
     use crate::sim::body::{Dimension, IndexLists};
     use crate::sim::field::Field;
     use glam::DVec3;
@@ -80,7 +81,7 @@ mod tests {
     fn body() -> Body {
         let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].to_vec();
         let elements: IndexLists = [&[0, 1, 2][..], &[1, 3, 2]].into_iter().collect();
-        Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, None)
+        Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, Solids::Ordered, None)
     }
 
     #[test]

@@ -9,7 +9,8 @@ use sha2::{Digest, Sha256};
 ///
 /// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
 /// whose value is its default. So neither comments, layout and order count, nor whether a number was written as
-/// `1e4` or `10000.0`, nor a default that was typed; and a key added to the format later changes no digest.
+/// `1e4` or `10000.0`, nor a default that the schema names. A default that only words describe, such as `passes = 2`,
+/// counts when it is typed. A key added to the format later changes no digest.
 ///
 /// Where the scene names a file, the digest of what is in it stands for the name: `body` for that of the body.
 pub(super) fn digest(mut scene: SceneFile, body: Option<String>) -> String {

@@ -138,6 +138,7 @@ pub(super) fn size(bytes: u128) -> String {
 mod tests {
     use super::*;
     use crate::sim::body::Dimension;
+    use crate::sim::body::Solids;
     use std::collections::BTreeMap;
 
     fn model(text: &str) -> ModelParameters {
@@ -151,7 +152,8 @@ mod tests {
     /// Listed elements, each with this many nodes.
     fn listed(dimension: Dimension, corners: usize, count: u128, model: ModelParameters) -> Demand {
         let elements = BTreeMap::from([(corners, count)]);
-        let body = Census { dimension, nodes: corners as u128, elements, lattice: false, springs: None };
+        let solids = Solids::Ordered;
+        let body = Census { dimension, nodes: corners as u128, solids, elements, lattice: false, springs: None };
         Demand::new(body, "use fewer nodes", [model].iter())
     }
 

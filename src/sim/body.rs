@@ -3,7 +3,7 @@
 use super::hull::Hulls;
 pub use super::lists::IndexLists;
 use super::topology;
-pub use super::topology::{Dimension, ElementKind, Faces};
+pub use super::topology::{Dimension, ElementKind, Faces, Solids};
 use glam::DVec3;
 
 /// A deformable body as it is at rest. It never changes during a simulation and all runs of a scene share it.
@@ -26,8 +26,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Builds a body from its nodes and elements; kinds and faces follow from the number of nodes of each element, and
-    /// where that says nothing from the hull of its nodes.
+    /// Builds a body from its nodes and elements. What each element is follows from the number of its nodes and from
+    /// `solids`; its faces from that, or from the hull of its nodes.
     ///
     /// `faces`, when given, are drawn instead of the elements' own; each lies between the element out of which it looks
     /// and the one into which it looks, of those that hold all its nodes.
@@ -39,24 +39,25 @@ impl Body {
         rest: Vec<DVec3>,
         mass: Vec<f64>,
         elements: IndexLists,
+        solids: Solids,
         faces: Option<&IndexLists>,
     ) -> Self {
         assert_eq!(rest.len(), mass.len(), "one mass per node");
         assert!(elements.indices().iter().all(|&node| (node as usize) < rest.len()), "node indices in range");
-        let kinds: Vec<_> = elements.iter().map(|nodes| topology::kind(dimension, nodes.len())).collect();
+        let kinds: Vec<_> = elements.iter().map(|nodes| topology::kind(dimension, solids, nodes.len())).collect();
         let hulls = Hulls::new(&elements, &kinds, &rest);
         let faces = match faces {
             Some(given) => topology::assign_faces(given, &elements, |face, element| {
                 looks_out(face, &elements[element as usize], &rest)
             }),
-            None => topology::Elements { nodes: &elements, kinds: &kinds, hulls: &hulls }.shared_faces(),
+            None => topology::Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
         Self { dimension, rest, mass, elements, kinds, hulls, faces }
     }
 
     /// The elements with their faces, edges and named springs.
     pub fn topology(&self) -> topology::Elements<'_> {
-        topology::Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls }
+        topology::Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls, rest: &self.rest }
     }
 
     /// The number of nodes.
@@ -127,7 +128,7 @@ mod tests {
     fn two_prisms(faces: Option<&IndexLists>) -> Body {
         let elements =
             [&[3, 1, 4, 0, 2, 9, 5, 7, 6, 8][..], &[5, 6, 7, 8, 9, 10, 11, 12, 13, 14]].into_iter().collect();
-        Body::new(Dimension::Space, pentagons(3), vec![1.0; 15], elements, faces)
+        Body::new(Dimension::Space, pentagons(3), vec![1.0; 15], elements, Solids::Ordered, faces)
     }
 
     #[test]
@@ -151,7 +152,7 @@ mod tests {
     fn a_flat_element_is_a_face_of_its_own_that_bounds_nothing() {
         let rest: Vec<_> = (0..7).map(f64::from).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
         let elements = [&[0, 1, 2, 3, 4, 5, 6][..]; 2].into_iter().collect();
-        let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, None);
+        let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, Solids::Ordered, None);
         assert_eq!(body.faces.inner, [Some(0), Some(1)]);
         assert_eq!(body.faces.outer, [None, None]);
         assert_eq!(body.topology().springs(Springs::Edges).len(), 7);

@@ -1,6 +1,6 @@
 //! How large a body will be, counted before anything is allocated for it.
 
-use super::topology::{self, Dimension, ElementKind};
+use super::topology::{self, Dimension, ElementKind, Solids};
 use std::collections::BTreeMap;
 
 /// The sizes of a body that is not made yet.
@@ -10,6 +10,8 @@ pub struct Census {
     pub dimension: Dimension,
     /// Nodes.
     pub nodes: u128,
+    /// What elements of some numbers of nodes are.
+    pub solids: Solids,
     /// How many elements there are of each number of nodes.
     pub elements: BTreeMap<usize, u128>,
     /// Whether the elements are the cells of one block, so that each node has few neighbours.
@@ -24,7 +26,7 @@ impl Census {
         let product = |extra: u128| cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
         let (dimension, corners) = if cells.len() == 2 { (Dimension::Plane, 4) } else { (Dimension::Space, 8) };
         let elements = BTreeMap::from([(corners, product(0))]);
-        Self { dimension, nodes: product(1), elements, lattice: true, springs: None }
+        Self { dimension, nodes: product(1), solids: Solids::Ordered, elements, lattice: true, springs: None }
     }
 
     /// The number of elements.
@@ -55,7 +57,7 @@ impl Census {
     /// The sum over all elements of something that follows from an element's kind and its number of nodes.
     pub fn sum(&self, of_one: impl Fn(ElementKind, usize) -> u128) -> u128 {
         self.elements.iter().fold(0, |sum: u128, (&nodes, &count)| {
-            sum.saturating_add(of_one(topology::kind(self.dimension, nodes), nodes).saturating_mul(count))
+            sum.saturating_add(of_one(topology::kind(self.dimension, self.solids, nodes), nodes).saturating_mul(count))
         })
     }
 }
@@ -69,17 +71,21 @@ mod tests {
 
     #[test]
     fn face_corners_are_those_of_the_faces() {
-        for (dimension, nodes) in [(Dimension::Plane, 2..9), (Dimension::Space, 2..10)] {
+        let (ordered, convex) = (Solids::Ordered, Solids::Convex);
+        for (dimension, solids, nodes) in
+            [(Dimension::Plane, ordered, 2..9), (Dimension::Space, ordered, 2..10), (Dimension::Space, convex, 2..10)]
+        {
             for nodes in nodes {
                 let elements = BTreeMap::from([(nodes, 1)]);
-                let census = Census { dimension, nodes: nodes as u128, elements, lattice: false, springs: None };
+                let census =
+                    Census { dimension, nodes: nodes as u128, solids, elements, lattice: false, springs: None };
                 let own: Vec<u32> = (0..nodes as u32).collect();
                 let lists: IndexLists = [own.as_slice()].into_iter().collect();
-                let kinds = [topology::kind(dimension, nodes)];
+                let kinds = [topology::kind(dimension, solids, nodes)];
                 // On this curve every face of the hull is a triangle: as many as there can be.
                 let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
                 let hulls = Hulls::new(&lists, &kinds, &rest);
-                let faces = topology::Elements { nodes: &lists, kinds: &kinds, hulls: &hulls }.faces_of(0);
+                let faces = topology::Elements { nodes: &lists, kinds: &kinds, hulls: &hulls, rest: &rest }.faces_of(0);
                 assert_eq!(census.face_corners(), faces.iter().map(|face| face.len() as u128).sum::<u128>(), "{nodes}");
             }
         }

@@ -1,11 +1,11 @@
 //! Diagnostics: energies, momenta, turned-over elements, volume and shape error.
 
-use super::body::{Body, Dimension, ElementKind, State};
+use super::body::{Body, ElementKind, State};
 use super::model::Measure;
-use super::rotation::{davenport1968, moment, planar};
+use super::rotation::{self, moment};
 use super::snapshot::{Diagnostics, Placement};
 use super::topology;
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
 /// What is known of a body beforehand.
@@ -94,10 +94,7 @@ impl Diagnose {
     fn placement(&self, position: &[DVec3]) -> Placement {
         let centre = mean(position);
         let at_rest = moment(&self.centred, position.iter().map(|&position| position - centre));
-        let turn = match self.body.dimension {
-            Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
-            Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
-        };
+        let turn = rotation::best(self.body.dimension, at_rest);
         Placement { rest_centre: self.rest_centre, centre, turn }
     }
 
@@ -128,8 +125,7 @@ fn element_size(body: &Body, element: usize) -> ElementSize {
             if moments.determinant() <= FLAT * mean_moment * mean_moment * mean_moment {
                 return ElementSize::None;
             }
-            // The box whose corners have the same second moments stands for the volume of a shape without faces.
-            let at_rest = (moments * (4.0 / rest.len() as f64)).determinant().sqrt();
+            let at_rest = hull_volume(body, element);
             ElementSize::Affine { at_rest, inverse: moments.inverse(), rest }
         }
         _ => ElementSize::Faces { at_rest: volume_by_faces(kind, nodes, &body.rest) },
@@ -162,6 +158,16 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     volume
 }
 
+/// The volume inside the hull of an element at rest (m³).
+fn hull_volume(body: &Body, element: usize) -> f64 {
+    let origin = body.rest[body.elements[element][0] as usize];
+    let at = |node: u32| body.rest[node as usize] - origin;
+    let of_face = |face: &[u32]| -> f64 {
+        (2..face.len()).map(|step| at(face[0]).dot(at(face[step - 1]).cross(at(face[step])))).sum()
+    };
+    body.hulls.of(element).map(of_face).sum::<f64>() / 6.0
+}
+
 fn mean(points: &[DVec3]) -> DVec3 {
     points.iter().fold(DVec3::ZERO, |sum, &point| sum + point) / points.len() as f64
 }
@@ -169,14 +175,17 @@ fn mean(points: &[DVec3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;
+    use crate::sim::body::Solids;
     use crate::sim::snapshot::Diagnostics;
     use glam::DQuat;
 
     fn at_rest(rest: Vec<DVec3>) -> Diagnostics {
         let mut elements = IndexLists::default();
         elements.push(&(0..rest.len() as u32).collect::<Vec<_>>());
-        let body = Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, None));
+        let body =
+            Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, Solids::Ordered, None));
         let nothing = Measure { energy: None, residual: None };
         Diagnose::new(&body).state(&State::at_rest(rest), DVec3::ZERO, nothing).0
     }

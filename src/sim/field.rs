@@ -1,9 +1,9 @@
 //! Scalar fields over a body: what a picture can colour it by.
 
-use super::body::{Body, Dimension, State};
-use super::rotation::{davenport1968, moment, planar};
+use super::body::{Body, State};
+use super::rotation::{self, moment};
 use super::snapshot::Placement;
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -94,10 +94,7 @@ fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
     };
     let (rest, now) = (centred(&body.rest), centred(position));
     let at_rest = moment(&rest, now.iter().copied());
-    let turn = match body.dimension {
-        Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
-        Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
-    };
+    let turn = rotation::best(body.dimension, at_rest);
     let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - turn * rest).length_squared()).sum();
     (off / rest.iter().map(|rest| rest.length_squared()).sum::<f64>()).sqrt()
 }
@@ -105,14 +102,23 @@ fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::body::Dimension;
+    use crate::sim::body::Solids;
+    use glam::DQuat;
 
     #[test]
     fn strain_is_the_scale_of_a_scaled_element_and_nothing_for_a_turned_one() {
         let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::new(0.4, 0.5, 1.0)];
         let turn = DQuat::from_xyzw(0.3, -0.4, 0.1, 0.8).normalize();
         for dimension in [Dimension::Plane, Dimension::Space] {
-            let body =
-                Body::new(dimension, rest.clone(), vec![1.0; 5], [&[0, 1, 2, 3][..]].into_iter().collect(), None);
+            let body = Body::new(
+                dimension,
+                rest.clone(),
+                vec![1.0; 5],
+                [&[0, 1, 2, 3][..]].into_iter().collect(),
+                Solids::Ordered,
+                None,
+            );
             let turn = if dimension == Dimension::Plane { DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8) } else { turn };
             for scale in [1.0, 1.25, 0.4] {
                 let position: Vec<_> = rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect();

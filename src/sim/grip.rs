@@ -18,6 +18,12 @@ pub struct Grip {
 }
 
 impl Grip {
+    /// How far the hand has gone since it gripped, at a time (s), turning about the mean of the nodes then.
+    pub fn way(&self, time: f64) -> Pose {
+        let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
+        Pose { shift: now.shift - first.shift, turn: now.turn * first.turn.conjugate() }
+    }
+
     /// Whether the nodes follow the hand at a time (s).
     pub fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until
@@ -57,9 +63,14 @@ impl Hand {
 
     /// Takes the nodes where they are at the start of a step, if it is to hold them at the step's end (s).
     pub(super) fn reach(&mut self, time: f64, state: &State) {
-        if self.held.is_none() && self.grip.holds(time) {
+        if self.held.is_none() && self.moves(time) {
             self.take(&state.position);
         }
+    }
+
+    /// Whether it moves nodes in a step that ends at a time (s): not in the one that ends just as it grips them.
+    fn moves(&self, time: f64) -> bool {
+        self.grip.from < time && time <= self.grip.until
     }
 
     fn take(&mut self, position: &[DVec3]) {
@@ -72,11 +83,11 @@ impl Hand {
     ///
     /// A node's velocity is the way it has gone in the step, over the step: with that it flies on when it is let go.
     pub(super) fn drag(&mut self, time: f64, step: f64, state: &mut State) -> bool {
-        let Some(Held { gripped, middle, now }) = self.held.as_mut().filter(|_| self.grip.holds(time)) else {
+        if !self.moves(time) {
             return false;
-        };
-        let (first, present) = (self.grip.motion.pose(self.grip.from), self.grip.motion.pose(time));
-        let way = Pose { shift: present.shift - first.shift, turn: present.turn * first.turn.conjugate() };
+        }
+        let Some(Held { gripped, middle, now }) = &mut self.held else { return false };
+        let way = self.grip.way(time);
         for ((&node, &start), now) in self.grip.nodes.iter().zip(&*gripped).zip(now) {
             let to = way.apply(*middle, start);
             state.velocity[node as usize] = (to - *now) / step;

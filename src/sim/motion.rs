@@ -131,6 +131,16 @@ impl Motion {
         }
     }
 
+    /// The longest way (m) from one place of the path to another, at a distance from the pivot (m).
+    pub fn longest_way(&self, distance: f64) -> f64 {
+        let way = |place: Place| place.shift.length() + place.turn.length().min(PI) * distance;
+        match self {
+            Self::Still => 0.0,
+            Self::Keys { keys, .. } => 2.0 * keys.iter().map(|key| way(key.place)).fold(0.0, f64::max),
+            Self::Swing { amplitude, .. } => 2.0 * way(*amplitude),
+        }
+    }
+
     /// The greatest speed (m/s) at a distance from the pivot (m).
     pub fn greatest_speed(&self, distance: f64) -> f64 {
         let way = |place: Place| place.shift.length() + place.turn.length() * distance;

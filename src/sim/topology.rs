@@ -2,6 +2,8 @@
 
 use super::hull::Hulls;
 use super::lists::IndexLists;
+use glam::DVec3;
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// Whether a body lives in the plane or in space.
@@ -48,9 +50,20 @@ pub struct Faces {
     pub outer: Vec<Option<u32>>,
 }
 
+/// What elements of four, five, six and eight nodes in space are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Solids {
+    /// Tetrahedra, pyramids, wedges and hexahedra, whose nodes stand in an order of their own.
+    #[default]
+    Ordered,
+    /// The convex hulls of their nodes, like elements of any other number: octahedra and bipyramids, too.
+    Convex,
+}
+
 /// The kind of an element from the number of its nodes.
-pub fn kind(dimension: Dimension, nodes: usize) -> ElementKind {
+pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
     match (dimension, nodes) {
+        (Dimension::Space, 4..) if solids == Solids::Convex => ElementKind::Other,
         (_, 2) => ElementKind::Segment,
         (Dimension::Plane, _) => ElementKind::Polygon,
         (Dimension::Space, 3) => ElementKind::Triangle,
@@ -102,6 +115,8 @@ pub struct Elements<'a> {
     pub kinds: &'a [ElementKind],
     /// The faces of those of no particular kind.
     pub hulls: &'a Hulls,
+    /// Rest position of each node (m).
+    pub rest: &'a [DVec3],
 }
 
 impl Elements<'_> {
@@ -175,6 +190,19 @@ impl Elements<'_> {
         pairs
     }
 
+    /// The diagonals of a polygon from one corner: one for a quadrilateral, none for a triangle.
+    ///
+    /// The corner is the one with the least coordinates at rest, x before y before z, so that the springs do not depend
+    /// on how nodes are numbered.
+    fn fan<'f>(&self, face: &'f [u32]) -> impl Iterator<Item = [u32; 2]> + 'f {
+        let least = |&one: &usize, &other: &usize| {
+            let [one, other] = [face[one], face[other]].map(|node| (self.rest[node as usize].to_array(), node));
+            one.partial_cmp(&other).unwrap_or(Ordering::Equal)
+        };
+        let hub = (0..face.len()).min_by(least).unwrap_or(0);
+        (2..face.len().saturating_sub(1)).map(move |step| ordered([face[hub], face[(hub + step) % face.len()]]))
+    }
+
     /// Adds the springs of one element, some of them more than once.
     fn add_springs(&self, topology: Springs, element: usize, pairs: &mut Vec<[u32; 2]>) {
         let (nodes, kind) = (&self.nodes[element], self.kinds[element]);
@@ -188,7 +216,7 @@ impl Elements<'_> {
                 // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
                 pairs.extend(every_pair(&[0, 3, 5, 6].map(|at: usize| nodes[at])));
             }
-            Springs::EdgesOneDiagonal => self.for_each_face(element, |face| pairs.extend(fan(face))),
+            Springs::EdgesOneDiagonal => self.for_each_face(element, |face| pairs.extend(self.fan(face))),
             Springs::EdgesFaceDiagonals => self.for_each_face(element, |face| pairs.extend(every_pair(face))),
             // All corners of a polygon share its one face.
             Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
@@ -287,7 +315,8 @@ pub enum Springs {
     Edges,
     /// Edges and one diagonal of each face, as Fig. 4(b) draws them. On a hexahedron these are the six edges of
     /// the tetrahedron on corners 0, 3, 5, 6, so that inner faces carry both diagonals; on any other
-    /// quadrilateral the diagonal through its lowest-numbered node.
+    /// quadrilateral the diagonal through the corner with the least coordinates at rest (x, then y, then z), and on
+    /// a face of more corners all diagonals from there.
     #[serde(rename = "edges+one-diagonal")]
     EdgesOneDiagonal,
     /// Edges and both diagonals of each face.
@@ -314,12 +343,6 @@ impl Springs {
     }
 }
 
-/// The diagonals of a polygon from its lowest-numbered node: one for a quadrilateral, none for a triangle.
-fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
-    let hub = (0..face.len()).min_by_key(|&at| face[at]).unwrap_or(0);
-    (2..face.len().saturating_sub(1)).map(move |step| ordered([face[hub], face[(hub + step) % face.len()]]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -328,7 +351,7 @@ mod tests {
     /// Elements that need no hull.
     fn elements<'a>(nodes: &'a IndexLists, kinds: &'a [ElementKind]) -> Elements<'a> {
         static NONE: LazyLock<Hulls> = LazyLock::new(Hulls::default);
-        Elements { nodes, kinds, hulls: &NONE }
+        Elements { nodes, kinds, hulls: &NONE, rest: &[DVec3::ZERO; 16] }
     }
 
     #[test]

@@ -68,11 +68,12 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::sim::body::Dimension;
+    use crate::sim::body::Solids;
 
     fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Body {
         let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
         let mass = vec![1.0; rest.len()];
-        Body::new(dimension, rest, mass, elements.iter().copied().collect(), None)
+        Body::new(dimension, rest, mass, elements.iter().copied().collect(), Solids::Ordered, None)
     }
 
     /// The corners of a box far from the origin, with one more node above it.

@@ -71,7 +71,7 @@ impl World {
             stepper: Stepper::new(stepping.integrator, body.len()),
             hands,
             diagnose: Diagnose::new(body),
-            bounds: SpeedBounds::new(body, &state, model.stiffness(), &surroundings),
+            bounds: SpeedBounds::new(body, &state, model.stiffness(), &surroundings, stepping.step),
             body: Arc::clone(body),
             surroundings,
             stepping,
@@ -182,7 +182,7 @@ impl SpeedBounds {
     const EXTENTS_PER_CYCLE: f64 = 50.0;
     const MARGIN: f64 = 10.0;
 
-    fn new(body: &Body, initial: &State, stiffness: f64, surroundings: &Surroundings) -> Self {
+    fn new(body: &Body, initial: &State, stiffness: f64, surroundings: &Surroundings, step: f64) -> Self {
         let (low, high) = bounds(&initial.position);
         let extent = body.extent().max((high - low).max_element());
         let cycle = cycle(body, stiffness);
@@ -191,14 +191,22 @@ impl SpeedBounds {
         body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
         let Surroundings { gravity, obstacles, grips } = surroundings;
-        let pushed = obstacles.iter().map(|obstacle| {
+        let pushing = obstacles.iter().map(|obstacle| {
             // A half-space turns under a body that is somewhere near.
             let reach = obstacle.shape.reach();
             let near = (low - obstacle.shape.pivot()).length().max((high - obstacle.shape.pivot()).length());
-            obstacle.motion.greatest_speed(if reach.is_finite() { reach } else { near + extent })
+            (&obstacle.motion, if reach.is_finite() { reach } else { near + extent })
         });
-        let dragged = grips.iter().map(|grip| grip.motion.greatest_speed(extent));
-        let fastest = pushed.chain(dragged).fold(start, f64::max);
+        let dragging = grips.iter().map(|grip| (&grip.motion, extent));
+        // What it meets in one step is never faster than its whole way in that step.
+        let moving = pushing.chain(dragging).map(|(motion, distance)| {
+            let way = motion.longest_way(distance);
+            (way, motion.greatest_speed(distance).min(way / step))
+        });
+        // A hand may draw a body out to many times its size.
+        let (farthest, fastest) =
+            moving.fold((0.0, start), |(far, fast), (way, speed)| (way.max(far), speed.max(fast)));
+        let extent = extent + farthest;
         let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / cycle + Self::MARGIN * fastest;
         Self { own, gravity: Self::MARGIN * gravity.length() }
     }

@@ -2,7 +2,7 @@
 
 use crate::support::{Noise, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, IndexLists, State};
+use localshape::sim::body::{Body, Dimension, IndexLists, Solids, State};
 use localshape::sim::topology::Springs;
 use localshape::sim::world::Surroundings;
 use std::f64::consts::TAU;
@@ -52,7 +52,7 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
     let mut elements = IndexLists::default();
     elements.push(&[0, 1]);
     let rest = vec![DVec3::ZERO, DVec3::X];
-    let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, None));
+    let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
     let around = Surroundings {
         gravity: DVec3::new(0.0, -9.8, 0.0),
         obstacles: vec![floor(0.5, 0.0)],

@@ -3,7 +3,7 @@
 
 use crate::support::{Noise, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, IndexLists, State};
+use localshape::sim::body::{Body, Dimension, IndexLists, Solids, State};
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::topology::Springs;
@@ -294,7 +294,7 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
     for nodes in body.elements.iter().collect::<Vec<_>>().into_iter().rev() {
         elements.push(&nodes.iter().map(|&node| renamed(node)).collect::<Vec<_>>());
     }
-    let other = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; body.len()], elements, None));
+    let other = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; body.len()], elements, Solids::Ordered, None));
     let state = deformed(&body, 0.2, 1);
     let mut moved = State::at_rest(vec![DVec3::ZERO; body.len()]);
     for (node, &at) in (0u32..).zip(&state.position) {

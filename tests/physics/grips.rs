@@ -44,9 +44,9 @@ fn dragged_nodes_follow_the_hand_and_keep_its_speed_when_let_go() {
     let grip = Grip { nodes, from: 0.1, until: 0.3, motion };
     let step = 1e-3;
     let mut world = world(&body, State::at_rest(body.rest.clone()), &shape_based(1e4, 0.0), step, around(grip));
-    world.advance(99);
+    world.advance(100);
     let before = world.state().position.clone();
-    world.advance(101);
+    world.advance(100);
     let half = DQuat::from_rotation_y(0.75);
     let middle = before.iter().sum::<DVec3>() / 8.0;
     for (now, start) in world.state().position.iter().zip(&before) {
@@ -80,4 +80,31 @@ fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     for node in held {
         assert_eq!(end.position[node], scene.initial.position[node]);
     }
+}
+
+/// A hand that grabs while another lets go takes the nodes where they are, and a hand that drags a body out to twenty
+/// times its length is no divergence.
+#[test]
+fn one_hand_takes_over_from_another_and_may_pull_far() {
+    let body = lattice(1, 0.1);
+    let out = |until: f64, way: f64| {
+        let keys = vec![
+            Key { time: 0.0, place: Place::default() },
+            Key { time: until, place: Place { shift: DVec3::X * way, turn: DVec3::ZERO } },
+        ];
+        Motion::Keys { keys, ease: Ease::Linear, repeat: false }
+    };
+    let left = Grip { nodes: vec![0, 2, 4, 6], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+    let pull = Grip { nodes: vec![1, 3, 5, 7], from: 0.0, until: 0.5, motion: out(0.5, 2.0) };
+    let hold = Grip { nodes: vec![1, 3, 5, 7], from: 0.5, until: 0.6, motion: Motion::Still };
+    let around = Surroundings { grips: vec![left, pull, hold], ..Surroundings::default() };
+    let mut world = world(&body, State::at_rest(body.rest.clone()), &shape_based(1e4, 0.0), 1e-3, around);
+    world.advance(500);
+    let drawn = world.state().position.clone();
+    assert!((drawn[1] - body.rest[1] - DVec3::X * 2.0).length() < 1e-12);
+    world.advance(100);
+    assert_eq!(world.state().position, drawn, "the second hand holds them where the first has left them");
+    world.advance(500);
+    assert_eq!(world.status(), localshape::sim::snapshot::Status::Ok);
+    assert!(world.state().position[1].distance(drawn[1]) > 1.0, "let go, the body comes back");
 }

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::Snapshot;
-use localshape::sim::body::{Body, Dimension, IndexLists, State};
+use localshape::sim::body::{Body, Dimension, IndexLists, Solids, State};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
@@ -24,14 +24,14 @@ pub(crate) fn lattice(cells: u32, side: f64) -> Arc<Body> {
         elements.push(&[0u32, 1, 2, 3, 4, 5, 6, 7].map(|bit| at(x + (bit & 1), y + (bit >> 1 & 1), z + (bit >> 2))));
     }
     let mass = vec![1.0; rest.len()];
-    Arc::new(Body::new(Dimension::Space, rest, mass, elements, None))
+    Arc::new(Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None))
 }
 
 /// A body in the plane or in space from lists.
 pub(crate) fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Arc<Body> {
     let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
     let mass = vec![1.0; rest.len()];
-    Arc::new(Body::new(dimension, rest, mass, elements.iter().copied().collect(), None))
+    Arc::new(Body::new(dimension, rest, mass, elements.iter().copied().collect(), Solids::Ordered, None))
 }
 
 pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {

@@ -58,6 +58,11 @@ pub(in crate::scene) struct BodyFile {
     /// float32; the indices are whole numbers, with -1 in places that a short element or face does not use.
     #[schemars(length(min = 1))]
     pub(in crate::scene) file: Option<String>,
+    /// Whether elements in space are the convex hulls of their nodes, listed in any order: octahedra, bipyramids, flat
+    /// quadrilaterals of a cloth. Otherwise elements of four, five, six and eight nodes are tetrahedra, pyramids, wedges
+    /// and hexahedra.
+    #[serde(default)]
+    pub(in crate::scene) convex: bool,
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,

@@ -12,7 +12,7 @@ pub(in crate::scene) struct MotionFile {
     /// Where it is at which times, in rising order. Before the first key it is at the first, after the last at the last.
     #[schemars(length(min = 1))]
     pub(in crate::scene) keys: Vec<KeyFile>,
-    /// How it runs between two keys: from rest to rest, or at constant speed.
+    /// How it runs between two keys: from rest to rest, so that it stops at every key, or at constant speed.
     #[serde(default)]
     pub(in crate::scene) ease: Ease,
     /// Whether the path begins again when its last key is reached, which must then be where the first one is.
@@ -27,9 +27,10 @@ pub(in crate::scene) struct KeyFile {
     /// When (s).
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) time: f64,
-    /// The shift (m). Default: none.
+    /// The shift (m). Default: no shift, whatever the key before has.
     pub(in crate::scene) shift: Option<Coordinates>,
-    /// The turn about its middle. Angles beyond a whole turn go round more than once. Default: none.
+    /// The turn about its middle. Angles beyond a whole turn go round more than once. Default: no turn, whatever the
+    /// key before has.
     pub(in crate::scene) rotation: Option<RotationFile>,
 }
 

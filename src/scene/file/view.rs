@@ -98,7 +98,8 @@ pub(in crate::scene) struct ColourFile {
     pub(in crate::scene) range: Option<[f64; 2]>,
 }
 
-/// A perspective camera that looks at a point. A body in the plane is looked at straight from the front.
+/// A perspective camera that looks at a point. A body in the plane is looked at straight from the front without
+/// perspective; `distance` and `field_of_view` then say together how large it is.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(in crate::scene) struct CameraFile {

@@ -157,6 +157,7 @@ fn tetrahedra(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
 mod tests {
     use super::*;
     use crate::scene::file::Positive;
+    use crate::sim::body::Solids;
     use crate::sim::body::{Body, Dimension, ElementKind, bounds};
     use crate::sim::diagnose::volume_by_faces;
     use crate::sim::topology::kind;
@@ -222,7 +223,8 @@ mod tests {
         for typed in blocks() {
             let Made { nodes, elements } = make(&typed);
             let dimension = if typed.cells.len() == 2 { Dimension::Plane } else { Dimension::Space };
-            let size = |element: &[u32]| volume_by_faces(kind(dimension, element.len()), element, &nodes);
+            let size =
+                |element: &[u32]| volume_by_faces(kind(dimension, Solids::Ordered, element.len()), element, &nodes);
             let sizes: Vec<f64> = elements.iter().map(size).collect();
             let sides = Grid::new(&typed).sides;
             let cell = sides.x * sides.y * if dimension == Dimension::Space { sides.z } else { 1.0 };
@@ -230,7 +232,10 @@ mod tests {
             assert!((sizes.iter().sum::<f64>() / whole - 1.0).abs() < 1e-12, "{typed:?}");
             let least = sizes.iter().copied().fold(f64::INFINITY, f64::min) / cell;
             assert!(least > 1e-3, "{typed:?}: {least}");
-            assert!(elements.iter().all(|nodes| kind(dimension, nodes.len()) != ElementKind::Other), "{typed:?}");
+            assert!(
+                elements.iter().all(|nodes| kind(dimension, Solids::Ordered, nodes.len()) != ElementKind::Other),
+                "{typed:?}"
+            );
         }
     }
 
@@ -257,7 +262,7 @@ mod tests {
                     );
                 }
             } else {
-                let body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, None);
+                let body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, Solids::Ordered, None);
                 for (face, outer) in body.faces.nodes.iter().zip(&body.faces.outer) {
                     let corners: Vec<_> = face.iter().map(|&node| body.rest[node as usize]).collect();
                     assert_eq!(on_the_outside(&corners, low, high, 3), outer.is_none(), "{typed:?}: {corners:?}");

@@ -2,7 +2,7 @@
 
 use super::Made;
 use crate::scene::file::{BarsFile, PolygonFile};
-use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::body::{Dimension, IndexLists, Solids};
 use crate::sim::census::Census;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 fn census(dimension: Dimension, nodes: u128, elements: impl IntoIterator<Item = (usize, u128)>) -> Census {
     let elements: BTreeMap<_, _> = elements.into_iter().filter(|&(_, count)| count > 0).collect();
-    Census { dimension, nodes, elements, lattice: false, springs: None }
+    Census { dimension, nodes, solids: Solids::Ordered, elements, lattice: false, springs: None }
 }
 
 pub(super) fn polygon_census(typed: &PolygonFile) -> Census {

@@ -8,7 +8,7 @@ use crate::scene::generate::{Generator, Made};
 use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
 use crate::scene::words::quoted;
-use crate::sim::body::{Body, Dimension, State};
+use crate::sim::body::{Body, Dimension, Solids, State};
 use crate::sim::census::Census;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -74,7 +74,8 @@ fn generated(
         Generator::Disc(_) => (&[Way::Key("body"), Way::Key("disc")], "use fewer rings or sectors"),
         Generator::Bars(_) => (&[Way::Key("body"), Way::Key("bars"), Way::Key("count")], "use fewer bars"),
     };
-    let census = generator.census(limits.nodes);
+    let solids = solids(file);
+    let census = Census { solids, ..generator.census(limits.nodes) };
     if let Some(Excess { message, help, run }) = beyond(census, less, runs, limits) {
         match run {
             Some(run) => report.at(&springs_of(run), message, help),
@@ -89,7 +90,7 @@ fn generated(
     if report.total() > before {
         return None;
     }
-    let body = Body::new(dimension, rest, mass, elements, None);
+    let body = Body::new(dimension, rest, mass, elements, solids, None);
     let side = generator.side().unwrap_or_else(|| elements::mean_edge(&body));
     Some(ResolvedBody { body, initial, springs: None, side })
 }
@@ -146,7 +147,8 @@ fn listed(
     lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
     let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
     let (dimension, nodes) = (lists.dimension, lists.nodes.len() as u128);
-    let census = Census { dimension, nodes, elements, lattice: false, springs };
+    let solids = solids(file);
+    let census = Census { dimension, nodes, solids, elements, lattice: false, springs };
     if let Some(Excess { message, help, run }) = beyond(census, "use fewer nodes", runs, limits) {
         match (run, &file.file) {
             (Some(run), _) => report.at(&springs_of(run), message, help),
@@ -157,7 +159,7 @@ fn listed(
         }
         return None;
     }
-    elements::check(&lists, flawed, report);
+    elements::check(&lists, solids, flawed, report);
     let count = lists.nodes.len();
     for (key, length) in [
         ("masses", lists.masses.as_ref().map(Vec::len)),
@@ -177,9 +179,14 @@ fn listed(
     if flawed || report.total() > before || elements.is_empty() {
         return None;
     }
-    let body = Body::new(dimension, rest, mass, elements, faces.as_ref());
+    let body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
     let side = elements::mean_edge(&body);
     Some(ResolvedBody { body, initial, springs, side })
+}
+
+/// What elements of some numbers of nodes are meant to be.
+fn solids(file: &BodyFile) -> Solids {
+    if file.convex { Solids::Convex } else { Solids::Ordered }
 }
 
 /// Whether a body and its runs are too large, and what would make it less. A run with a mistake counts as none.

@@ -2,7 +2,8 @@
 
 use super::lists::{Lists, Place};
 use crate::scene::report::Report;
-use crate::sim::body::{Body, Dimension, ElementKind, bounds};
+use crate::scene::words::count;
+use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
 use glam::DVec3;
@@ -14,25 +15,25 @@ const FLAT: f64 = 1e-12;
 
 /// Reports every wrong index, repeated node, repeated element or spring, element without extent or inside out, and every
 /// node that nothing holds. `flawed`: there were mistakes before, and nothing is said then that may follow from them.
-pub(super) fn check(lists: &Lists, flawed: bool, report: &mut Report<'_>) {
+pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
     let Lists { place, nodes, elements, springs, faces, .. } = lists;
-    let count = nodes.len();
-    let mut held = vec![false; count];
+    let node_count = nodes.len();
+    let mut held = vec![false; node_count];
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
     for (at, element) in elements.iter().enumerate() {
-        if !check_indices(place, "elements", at, element, count, report) {
+        if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
         if !repeated(place, "elements", at, element, &mut known, report) && !flawed {
-            lists.check_extent(at, element, report);
+            lists.check_extent(at, element, solids, report);
         }
     }
     known.clear();
     for (at, spring) in springs.iter().flatten().enumerate() {
-        if check_indices(place, "springs", at, spring, count, report) {
+        if check_indices(place, "springs", at, spring, node_count, report) {
             spring.iter().for_each(|&node| held[node as usize] = true);
             repeated(place, "springs", at, spring, &mut known, report);
         } else {
@@ -40,7 +41,7 @@ pub(super) fn check(lists: &Lists, flawed: bool, report: &mut Report<'_>) {
         }
     }
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
-        check_indices(place, "faces", at, face, count, report);
+        check_indices(place, "faces", at, face, node_count, report);
     }
     // A wrong index leaves the node that was meant without an element: said once is enough.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
@@ -51,7 +52,7 @@ pub(super) fn check(lists: &Lists, flawed: bool, report: &mut Report<'_>) {
 
 impl Lists {
     /// Reports an element without extent, inside out or clockwise.
-    fn check_extent(&self, at: usize, element: &[u32], report: &mut Report<'_>) {
+    fn check_extent(&self, at: usize, element: &[u32], solids: Solids, report: &mut Report<'_>) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
@@ -61,26 +62,72 @@ impl Lists {
             let point = point(low, self.dimension);
             return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
         }
-        let kind = topology::kind(self.dimension, element.len());
+        let kind = topology::kind(self.dimension, solids, element.len());
         let (whole, flat) = match kind {
-            // A length is not zero where the box is not, and other elements may be flat: they are no solids.
-            ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => return,
+            // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
+            ElementKind::Segment => return,
+            ElementKind::Triangle | ElementKind::Other => {
+                if element.len() > MOST_IN_HULL {
+                    let message = format!(
+                        "`{name}` has {} nodes; the faces of a solid are found for up to {}",
+                        count(element.len() as u128),
+                        count(MOST_IN_HULL as u128)
+                    );
+                    tell(message, Some("divide it into smaller elements".into()));
+                } else if kind == ElementKind::Triangle && is_on_a_line(&corners, size) {
+                    tell(format!("`{name}` has no area: its nodes are on a line"), None);
+                }
+                return;
+            }
             ElementKind::Polygon => (size * size, "no area: its nodes are on a line, or its sides cross"),
             _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
         if measure.abs() <= FLAT * whole {
             let help = match kind {
+                ElementKind::Polygon => None,
                 ElementKind::Hexahedron => Some("list the corners in bit order: x fastest, then y, then z".to_owned()),
-                _ => None,
+                _ => Some("write convex = true in [body] for nodes in any order".to_owned()),
             };
             tell(format!("`{name}` has {flat}"), help);
+        } else if let Some([one, other]) = crossing(kind, &corners) {
+            let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
+            let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
+            tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
             let (what, turned) = mended(kind, element);
             let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
             tell(format!("`{name}` is {what}"), Some(help));
         }
     }
+}
+
+/// The most nodes of an element whose faces are those of its convex hull: finding them takes seconds from there on.
+const MOST_IN_HULL: usize = 10_000;
+/// The most nodes of a polygon whose sides are compared with each other.
+const MOST_COMPARED: usize = 2000;
+
+/// Whether points lie on a line, for a box around them of a size.
+fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
+    let from = |point: &DVec3| *point - points[0];
+    let along =
+        points.iter().map(from).fold(DVec3::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
+    points.iter().all(|point| along.cross(from(point)).length() <= FLAT.sqrt() * size * size)
+}
+
+/// Two sides of a polygon that cross each other, by their first corners.
+fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
+    let count = corners.len();
+    if kind != ElementKind::Polygon || !(4..=MOST_COMPARED).contains(&count) {
+        return None;
+    }
+    let side = |at: usize| [corners[at], corners[(at + 1) % count]];
+    let turn = |[a, b]: [DVec3; 2], c: DVec3| (b - a).cross(c - a).z;
+    let apart = |one: [DVec3; 2], other: [DVec3; 2]| turn(one, other[0]) * turn(one, other[1]) < 0.0;
+    (0..count)
+        .flat_map(|one| (one + 2..count).map(move |other| [one, other]))
+        .filter(|&[one, other]| (other + 1) % count != one)
+        .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
 /// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.

@@ -2,7 +2,7 @@
 
 use super::view::Around;
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Motion, Obstacle, Pose, Shape};
+use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use glam::DVec3;
 
@@ -93,10 +93,8 @@ impl Neighbourhood<'_> {
             .collect();
         let (low, high) = bounds(&start);
         let middle = start.iter().sum::<DVec3>() / start.len().max(1) as f64;
-        let first = grip.motion.pose(grip.from);
         for time in times(&grip.motion, [grip.from, grip.until.min(self.scene.duration)]) {
-            let now = grip.motion.pose(time);
-            let way = Pose { shift: now.shift - first.shift, turn: now.turn * first.turn.conjugate() };
+            let way = grip.way(time);
             let corner = |at: u32| {
                 let pick = |axis: usize| if at >> axis & 1 == 1 { high[axis] } else { low[axis] };
                 DVec3::new(pick(0), pick(1), pick(2))

@@ -220,6 +220,7 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
 mod tests {
     use super::*;
     use crate::sim::body::IndexLists;
+    use crate::sim::body::Solids;
     use crate::sim::hull::Hulls;
     use crate::sim::topology::{self, Elements};
     use std::collections::BTreeMap;
@@ -234,13 +235,19 @@ mod tests {
 
     #[test]
     fn no_element_has_more_springs_than_are_counted_before() {
-        for (dimension, nodes) in (2..12).flat_map(|nodes| [(Dimension::Plane, nodes), (Dimension::Space, nodes)]) {
+        let cases = [
+            (Dimension::Plane, Solids::Ordered),
+            (Dimension::Space, Solids::Ordered),
+            (Dimension::Space, Solids::Convex),
+        ];
+        for (nodes, (dimension, solids)) in (2..12).flat_map(|nodes| cases.map(|case| (nodes, case))) {
             let own: Vec<u32> = (0..nodes as u32).collect();
             let elements: IndexLists = [own.as_slice()].into_iter().collect();
-            let kinds = [topology::kind(dimension, nodes)];
+            let kinds = [topology::kind(dimension, solids, nodes)];
             let census = Census {
                 dimension,
                 nodes: nodes as u128,
+                solids,
                 elements: BTreeMap::from([(nodes, 1)]),
                 lattice: false,
                 springs: None,
@@ -264,7 +271,9 @@ mod tests {
                 let hulls = Hulls::new(&elements, &kinds, &rest);
                 for named in NAMED {
                     let (written, kept) = springs_at_most(named, &census);
-                    let made = Elements { nodes: &elements, kinds: &kinds, hulls: &hulls }.springs(named).len() as u128;
+                    let made = Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }
+                        .springs(named)
+                        .len() as u128;
                     assert!(made <= kept && kept <= written, "{named:?} of {nodes}: {made}, {kept}, {written}");
                 }
             }
@@ -283,6 +292,7 @@ mod tests {
         let census = Census {
             dimension: Dimension::Space,
             nodes: 343,
+            solids: Solids::Ordered,
             elements: BTreeMap::from([(8, count as u128)]),
             lattice: true,
             springs: None,
@@ -290,8 +300,10 @@ mod tests {
         for named in NAMED {
             let (written, kept) = springs_at_most(named, &census);
             let kinds = vec![ElementKind::Hexahedron; count];
-            let made =
-                Elements { nodes: &elements, kinds: &kinds, hulls: &Hulls::default() }.springs(named).len() as u128;
+            let rest = vec![DVec3::ZERO; 343];
+            let made = Elements { nodes: &elements, kinds: &kinds, hulls: &Hulls::default(), rest: &rest }
+                .springs(named)
+                .len() as u128;
             assert!(made <= kept && kept <= 2 * made && kept <= written, "{named:?}: {made}, {kept}, {written}");
         }
     }

@@ -17,7 +17,8 @@ pub mod linear_update;
 pub mod linearised;
 pub mod planar;
 
-use glam::{DMat3, DVec3};
+use super::body::Dimension;
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// `A = Σ R rᵀ` of an element: `shape` its equilibrium (or rest) corners, `now` its present ones (m), both relative
 /// to their own mean.
@@ -29,6 +30,15 @@ pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
         a.z_axis += *shape * now.z;
     }
     a
+}
+
+/// The rotation that minimises `Σ |r − M R0|²`, exactly, for `at_rest` = `Σ R0 rᵀ`; where there are many, the one
+/// nearest to none.
+pub fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
+    match dimension {
+        Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
+        Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
+    }
 }
 
 /// Eq. (5): `Σ r × R`, the torque of the elastic forces over `k` (m²). It is zero at an equilibrium shape.
