@@ -9,8 +9,7 @@ use super::grip::Hands;
 use super::layout::{self, Rectangle, Scale};
 use super::legend::{self, Legend};
 use super::narrow::{narrow, narrow_point};
-use super::obstacle::{Staged, Staging};
-use super::obstacle_plane;
+use super::obstacle::{self, Site, Staged, Staging};
 use super::palette::Palette;
 use super::plane::{Flat, LEVEL, node_radius};
 use super::pointer::Pointers;
@@ -313,32 +312,25 @@ impl<'a> Composer<'a> {
         }
         let pointers = Pointers { lens: &lens, viewport, scale, palette: &self.palette };
         let time = run.snapshot.time;
+        let site = Site {
+            obstacles: &self.scene.obstacles,
+            time,
+            frame: 1.0 / self.scene.frames_per_second,
+            lens: &lens,
+            origin,
+            side,
+            extent: self.extent,
+            palette: &self.palette,
+        };
         let (obstacles, staged) = if flat {
-            let flat = obstacle_plane::Flat {
-                obstacles: &self.scene.obstacles,
-                time,
-                frame: 1.0 / self.scene.frames_per_second,
-                lens: &lens,
-                origin,
-                side,
-                extent: self.extent,
-                line_scale: scale.line(),
-                palette: &self.palette,
-            };
+            let flat = obstacle::Flat { site, line_scale: scale.line() };
             flat.arrows(&pointers, above);
             flat.draw()
         } else {
             let staging = Staging {
-                obstacles: &self.scene.obstacles,
-                time,
-                frame: 1.0 / self.scene.frames_per_second,
-                lens: &lens,
-                origin,
-                side,
-                extent: self.extent,
+                site,
                 widening: self.widening(framing),
                 cell: cell(self.extent / side),
-                palette: &self.palette,
                 ground: contact::ground(&self.scene.obstacles, time),
                 position: &position,
                 start: self.start_box,

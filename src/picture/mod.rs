@@ -20,7 +20,6 @@ mod legend;
 mod narrow;
 mod number;
 mod obstacle;
-mod obstacle_plane;
 mod palette;
 mod plane;
 mod pointer;
