@@ -15,6 +15,7 @@ use super::plane::{Flat, LEVEL, node_radius};
 use super::pointer::Pointers;
 use super::ramp;
 use super::shadow::{self, Plane};
+use super::skin::Skin;
 use super::surface::{Lines, Surroundings, boundary};
 use super::tally::Tally;
 use super::wire::{Edges, Wire};
@@ -25,7 +26,6 @@ use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// The key light comes from this far to the left of the viewer (rad).
 const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
@@ -80,37 +80,6 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-}
-
-/// The surface of a body, whichever elements have turned over.
-#[derive(Debug)]
-struct Skin {
-    /// The nodes on it.
-    nodes: Vec<u32>,
-    /// Its triangles, as places in `nodes`.
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Skin {
-    fn new(body: &Body, ears: &Ears) -> Self {
-        let mut places = HashMap::new();
-        let mut nodes = Vec::new();
-        let mut place = |node: u32| {
-            *places.entry(node).or_insert_with(|| {
-                nodes.push(node);
-                nodes.len() as u32 - 1
-            })
-        };
-        let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
-        let mut triangles = Vec::new();
-        for (face, _) in outside {
-            match ears.of(face) {
-                Some(ears) => triangles.extend(ears.iter().map(|ear| ear.map(|at| place(face[at as usize])))),
-                None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
-            }
-        }
-        Self { nodes, triangles }
-    }
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -345,7 +314,7 @@ impl<'a> Composer<'a> {
                 time,
                 frame: 1.0 / self.scene.frames_per_second,
                 position: &position,
-                skin: (&self.skin.triangles, &self.skin.nodes),
+                skin: &self.skin,
                 element,
                 viewport,
                 scale,
@@ -429,19 +398,13 @@ impl<'a> Composer<'a> {
 
     /// The nodes that get arrows, without those of which surfaces in space hide every face.
     fn facing_bearers(&self, position: &[DVec3], lens: &Lens) -> Vec<u32> {
-        if lens.orthographic || !self.scene.view.visible.surfaces {
+        if !self.scene.view.visible.surfaces {
             return self.bearers.clone();
         }
-        let mut faces_away = vec![false; position.len()];
-        self.skin.nodes.iter().for_each(|&node| faces_away[node as usize] = true);
-        for triangle in &self.skin.triangles {
-            let nodes = triangle.map(|at| self.skin.nodes[at as usize] as usize);
-            let [a, b, c] = nodes.map(|node| position[node]);
-            if lens.sees(a, (b - a).cross(c - a)) {
-                nodes.iter().for_each(|&node| faces_away[node] = false);
-            }
-        }
-        self.bearers.iter().copied().filter(|&node| !faces_away[node as usize]).collect()
+        let visible = self.skin.visible(position, lens);
+        let mut hidden = vec![false; position.len()];
+        self.skin.nodes.iter().for_each(|&node| hidden[node as usize] = !visible[node as usize]);
+        self.bearers.iter().copied().filter(|&node| !hidden[node as usize]).collect()
     }
 
     /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.

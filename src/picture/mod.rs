@@ -25,6 +25,7 @@ mod plane;
 mod pointer;
 mod ramp;
 mod shadow;
+mod skin;
 mod surface;
 mod tally;
 mod text;
