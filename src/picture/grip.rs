@@ -4,6 +4,7 @@ use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::Palette;
 use super::pointer::{Going, Pointers};
+use super::skin::Skin;
 use super::{Mark, MarkShape};
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;
@@ -28,8 +29,7 @@ pub(super) struct Hands<'a> {
     pub(super) frame: f64,
     /// The nodes (m).
     pub(super) position: &'a [DVec3],
-    /// The outer triangles of the body, as places in a list of nodes, and that list.
-    pub(super) skin: (&'a [[u32; 3]], &'a [u32]),
+    pub(super) skin: &'a Skin,
     /// Length of an element's edge (px).
     pub(super) element: f64,
     pub(super) viewport: Rectangle,
@@ -45,7 +45,7 @@ impl Hands<'_> {
         if held.is_empty() || self.position.is_empty() {
             return;
         }
-        let visible = self.visible();
+        let visible = self.skin.visible(self.position, self.pointers.lens);
         for grip in held {
             let nodes = || grip.nodes.iter().filter(|&&node| (node as usize) < self.position.len());
             let dragged = grip.motion != Motion::Still;
@@ -68,24 +68,6 @@ impl Hands<'_> {
         let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;
         let [before, after] = [self.time - half, self.time + half].map(shift);
         Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }
-    }
-
-    /// Whether each node lies on a side of the body that is turned towards the viewer.
-    fn visible(&self) -> Vec<bool> {
-        let lens = self.pointers.lens;
-        if lens.orthographic {
-            return vec![true; self.position.len()];
-        }
-        let (triangles, nodes) = self.skin;
-        let mut visible = vec![false; self.position.len()];
-        for triangle in triangles {
-            let nodes = triangle.map(|at| nodes[at as usize] as usize);
-            let [a, b, c] = nodes.map(|node| self.position[node]);
-            if lens.sees(a, (b - a).cross(c - a)) {
-                nodes.iter().for_each(|&node| visible[node] = true);
-            }
-        }
-        visible
     }
 
     fn mark(&self, point: DVec3, visible: bool, ringed: bool, marks: &mut Vec<Mark>) {

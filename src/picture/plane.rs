@@ -5,7 +5,7 @@ use super::camera::Lens;
 use super::ears::Ears;
 use super::layout::{self, Rectangle, Scale};
 use super::narrow::narrow;
-use super::obstacle_plane::half_space;
+use super::obstacle::half_space;
 use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;

@@ -1,12 +1,11 @@
 //! Obstacles in the plane: discs, rods with round ends and rectangles, flat and behind the body. Plates are drawn as
 //! floors are.
 
-use super::camera::Lens;
-use super::narrow::narrow_point;
-use super::obstacle::{HalfSpace, Staged, clipped_polygon, going};
-use super::palette::{Colour, Palette};
-use super::pointer::Pointers;
-use super::{Mark, Mesh, Obstacles, Solid, Vertex};
+use super::half_space::{clipped_polygon, half_space};
+use super::{Site, Staged};
+use crate::picture::palette::Colour;
+use crate::picture::pointer::Pointers;
+use crate::picture::{Mark, Mesh, Obstacles, Solid, Vertex};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -19,55 +18,36 @@ const SEGMENTS: [f64; 2] = [24.0, 360.0];
 const RIM: f64 = 2.0;
 
 /// What is needed to draw the obstacles of one panel in the plane.
-pub(super) struct Flat<'a> {
-    pub(super) obstacles: &'a [Obstacle],
-    /// The time of the panel's state (s).
-    pub(super) time: f64,
-    /// The time between two frames (s).
-    pub(super) frame: f64,
-    pub(super) lens: &'a Lens,
-    /// The panel's origin (m).
-    pub(super) origin: DVec3,
-    /// The panel's unit of length (m).
-    pub(super) side: f64,
-    /// The size of the body (m).
-    pub(super) extent: f64,
+pub(in crate::picture) struct Flat<'a> {
+    pub(in crate::picture) site: Site<'a>,
     /// Thickness of lines, in parts of that in the reference picture.
-    pub(super) line_scale: f64,
-    pub(super) palette: &'a Palette,
-}
-
-/// The half-space that a floor or a plate fills at a time (s).
-pub(super) fn half_space(obstacle: &Obstacle, time: f64) -> Option<HalfSpace> {
-    let Shape::Plate { point, normal } = obstacle.shape else { return obstacle.floor(time) };
-    let pose = obstacle.pose(time);
-    let normal = pose.turn * normal;
-    Some((normal, normal.dot(pose.apply(point, point))))
+    pub(in crate::picture) line_scale: f64,
 }
 
 impl Flat<'_> {
     /// The arrows of plates that move, on the side that is solid.
-    pub(super) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
-        for obstacle in self.obstacles {
+    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
+        for obstacle in self.site.obstacles {
             let Shape::Plate { point, .. } = obstacle.shape else { continue };
-            let Some((normal, _)) = half_space(obstacle, self.time).filter(|_| obstacle.motion != Motion::Still) else {
+            let Some((normal, _)) = half_space(obstacle, self.site.time).filter(|_| obstacle.motion != Motion::Still)
+            else {
                 continue;
             };
-            let point = obstacle.pose(self.time).apply(point, point);
-            let going = going(obstacle, point, self.time, self.frame, self.extent);
+            let point = obstacle.pose(self.site.time).apply(point, point);
+            let going = self.site.going(obstacle, point, self.site.extent);
             pointers.draw(point, going, going.velocity.dot(normal) > 0.0, 5.0, marks);
         }
     }
 
     /// All obstacles but half-spaces, and points around them (m).
-    pub(super) fn draw(&self) -> (Obstacles, Staged) {
-        let solid = self.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.time));
+    pub(in crate::picture) fn draw(&self) -> (Obstacles, Staged) {
+        let solid = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
         let solid: Vec<_> = solid.collect();
         let (mut solids, mut outermost) = (Vec::new(), Vec::new());
-        let rim = RIM * self.line_scale / self.lens.focal;
-        for obstacle in self.obstacles {
+        let rim = RIM * self.line_scale / self.site.lens.focal;
+        for obstacle in self.site.obstacles {
             let Some(outline) = self.outline(obstacle, 0.0) else { continue };
-            let [fill, line] = self.palette.obstacle_flat;
+            let [fill, line] = self.site.palette.obstacle_flat;
             // Where both are the first one stays: depth is everywhere the same.
             let inside = self.outline(obstacle, rim).unwrap_or_default();
             for (polygon, colour) in [(&inside, fill), (&outline, line)] {
@@ -81,7 +61,7 @@ impl Flat<'_> {
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and where
     /// nothing is left.
     fn outline(&self, obstacle: &Obstacle, inwards: f64) -> Option<Vec<DVec3>> {
-        let (pose, pivot) = (obstacle.pose(self.time), obstacle.shape.pivot());
+        let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.shape.pivot());
         let place = |point: DVec3| pose.apply(pivot, point);
         match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => None,
@@ -104,7 +84,7 @@ impl Flat<'_> {
 
     /// The outline of all points near a line.
     fn round(&self, [from, to]: [DVec3; 2], radius: f64) -> Vec<DVec3> {
-        let needed = PI / (2.0 * FLATNESS / (radius * self.lens.focal).max(1e-3)).sqrt();
+        let needed = PI / (2.0 * FLATNESS / (radius * self.site.lens.focal).max(1e-3)).sqrt();
         let segments = (needed.clamp(SEGMENTS[0], SEGMENTS[1]) as usize).next_multiple_of(2);
         let along = (to - from).try_normalize().unwrap_or(DVec3::X);
         let across = DVec3::new(-along.y, along.x, 0.0);
@@ -118,33 +98,12 @@ impl Flat<'_> {
         around(to, 0).chain(around(from, half)).collect()
     }
 
+    /// A convex polygon of one colour; `None` where nothing is left of it.
     fn filled(&self, polygon: &[DVec3], colour: Colour) -> Option<Solid> {
-        let vertex = |&at: &DVec3| Vertex {
-            position: narrow_point((at - self.origin) / self.side).to_array(),
-            normal: [0.0, 0.0, 1.0],
-            hatch: 0.0,
-        };
+        let vertex = |&at: &DVec3| Vertex { position: self.site.relative(at), normal: [0.0, 0.0, 1.0], hatch: 0.0 };
         let triangles = (2..polygon.len() as u32).map(|at| [0, at - 1, at]);
         let mesh =
             Mesh { vertices: polygon.iter().map(vertex).collect(), triangles: triangles.collect(), shades: Vec::new() };
         (polygon.len() > 2).then_some(Solid { mesh, colour })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    #[test]
-    fn a_plate_is_where_its_path_has_brought_it() {
-        use crate::sim::motion::Place;
-        let place = Place { shift: DVec3::new(0.0, -0.5, 0.0), turn: DVec3::new(0.0, 0.0, PI / 2.0) };
-        let plate = Obstacle {
-            shape: Shape::Plate { point: DVec3::Y, normal: -DVec3::Y },
-            motion: Motion::at(place),
-            restitution: 0.0,
-            friction: 0.0,
-        };
-        let (normal, height) = half_space(&plate, 0.0).unwrap();
-        assert!(normal.distance(DVec3::X) < 1e-12 && height.abs() < 1e-12, "{normal} {height}");
     }
 }

@@ -1,0 +1,116 @@
+//! The body of a panel: its surfaces, lines and nodes.
+
+use super::panel::Draft;
+use crate::picture::narrow::narrow_point;
+use crate::picture::plane::node_radius;
+use crate::picture::surface::{Lines, Surroundings, boundary};
+use crate::picture::wire::Wire;
+use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
+use glam::DVec3;
+
+impl Draft<'_> {
+    /// The surfaces of the sound elements and of those that have turned over, with their lines.
+    pub(super) fn surfaces(&self, lines: &mut Vec<Line>) -> [Mesh; 2] {
+        let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
+        if self.position.is_empty() || !self.scene.view.visible.surfaces {
+            return [sound, turned_over];
+        }
+        let surroundings = Surroundings {
+            body: self.body,
+            ears: &self.composer.ears,
+            position: &self.position,
+            lens: &self.lens,
+            origin: self.origin,
+            side: self.side,
+            soft: self.composer.soft * self.side,
+            shades: self.shades.as_ref(),
+        };
+        let over = &self.run.snapshot.turned_over;
+        let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
+        surroundings.add(&boundary(self.body, over, false), kinds, &mut sound, lines);
+        let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
+        surroundings.add(&boundary(self.body, over, true), kinds, &mut turned_over, lines);
+        // What a field colours has strokes instead.
+        if self.shades.is_none() {
+            self.bare_lines(lines);
+        }
+        [sound, turned_over]
+    }
+
+    /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
+    fn bare_lines(&self, lines: &mut Vec<Line>) {
+        let relative = |point: DVec3| narrow_point((point - self.origin) / self.side).to_array();
+        for &element in &self.composer.bare {
+            let nodes = &self.body.elements[element];
+            let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
+            let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
+            let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind });
+            let at = |node: u32| self.position[node as usize];
+            let edges = self.body.topology().edges_of(element);
+            for &[a, b] in &edges {
+                line(at(a), at(b));
+            }
+            if edges.is_empty() {
+                let middle = nodes.iter().map(|&node| at(node)).sum::<DVec3>() / nodes.len() as f64;
+                nodes.iter().for_each(|&node| line(middle, at(node)));
+            }
+        }
+    }
+
+    /// Lines with colours of their own: springs, or the edges of elements where there would be nothing else to see, and
+    /// what a field colours of elements without faces.
+    pub(super) fn strokes(&self) -> Vec<Stroke> {
+        let visible = self.scene.view.visible;
+        let over = &self.run.snapshot.turned_over;
+        let (wire, edges) = (self.wire(), &self.composer.edges);
+        let mut strokes = Vec::new();
+        if self.position.is_empty() {
+            return strokes;
+        }
+        if visible.surfaces && wire.shades.is_some() {
+            strokes.extend(wire.bare(&self.composer.bare, over));
+        }
+        let springs = match self.scene.runs.get(self.run.run) {
+            Some(run) if visible.springs => run.model.springs(),
+            _ => &[],
+        };
+        if !visible.surfaces && springs.is_empty() {
+            strokes.extend(wire.edges(edges, over, false));
+        }
+        if !springs.is_empty() {
+            strokes.extend(wire.without_surfaces().springs(springs));
+            if !visible.surfaces {
+                // Which elements have turned over is told in any case.
+                strokes.extend(wire.edges(edges, over, true));
+            }
+        }
+        strokes
+    }
+
+    /// Nodes in space.
+    pub(super) fn beads(&self) -> Vec<Bead> {
+        self.bead_radius().map_or_else(Vec::new, |radius| self.wire().without_surfaces().beads(radius))
+    }
+
+    /// The radius of nodes in space (px), if they are drawn.
+    pub(super) fn bead_radius(&self) -> Option<f64> {
+        let drawn = self.scene.view.visible.nodes && !self.flat && !self.diverged;
+        drawn.then(|| node_radius(self.scale, self.element))
+    }
+
+    /// Draws lines and nodes.
+    fn wire(&self) -> Wire<'_> {
+        Wire {
+            body: self.body,
+            position: &self.position,
+            origin: self.origin,
+            side: self.side,
+            forward: self.lens.forward,
+            palette: &self.composer.palette,
+            line: self.scale.line(),
+            element: self.element,
+            surfaces: self.scene.view.visible.surfaces,
+            shades: (!self.of_nodes.is_empty()).then_some((&self.composer.ramp[..], &self.of_nodes[..])),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The floor of a panel, its grid, and the light that throws shadows on it.
+
+use super::panel::Draft;
+use crate::picture::Floor;
+use crate::picture::camera::{Framing, Lens};
+use crate::picture::narrow::{narrow, narrow_point};
+use crate::picture::obstacle::Staged;
+use crate::picture::shadow::{self, Plane, Shade};
+use crate::sim::contact::{self, Motion, Obstacle, Shape};
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+
+/// The key light comes from this far to the left of the viewer (rad).
+const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
+/// The slope at which it falls on a body near the floor: 50° up.
+const KEY_SLOPE: f64 = 1.191_753_592_594_21;
+/// How much steeper it falls for each distance of the camera that bodies have risen: the shadow stays in the panel.
+const KEY_STEEPENING: f64 = 8.0;
+/// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
+const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// Distance of the camera above which the floor is drawn wider (sizes of the body).
+const USUAL_DISTANCE: f64 = 12.0;
+/// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
+/// on clean ground.
+const FADE_ABOVE: f64 = 94.0;
+/// The grid's lines are a side apart, or more if that were more cells than this beside a body.
+const MOST_CELLS: f64 = 10.0;
+/// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
+const SHEER: f64 = 0.38;
+
+impl Draft<'_> {
+    /// The ground, if there is any.
+    pub(super) fn floor(&self, staged: &Staged) -> Option<Floor> {
+        if self.flat {
+            return None;
+        }
+        let (normal, height) = contact::ground(&self.scene.obstacles, self.run.snapshot.time)?;
+        let (plane, anchor) = self.plane(normal, height);
+        let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening());
+        // Around the point looked at, which is the origin, projected onto the floor.
+        let middle = DVec2::ZERO;
+        let cell = self.cell();
+        let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
+        Some(Floor {
+            normal: narrow_point(plane.normal),
+            axes: plane.axes.map(narrow_point),
+            height: narrow(plane.height),
+            middle: [narrow(middle.x), narrow(middle.y)],
+            cell: narrow(cell),
+            grid,
+            fade: fade.map(narrow),
+            fade_above: narrow(FADE_ABOVE * self.scale.unit),
+            shades: self.shadows(staged, &plane, middle, fade[1]),
+        })
+    }
+
+    /// The plane of the ground, and a point through which lines of its grid go (m): the origin of the world, or where a
+    /// moving floor has brought it.
+    fn plane(&self, normal: DVec3, height: f64) -> (Plane, DVec3) {
+        let time = self.run.snapshot.time;
+        let mut plane = Plane::new(normal, (height - normal.dot(self.origin)) / self.side);
+        let mut anchor = DVec3::ZERO;
+        let moving = |one: &&Obstacle| one.motion != Motion::Still && one.floor(time) == Some((normal, height));
+        if let Some(moving) = self.scene.obstacles.iter().find(moving)
+            && let Shape::Floor { normal, .. } = moving.shape
+        {
+            let pose = moving.pose(time);
+            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+            anchor = pose.apply(moving.shape.pivot(), DVec3::ZERO);
+        }
+        (plane, anchor)
+    }
+
+    /// The shadows of key light and sky, within `reach` of a point on the ground (sides).
+    fn shadows(&self, staged: &Staged, plane: &Plane, middle: DVec2, reach: f64) -> [Shade; 2] {
+        let (points, triangles) = self.casters(staged);
+        let mut shades = if self.key.dot(plane.normal) > 0.05 {
+            shadow::shades(&points, &triangles, plane, self.key, middle, reach, self.composer.soft)
+        } else {
+            std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
+        };
+        if !self.scene.view.visible.surfaces {
+            // What one sees through lets most of the light through.
+            let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
+            cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
+        }
+        shades
+    }
+
+    /// What throws shadows, the body and solid obstacles: points (sides) and triangles.
+    fn casters(&self, staged: &Staged) -> (Vec<DVec3>, Cow<'_, [[u32; 3]]>) {
+        let skin = &self.composer.skin;
+        let relative = |at: &DVec3| (at - self.origin) / self.side;
+        let on_skin = skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
+        let mut points: Vec<_> = on_skin.map(relative).collect();
+        let mut triangles = Cow::Borrowed(if points.is_empty() { &[][..] } else { &skin.triangles });
+        if !staged.shadow_triangles.is_empty() {
+            let base = points.len() as u32;
+            points.extend(staged.shadow_points.iter().map(relative));
+            triangles.to_mut().extend(staged.shadow_triangles.iter().map(|triangle| triangle.map(|at| base + at)));
+        }
+        (points, triangles)
+    }
+
+    /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
+    /// panel.
+    pub(super) fn widening(&self) -> f64 {
+        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.composer.extent);
+        (self.framing.distance / usual).sqrt()
+    }
+
+    /// The distance of the grid's lines (sides).
+    pub(super) fn cell(&self) -> f64 {
+        cell(self.composer.extent / self.side)
+    }
+}
+
+/// Unit vector towards the key light.
+pub(super) fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
+    let towards_viewer = lens.right.cross(DVec3::Y);
+    let (left, towards) = libm::sincos(KEY_AZIMUTH);
+    let level = towards * towards_viewer - left * lens.right;
+    let slope = KEY_SLOPE + KEY_STEEPENING * framing.rise / framing.distance;
+    (level + slope * DVec3::Y).normalize()
+}
+
+/// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …
+fn cell(extent: f64) -> f64 {
+    let mut cells = 1.0;
+    for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {
+        if extent / cells <= MOST_CELLS {
+            break;
+        }
+        cells *= factor;
+    }
+    cells
+}

@@ -1,0 +1,255 @@
+//! One panel: its parts, one after the other.
+
+use super::Composer;
+use super::ground::key_light;
+use crate::picture::arrows::{self, Arrows};
+use crate::picture::camera::Lens;
+use crate::picture::field::{NOWHERE, Shades};
+use crate::picture::grip::Hands;
+use crate::picture::layout::{self, Rectangle, Scale};
+use crate::picture::narrow::{narrow, narrow_point};
+use crate::picture::obstacle::{self, Site, Staged, Staging};
+use crate::picture::plane::{self, node_radius};
+use crate::picture::pointer::Pointers;
+use crate::picture::ramp;
+use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
+use crate::scene::Scene;
+use crate::sim::body::{Body, Dimension};
+use crate::sim::contact;
+use crate::sim::snapshot::{RunFrame, Status};
+use glam::DVec3;
+
+/// Coordinates of what blew up are kept within this (sides).
+const FARTHEST: f64 = 1e12;
+
+/// One panel that is being composed, and what all its parts need to know.
+pub(super) struct Draft<'a> {
+    pub(super) composer: &'a Composer<'a>,
+    pub(super) scene: &'a Scene,
+    pub(super) body: &'a Body,
+    pub(super) run: &'a RunFrame,
+    pub(super) framing: &'a Framing,
+    pub(super) viewport: Rectangle,
+    pub(super) scale: Scale,
+    pub(super) lens: Lens,
+    /// Unit vector towards the key light.
+    pub(super) key: DVec3,
+    /// The panel's origin (m).
+    pub(super) origin: DVec3,
+    /// The panel's unit of length (m).
+    pub(super) side: f64,
+    /// The nodes (m); none if not all are known.
+    pub(super) position: Vec<DVec3>,
+    /// The field that is shown.
+    pub(super) shades: Option<Shades>,
+    /// Its places at the nodes, if anything but surfaces shows them.
+    pub(super) of_nodes: Vec<f32>,
+    /// Length of an element's edge at the body's distance (px).
+    pub(super) element: f64,
+    /// Whether the body lies in the plane.
+    pub(super) flat: bool,
+    /// Whether the run has blown up.
+    pub(super) diverged: bool,
+}
+
+impl<'a> Draft<'a> {
+    /// What is known of a panel before anything is drawn.
+    pub(super) fn new(
+        composer: &'a Composer<'a>,
+        viewport: Rectangle,
+        run: &'a RunFrame,
+        framing: &'a Framing,
+        scale: Scale,
+    ) -> Self {
+        let scene = composer.scene;
+        let (view, body) = (&scene.view, &*scene.body);
+        let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
+        // A body of which no node is known is drawn as nothing.
+        let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
+        let position = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
+        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &run.snapshot.field));
+        let of_nodes = match &shades {
+            Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
+            _ => Vec::new(),
+        };
+        let flat = body.dimension == Dimension::Plane;
+        Self {
+            composer,
+            scene,
+            body,
+            run,
+            framing,
+            viewport,
+            scale,
+            key: key_light(&lens, framing),
+            origin: framing.base,
+            side: view.side,
+            position,
+            shades,
+            of_nodes,
+            element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
+            flat,
+            diverged: matches!(run.snapshot.status, Status::Diverged(_)),
+            lens,
+        }
+    }
+
+    /// Draws the panel, with flat marks below and above the bodies.
+    pub(super) fn panel(self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
+        let mut lines = Vec::new();
+        let [sound, turned_over] = self.surfaces(&mut lines);
+        self.marks_of_plane(under, above);
+        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        self.hands(above);
+        self.arrows(above);
+        Panel {
+            viewport: self.viewport,
+            region: self.region(&staged.outermost),
+            sight: self.sight(),
+            floor: self.floor(&staged),
+            sound,
+            turned_over,
+            lines,
+            obstacles,
+            strokes: self.strokes(),
+            beads: self.beads(),
+        }
+    }
+
+    /// Camera and light.
+    fn sight(&self) -> Sight {
+        let Self { lens, origin, side, .. } = self;
+        Sight {
+            clip: lens.clip(*origin, *side, self.viewport.map(f64::from)),
+            eye: narrow_point((lens.eye - origin) / side),
+            near: narrow(lens.near_in(*side)),
+            focal: narrow(if self.flat { lens.focal * side } else { lens.focal }),
+            key: narrow_point(self.key),
+            flat: self.flat,
+            line_scale: narrow(self.scale.line()),
+            soft: narrow(self.composer.soft),
+            element: narrow(self.element),
+        }
+    }
+
+    /// Floors, nodes and ring arrows of the plane.
+    fn marks_of_plane(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) {
+        if !self.flat {
+            return;
+        }
+        let visible = self.scene.view.visible;
+        let flat = plane::Flat {
+            body: self.body,
+            ears: &self.composer.ears,
+            position: &self.position,
+            turned_over: &self.run.snapshot.turned_over,
+            lens: &self.lens,
+            viewport: self.viewport,
+            scale: self.scale,
+            palette: &self.composer.palette,
+        };
+        flat.floors(&self.scene.obstacles, self.run.snapshot.time, under);
+        if visible.surfaces && !self.diverged {
+            flat.signs(above);
+        }
+        if visible.nodes && !self.diverged {
+            let colour = |node: usize| {
+                let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
+                place.filter(|_| !visible.surfaces).map(|place| ramp::colour(&self.composer.ramp, place))
+            };
+            flat.nodes(self.element, &colour, above);
+        }
+    }
+
+    /// All obstacles but the ground, with the lines and marks that belong to them.
+    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Mark>) -> (Obstacles, Staged) {
+        let site = Site {
+            obstacles: &self.scene.obstacles,
+            time: self.run.snapshot.time,
+            frame: 1.0 / self.scene.frames_per_second,
+            lens: &self.lens,
+            origin: self.origin,
+            side: self.side,
+            extent: self.composer.extent,
+            palette: &self.composer.palette,
+        };
+        if self.flat {
+            let flat = obstacle::Flat { site, line_scale: self.scale.line() };
+            flat.arrows(&self.pointers(), above);
+            return flat.draw();
+        }
+        let staging = Staging {
+            site,
+            widening: self.widening(),
+            cell: self.cell(),
+            ground: contact::ground(&self.scene.obstacles, self.run.snapshot.time),
+            position: &self.position,
+            start: self.composer.start_box,
+        };
+        staging.arrows(&self.pointers(), above);
+        staging.pierced(&surfaces, lines);
+        staging.draw(lines)
+    }
+
+    /// Marks on nodes that are held or dragged.
+    fn hands(&self, above: &mut Vec<Mark>) {
+        if self.diverged {
+            return;
+        }
+        let hands = Hands {
+            grips: &self.scene.grips,
+            time: self.run.snapshot.time,
+            frame: 1.0 / self.scene.frames_per_second,
+            position: &self.position,
+            skin: &self.composer.skin,
+            element: self.element,
+            viewport: self.viewport,
+            scale: self.scale,
+            palette: &self.composer.palette,
+            pointers: &self.pointers(),
+        };
+        hands.draw(above);
+    }
+
+    /// Displacements.
+    fn arrows(&self, above: &mut Vec<Mark>) {
+        let view = &self.scene.view;
+        if !view.visible.displacements || self.diverged || self.position.is_empty() {
+            return;
+        }
+        let has_springs = self.scene.runs.get(self.run.run).is_some_and(|run| !run.model.springs().is_empty());
+        let arrows = Arrows {
+            lens: &self.lens,
+            room: layout::clear_of_words(self.viewport, self.scale),
+            size: arrows::size(self.element, self.scale.unit),
+            node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
+            times: view.arrow_scale,
+            colour: self.composer.palette.arrows[usize::from(has_springs)],
+            halo: self.composer.palette.background,
+        };
+        arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
+    }
+
+    /// The nodes that get arrows, without those of which surfaces in space hide every face.
+    fn facing_bearers(&self) -> Vec<u32> {
+        let Composer { skin, bearers, .. } = self.composer;
+        if !self.scene.view.visible.surfaces {
+            return bearers.clone();
+        }
+        let visible = skin.visible(&self.position, &self.lens);
+        let mut hidden = vec![false; self.position.len()];
+        skin.nodes.iter().for_each(|&node| hidden[node as usize] = !visible[node as usize]);
+        bearers.iter().copied().filter(|&node| !hidden[node as usize]).collect()
+    }
+
+    /// Draws the arrows of what moves.
+    fn pointers(&self) -> Pointers<'_> {
+        Pointers { lens: &self.lens, viewport: self.viewport, scale: self.scale, palette: &self.composer.palette }
+    }
+}
+
+/// Coordinates beyond all bounds are brought to where arithmetic still works.
+fn finite(point: DVec3, farthest: f64) -> DVec3 {
+    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
+    DVec3::new(one(point.x), one(point.y), one(point.z))
+}

@@ -1,0 +1,61 @@
+//! The part of a panel that the body and its lines may touch.
+
+use super::panel::Draft;
+use crate::picture::camera::Lens;
+use crate::picture::layout::{self, Rectangle};
+use glam::{DVec2, DVec3};
+
+/// Bodies as wide as their panel and higher than this part of it are kept off the words.
+const FILLED: f64 = 0.7;
+/// Room for thick lines around a body (px in the reference picture).
+const LINE_ROOM: f64 = 3.0;
+
+impl Draft<'_> {
+    /// The part of the panel that the body, its lines and points around obstacles (m) may touch.
+    pub(super) fn region(&self, around_obstacles: &[DVec3]) -> Rectangle {
+        let mut room = LINE_ROOM * self.scale.line() + 2.0;
+        if let Some(radius) = self.bead_radius() {
+            room = room.max(radius + 2.0);
+        }
+        let touched = self.position.iter().chain(around_obstacles);
+        let region = region(self.viewport, touched, &self.lens, room);
+        let fills_panel = region[2] == self.viewport[2] && f64::from(region[3]) > FILLED * f64::from(self.viewport[3]);
+        if self.diverged || fills_panel {
+            // What blows up may lie across everything; the words that say so stay on clean ground.
+            return overlap(region, layout::clear_of_words(self.viewport, self.scale));
+        }
+        region
+    }
+}
+
+/// What two rectangles share.
+fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangle) -> Rectangle {
+    let [left, top] = [x.max(x2), y.max(y2)];
+    let right = (x + width).min(x2 + width2).max(left);
+    let bottom = (y + height).min(y2 + height2).max(top);
+    [left, top, right - left, bottom - top]
+}
+
+/// The part of a panel that points and what lies between them may touch, with `room` (px) around it.
+fn region<'p>(viewport: Rectangle, points: impl Iterator<Item = &'p DVec3>, lens: &Lens, room: f64) -> Rectangle {
+    let [left, top, width, height] = viewport;
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    for &point in points {
+        match lens.project(point) {
+            Some((pixel, _)) => {
+                low = low.min(DVec2::from(pixel));
+                high = high.max(DVec2::from(pixel));
+            }
+            // What reaches behind the viewer may appear anywhere.
+            None => return viewport,
+        }
+    }
+    let within = |at: f64, start: u32, length: u32| at.clamp(f64::from(start), f64::from(start + length)) as u32;
+    if low.x > high.x {
+        return [left, top, 0, 0];
+    }
+    let [x, y] = [within((low.x - room).floor(), left, width), within((low.y - room).floor(), top, height)];
+    let [x2, y2] = [within((high.x + room).ceil(), left, width), within((high.y + room).ceil(), top, height)];
+    [x, y, x2 - x, y2 - y]
+}

@@ -1,0 +1,74 @@
+//! Obstacles: what bodies bounce off. In space balls, rods and boxes are solids with light on them; plates and all floors
+//! but the ground are transparent slabs, so that body and alarm stay visible behind them. In the plane everything is
+//! flat.
+
+mod half_space;
+mod pierced;
+mod plane;
+mod shapes;
+mod slab;
+mod solid;
+mod space;
+
+pub(super) use half_space::half_space;
+pub(super) use plane::Flat;
+pub(super) use space::Staging;
+
+use super::camera::Lens;
+use super::narrow::narrow_point;
+use super::palette::Palette;
+use super::pointer::Going;
+use crate::sim::contact::Obstacle;
+use glam::DVec3;
+
+/// The obstacles of one panel, and how it shows them.
+pub(super) struct Site<'a> {
+    pub(super) obstacles: &'a [Obstacle],
+    /// The time of the panel's state (s).
+    pub(super) time: f64,
+    /// The time between two frames (s).
+    pub(super) frame: f64,
+    pub(super) lens: &'a Lens,
+    /// The panel's origin (m).
+    pub(super) origin: DVec3,
+    /// The panel's unit of length (m).
+    pub(super) side: f64,
+    /// The size of the body (m).
+    pub(super) extent: f64,
+    pub(super) palette: &'a Palette,
+}
+
+impl Site<'_> {
+    /// A point as the panel has it.
+    fn relative(&self, point: DVec3) -> [f32; 3] {
+        narrow_point((point - self.origin) / self.side).to_array()
+    }
+
+    /// How an obstacle moves at a point of it (m) that is at most `reach` (m) away from its pivot, or nearly.
+    fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> Going {
+        let pivot = obstacle.shape.pivot();
+        let own = obstacle.pose(self.time).undo(pivot, point);
+        let half = 0.25 * self.frame;
+        let [before, after] = [self.time - half, self.time + half].map(|time| obstacle.pose(time).apply(pivot, own));
+        Going { velocity: (after - before) / (2.0 * half), greatest: obstacle.motion.greatest_speed(reach) }
+    }
+}
+
+/// What the rest of the picture has to know of solids.
+#[derive(Debug, Default)]
+pub(super) struct Staged {
+    /// Points around them (m), for the part of the panel that they may touch.
+    pub(super) outermost: Vec<DVec3>,
+    /// What throws shadows: corners (m) and triangles.
+    pub(super) shadow_points: Vec<DVec3>,
+    pub(super) shadow_triangles: Vec<[u32; 3]>,
+}
+
+impl Staged {
+    /// Adds something that throws a shadow.
+    fn add(&mut self, points: &[DVec3], triangles: &[[u32; 3]]) {
+        let base = self.shadow_points.len() as u32;
+        self.shadow_points.extend(points);
+        self.shadow_triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
+    }
+}

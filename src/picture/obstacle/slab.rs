@@ -1,0 +1,217 @@
+//! Plates and walls: transparent slabs, and the order in which they are drawn.
+
+use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
+use super::shapes::{FACES, corners, edges};
+use super::space::Staging;
+use crate::picture::narrow::narrow;
+use crate::picture::shadow::Plane;
+use crate::picture::{Pane, PaneCorner, Slab};
+use crate::sim::contact::{Obstacle, Pose};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// Half the side of a plate, and its thickness (body sizes).
+const PLATE: f64 = 0.85;
+pub(super) const THICKNESS: f64 = 0.042;
+/// A plate reaches over where the body starts by this much, unless that is farther away than `FARTHEST_EDGE`, and over
+/// nodes near it (body sizes).
+const START_MARGIN: f64 = 0.25;
+const MARGIN: f64 = 0.12;
+const NEAR_PLATE: f64 = 0.6;
+const FARTHEST_EDGE: f64 = 4.0;
+/// Opacity of the faces of a plate: those of its two sides, and the small ones around it.
+const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
+/// How far walls and slopes are drawn around the point looked at (body sizes).
+const WALL: f64 = 2.1;
+/// Opacity of a wall, seen from the side of the body and through what is solid.
+const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
+/// Above so many slabs they are sorted by distance alone.
+const MANY_SLABS: usize = 64;
+
+/// A slab that has not been put in order yet.
+pub(super) struct Loose {
+    slab: Slab,
+    /// The plane of its surface (m).
+    plane: HalfSpace,
+    /// All its corners (m).
+    corners: Vec<DVec3>,
+}
+
+impl Staging<'_> {
+    /// The middle of the drawn part of a plate's surface (m), and half its sides (m).
+    pub(super) fn span(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
+        let pivot = obstacle.shape.pivot();
+        let [first, second] = Plane::new(normal, 0.0).axes;
+        let farthest = FARTHEST_EDGE * self.site.extent;
+        let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
+        // Over where the body starts.
+        let before = obstacle.pose(0.0);
+        let place = |pose: &Pose, point: DVec3| {
+            let own = pose.undo(pivot, point) - pivot;
+            (DVec2::new(own.dot(first), own.dot(second)), own.dot(normal))
+        };
+        let [from, to] = self.start;
+        let start = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from)).map(|corner| place(&before, corner).0);
+        let (from, to) = (
+            start.iter().copied().fold(DVec2::INFINITY, DVec2::min),
+            start.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
+        );
+        if from.max_element() < farthest && to.min_element() > -farthest {
+            let margin = START_MARGIN * self.site.extent;
+            low = low.min(from - margin).max(DVec2::splat(-farthest));
+            high = high.max(to + margin).min(DVec2::splat(farthest));
+        }
+        // Over nodes near it, the more the nearer they are.
+        let (still_low, still_high) = (low, high);
+        for &node in self.position {
+            let (at, above) = place(pose, node);
+            let share = (above / (NEAR_PLATE * self.site.extent)).clamp(0.0, 1.0);
+            let weight = 1.0 - share * share * (3.0 - 2.0 * share);
+            if weight > 0.0 && at.abs().max_element() < farthest {
+                let margin = MARGIN * self.site.extent;
+                low = low.min(still_low.lerp(still_low.min(at - margin), weight));
+                high = high.max(still_high.lerp(still_high.max(at + margin), weight));
+            }
+        }
+        let middle = low.midpoint(high);
+        (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
+    }
+
+    /// A plate: a thin box that ends where floors begin.
+    pub(super) fn plate(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
+        let (middle, half) = self.span(obstacle, pose, normal);
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let out = pose.turn * normal;
+        let thickness = THICKNESS * self.site.extent;
+        // Right-handed, so that faces are turned as those of a box.
+        let axes = [second, first, out];
+        let behind = middle - 0.5 * thickness * out;
+        let corners = corners(behind, axes, DVec3::new(half.y, half.x, 0.5 * thickness));
+        let mut slab = Slab::default();
+        let mut seen = [false; 6];
+        let mut kept = Vec::new();
+        for (face, nodes) in FACES.iter().enumerate() {
+            let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
+            let polygon = nodes.map(|node| corners[node]);
+            seen[face] = self.site.lens.sees(polygon[0], normal);
+            let polygon = clipped_polygon(&polygon, floors);
+            if seen[face] && polygon.len() > 2 {
+                // Thin faces around it stand out, as the edges of glass do.
+                let alpha = PLATE_ALPHA[usize::from(face < 4)];
+                let colour = if face < 4 { self.site.palette.plate_side } else { self.site.palette.plate };
+                let corner = |&at: &DVec3| PaneCorner { position: self.site.relative(at), ..PaneCorner::default() };
+                slab.panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
+            }
+            if seen[face] {
+                // Where it stands on a floor it has an edge, too.
+                let on = |point: DVec3, (out, height): HalfSpace| {
+                    (out.dot(point) - height).abs() < 1e-9 * (self.site.extent + height.abs())
+                };
+                let next = polygon.iter().cycle().skip(1);
+                let cut = polygon.iter().zip(next).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
+                slab.edges.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.site.relative(end))));
+            }
+            kept.extend(polygon);
+        }
+        for ([a, b], [one, other]) in edges() {
+            if seen[one] || seen[other] {
+                let edge = clipped_line([corners[a], corners[b]], floors);
+                slab.edges.extend(edge.map(|ends| ends.map(|end| self.site.relative(end))));
+            }
+        }
+        (!slab.panes.is_empty()).then(|| Loose { slab, plane: (out, out.dot(middle)), corners: kept })
+    }
+
+    /// A floor that is not the ground: a piece of it around the point looked at, with a grid.
+    pub(super) fn wall(
+        &self,
+        obstacle: &Obstacle,
+        normal: DVec3,
+        floor: HalfSpace,
+        others: &[HalfSpace],
+    ) -> Option<Loose> {
+        const CORNERS: usize = 16;
+        let (out, height) = floor;
+        let pose = obstacle.pose(self.site.time);
+        let mut middle = self.site.origin + (height - out.dot(self.site.origin)) * out;
+        // Along the slope up to where it comes out of the others.
+        for &(other, level) in others {
+            let depth = level - other.dot(middle);
+            let along = other - other.dot(out) * out;
+            if depth > 0.0 && along.length_squared() > 0.01 {
+                middle += depth / along.length_squared() * along;
+            }
+        }
+        let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let reach = WALL * self.site.extent * self.widening;
+        // Circumscribed: the circle in which it fades lies within.
+        let around = (0..CORNERS).map(|at| {
+            let (sine, cosine) = libm::sincos(TAU * at as f64 / CORNERS as f64);
+            middle + reach / libm::cos(PI / CORNERS as f64) * (cosine * axes[0] + sine * axes[1])
+        });
+        let polygon = clipped_polygon(&around.collect::<Vec<_>>(), others);
+        if polygon.len() < 3 {
+            return None;
+        }
+        let seen = self.site.lens.sees(middle, out);
+        let anchor = pose.apply(obstacle.shape.pivot(), DVec3::ZERO);
+        let shift = axes.map(|axis| {
+            // The grid's lines go through the origin of the world, or where the floor has brought it.
+            ((middle - anchor) / self.site.side).dot(axis).rem_euclid(self.cell) / self.cell
+        });
+        let corner = |&at: &DVec3| {
+            let from_middle = axes.map(|axis| (at - middle).dot(axis));
+            let grid = [0, 1].map(|axis| from_middle[axis] / (self.site.side * self.cell) + shift[axis]);
+            PaneCorner {
+                position: self.site.relative(at),
+                grid: grid.map(narrow),
+                from_middle: from_middle.map(|at| narrow(at / reach)),
+            }
+        };
+        let pane = Pane {
+            corners: polygon.iter().map(corner).collect(),
+            colour: self.site.palette.wall,
+            alpha: WALL_ALPHA[usize::from(!seen)],
+            grid: true,
+        };
+        let slab = Slab { panes: vec![pane], edges: Vec::new() };
+        Some(Loose { slab, plane: floor, corners: polygon })
+    }
+
+    /// Slabs from the farthest to the nearest.
+    pub(super) fn in_order(&self, mut slabs: Vec<Loose>) -> Vec<Slab> {
+        let distance = |loose: &Loose| {
+            let count = loose.corners.len().max(1) as f64;
+            (loose.corners.iter().sum::<DVec3>() / count - self.site.lens.eye).length()
+        };
+        slabs.sort_by(|one, other| distance(other).total_cmp(&distance(one)));
+        if slabs.len() > MANY_SLABS {
+            return slabs.into_iter().map(|loose| loose.slab).collect();
+        }
+        // One is drawn when nothing that is left lies behind it; where they cross, the farthest goes first.
+        let mut ordered = Vec::with_capacity(slabs.len());
+        while !slabs.is_empty() {
+            let covers_none = |at: &usize| {
+                slabs.iter().enumerate().all(|(other, loose)| other == *at || !self.covers(&slabs[*at], loose))
+            };
+            let next = (0..slabs.len()).find(covers_none).unwrap_or(0);
+            ordered.push(slabs.remove(next).slab);
+        }
+        ordered
+    }
+
+    /// Whether one slab lies before another, and cannot just as well be said to lie behind it.
+    fn covers(&self, front: &Loose, back: &Loose) -> bool {
+        self.is_before(front, back) && !self.is_before(back, front)
+    }
+
+    /// Whether one slab lies wholly on the eye's side of another's plane, or has the other wholly behind its own.
+    fn is_before(&self, front: &Loose, back: &Loose) -> bool {
+        let room = 1e-6 * self.site.extent;
+        let on_eyes_side = |(normal, height): HalfSpace, point: DVec3| {
+            (normal.dot(point) - height) * (normal.dot(self.site.lens.eye) - height).signum()
+        };
+        front.corners.iter().all(|&at| on_eyes_side(back.plane, at) >= -room)
+            || back.corners.iter().all(|&at| on_eyes_side(front.plane, at) <= room)
+    }
+}

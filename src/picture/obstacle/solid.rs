@@ -1,0 +1,179 @@
+//! Balls, rods and boxes: solids with light on them, and their outlines.
+
+use super::Staged;
+use super::half_space::clipped_line;
+use super::shapes::{FACES, Lathe, edges, lathe};
+use super::space::Staging;
+use crate::picture::narrow::narrow_point;
+use crate::picture::{Line, LineKind, Mesh, Solid, Vertex};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A round outline is nowhere farther from its polygon than this (px).
+const FLATNESS: f64 = 0.12;
+/// Into how many segments something round is cut: at least and at most, and where it only throws a shadow.
+const SEGMENTS: [usize; 2] = [16, 128];
+const SHADOW_SEGMENTS: usize = 20;
+/// Balls larger than this (body sizes) are cut finely where the body is, and coarsely elsewhere.
+const LARGE_BALL: f64 = 3.0;
+
+impl Staging<'_> {
+    /// Draws something round of a radius around a middle (m), whose shape can be had in any number of segments.
+    pub(super) fn round(
+        &self,
+        shape: impl Fn(usize) -> Lathe,
+        radius: f64,
+        middle: DVec3,
+        solids: &mut Vec<Solid>,
+        lines: &mut Vec<Line>,
+        staged: &mut Staged,
+    ) {
+        let distance = (middle - self.site.lens.eye).dot(self.site.lens.forward) - radius;
+        let pixels = self.site.lens.focal * radius / distance.max(self.site.lens.near);
+        let needed = (PI / (2.0 * FLATNESS / pixels.max(1e-3)).sqrt()).ceil();
+        let segments = needed.clamp(SEGMENTS[0] as f64, SEGMENTS[1] as f64) as usize;
+        let lathe = shape(segments.next_multiple_of(4));
+        let mesh = self.turned(&lathe);
+        self.outline(&lathe, lines);
+        staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+        let coarse = shape(SHADOW_SEGMENTS);
+        staged.add(&coarse.points(), &coarse.triangles());
+    }
+
+    /// The surface of a ball.
+    pub(super) fn ball(&self, centre: DVec3, radius: f64, segments: usize) -> Lathe {
+        let rings = segments / 2;
+        if radius <= LARGE_BALL * self.site.extent {
+            let profile = (0..=rings).map(|ring| (PI * ring as f64 / rings as f64 - FRAC_PI_2, 0.0));
+            return lathe(centre, DVec3::Y, radius, profile, segments);
+        }
+        // Rings ever closer together towards the body.
+        let axis = (self.site.origin - centre).try_normalize().unwrap_or(DVec3::Y);
+        let growth = 1.2 * libm::log(1.0 + radius / self.site.extent);
+        let profile = (0..=rings).rev().map(|ring| {
+            let share = libm::expm1(growth * ring as f64 / rings as f64) / libm::expm1(growth);
+            (FRAC_PI_2 - PI * share, 0.0)
+        });
+        lathe(centre, axis, radius, profile, segments)
+    }
+
+    /// Draws a box.
+    pub(super) fn block(
+        &self,
+        corners: &[DVec3; 8],
+        axes: [DVec3; 3],
+        solids: &mut Vec<Solid>,
+        lines: &mut Vec<Line>,
+        staged: &mut Staged,
+    ) {
+        let mut mesh = Mesh::default();
+        let mut seen = [false; 6];
+        for (face, nodes) in FACES.iter().enumerate() {
+            let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
+            let base = mesh.vertices.len() as u32;
+            let polygon = nodes.map(|node| corners[node]);
+            mesh.vertices.extend(polygon.map(|at| Vertex {
+                position: self.site.relative(at),
+                normal: narrow_point(normal).to_array(),
+                hatch: 0.0,
+            }));
+            mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|triangle: [u32; 3]| triangle.map(|at| base + at)));
+            seen[face] = self.site.lens.sees(polygon[0], normal);
+            if seen[face] {
+                self.ground_line(&polygon, lines);
+            }
+        }
+        for ([a, b], [one, other]) in edges() {
+            let line = [corners[a], corners[b]];
+            match (seen[one], seen[other]) {
+                (true, true) => self.line(line, LineKind::ObstacleEdge, lines),
+                (false, false) => {}
+                _ => self.line(line, LineKind::ObstacleContour, lines),
+            }
+        }
+        staged.outermost.extend(corners);
+        let triangles: Vec<_> = FACES
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .map(|three| three.map(|at| at as u32))
+            .collect();
+        staged.add(corners, &triangles);
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+    }
+
+    /// The mesh of something round.
+    fn turned(&self, lathe: &Lathe) -> Mesh {
+        let vertex = |&(at, normal): &(DVec3, DVec3)| Vertex {
+            position: self.site.relative(at),
+            normal: narrow_point(normal).to_array(),
+            hatch: 0.0,
+        };
+        Mesh {
+            vertices: lathe.rings.iter().flatten().map(vertex).collect(),
+            triangles: lathe.triangles(),
+            shades: Vec::new(),
+        }
+    }
+
+    /// Where a round surface turns away from the viewer, and where it goes through the ground.
+    fn outline(&self, lathe: &Lathe, lines: &mut Vec<Line>) {
+        let count = lathe.rings.first().map_or(0, Vec::len);
+        let at = |ring: usize, segment: usize| lathe.rings[ring][segment % count].0;
+        let seen: Vec<Vec<bool>> = (1..lathe.rings.len())
+            .map(|ring| {
+                let quad = |segment| {
+                    let [a, b] = [at(ring - 1, segment), at(ring - 1, segment + 1)];
+                    let [c, d] = [at(ring, segment + 1), at(ring, segment)];
+                    self.site.lens.sees(a.midpoint(c), (c - a).cross(d - b))
+                };
+                (0..count).map(quad).collect()
+            })
+            .collect();
+        for ring in 0..seen.len() {
+            for segment in 0..count {
+                if seen[ring][segment] != seen[ring][(segment + 1) % count] {
+                    let two = [at(ring, segment + 1), at(ring + 1, segment + 1)];
+                    self.line(two, LineKind::ObstacleContour, lines);
+                }
+                if ring > 0 && seen[ring][segment] != seen[ring - 1][segment] {
+                    let two = [at(ring, segment), at(ring, segment + 1)];
+                    self.line(two, LineKind::ObstacleContour, lines);
+                }
+            }
+        }
+        for ring in 1..lathe.rings.len() {
+            for segment in (0..count).filter(|&segment| seen[ring - 1][segment]) {
+                let quad = [at(ring - 1, segment), at(ring - 1, segment + 1), at(ring, segment + 1), at(ring, segment)];
+                self.ground_line(&quad, lines);
+            }
+        }
+    }
+
+    /// Adds a line, cut off where it goes below the ground.
+    pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
+        let ground = self.ground.as_slice();
+        if let Some([from, to]) = clipped_line([from, to], ground) {
+            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind });
+        }
+    }
+
+    /// The line in which a polygon goes through the ground.
+    fn ground_line(&self, polygon: &[DVec3], lines: &mut Vec<Line>) {
+        let Some((normal, height)) = self.ground else { return };
+        let above = |point: DVec3| normal.dot(point) - height;
+        let next = polygon.iter().cycle().skip(1);
+        let through: Vec<_> = polygon
+            .iter()
+            .zip(next)
+            .filter_map(|(&a, &b)| {
+                let (x, y) = (above(a), above(b));
+                ((x < 0.0) != (y < 0.0)).then(|| a.lerp(b, x / (x - y)))
+            })
+            .collect();
+        if let [from, to] = through[..] {
+            let kind = LineKind::ObstacleContour;
+            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind });
+        }
+    }
+}

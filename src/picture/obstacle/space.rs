@@ -1,0 +1,85 @@
+//! All obstacles of a panel in space.
+
+use super::half_space::HalfSpace;
+use super::shapes::{corners, rod};
+use super::slab::THICKNESS;
+use super::{Site, Staged};
+use crate::picture::pointer::Pointers;
+use crate::picture::{Line, Mark, Obstacles};
+use crate::sim::contact::{Motion, Shape};
+use glam::DVec3;
+
+/// What is needed to draw the obstacles of one panel in space.
+pub(in crate::picture) struct Staging<'a> {
+    pub(in crate::picture) site: Site<'a>,
+    /// How many times wider than usual the floor is drawn.
+    pub(in crate::picture) widening: f64,
+    /// Distance of the grid's lines (sides).
+    pub(in crate::picture) cell: f64,
+    /// The floor that is drawn as ground.
+    pub(in crate::picture) ground: Option<HalfSpace>,
+    /// The nodes now (m).
+    pub(in crate::picture) position: &'a [DVec3],
+    /// The box around the nodes at the start (m).
+    pub(in crate::picture) start: [DVec3; 2],
+}
+
+impl Staging<'_> {
+    /// All obstacles but the ground.
+    pub(in crate::picture) fn draw(&self, lines: &mut Vec<Line>) -> (Obstacles, Staged) {
+        let (mut solids, mut staged, mut slabs) = (Vec::new(), Staged::default(), Vec::new());
+        let floors: Vec<_> = self.site.obstacles.iter().map(|obstacle| obstacle.floor(self.site.time)).collect();
+        for (at, obstacle) in self.site.obstacles.iter().enumerate() {
+            let pose = obstacle.pose(self.site.time);
+            match obstacle.shape {
+                Shape::Floor { normal, .. } => {
+                    let Some(floor) = floors[at] else { continue };
+                    if self.ground == Some(floor) {
+                        continue;
+                    }
+                    let others = floors.iter().enumerate().filter(|&(other, _)| other != at);
+                    let others: Vec<_> = others.filter_map(|(_, floor)| *floor).collect();
+                    slabs.extend(self.wall(obstacle, normal, floor, &others));
+                }
+                Shape::Plate { normal, .. } => {
+                    let floors: Vec<_> = floors.iter().flatten().copied().collect();
+                    slabs.extend(self.plate(obstacle, &pose, normal, &floors));
+                }
+                Shape::Sphere { centre, radius } => {
+                    let centre = pose.apply(centre, centre);
+                    let shape = |segments| self.ball(centre, radius, segments);
+                    self.round(shape, radius, centre, &mut solids, lines, &mut staged);
+                }
+                Shape::Capsule { from, to, radius } => {
+                    let ends = [from, to].map(|end| pose.apply(obstacle.shape.pivot(), end));
+                    let shape = |segments| rod(ends, radius, segments);
+                    let middle = ends[0].midpoint(ends[1]);
+                    self.round(shape, radius, middle, &mut solids, lines, &mut staged);
+                }
+                Shape::Box { centre, half, turn } => {
+                    let axes = DVec3::AXES.map(|axis| pose.turn * (turn * axis));
+                    let corners = corners(pose.apply(centre, centre), axes, half);
+                    self.block(&corners, axes, &mut solids, lines, &mut staged);
+                }
+            }
+        }
+        (Obstacles { solids, slabs: self.in_order(slabs) }, staged)
+    }
+
+    /// The arrows of plates that move.
+    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
+        for obstacle in self.site.obstacles {
+            let Shape::Plate { normal, .. } = obstacle.shape else { continue };
+            if obstacle.motion == Motion::Still {
+                continue;
+            }
+            let pose = obstacle.pose(self.site.time);
+            let out = pose.turn * normal;
+            let (middle, half) = self.span(obstacle, &pose, normal);
+            let going = self.site.going(obstacle, middle, half.max_element());
+            // Always on the side that is not the body's.
+            let arriving = going.velocity.dot(out) > 0.0;
+            pointers.draw(middle - THICKNESS * self.site.extent * out, going, arriving, 3.0, marks);
+        }
+    }
+}

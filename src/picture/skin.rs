@@ -1,0 +1,55 @@
+//! The surface of a whole body.
+
+use super::camera::Lens;
+use super::ears::Ears;
+use crate::sim::body::Body;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// The surface of a body, whichever elements have turned over.
+#[derive(Debug)]
+pub(super) struct Skin {
+    /// The nodes on it.
+    pub(super) nodes: Vec<u32>,
+    /// Its triangles, as places in `nodes`.
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+impl Skin {
+    /// The skin of a body.
+    pub(super) fn new(body: &Body, ears: &Ears) -> Self {
+        let mut places = HashMap::new();
+        let mut nodes = Vec::new();
+        let mut place = |node: u32| {
+            *places.entry(node).or_insert_with(|| {
+                nodes.push(node);
+                nodes.len() as u32 - 1
+            })
+        };
+        let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+        let mut triangles = Vec::new();
+        for (face, _) in outside {
+            match ears.of(face) {
+                Some(ears) => triangles.extend(ears.iter().map(|ear| ear.map(|at| place(face[at as usize])))),
+                None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
+            }
+        }
+        Self { nodes, triangles }
+    }
+
+    /// Whether each node of the body is on a side of the skin that is turned towards the viewer; in the plane all are.
+    pub(super) fn visible(&self, position: &[DVec3], lens: &Lens) -> Vec<bool> {
+        if lens.orthographic {
+            return vec![true; position.len()];
+        }
+        let mut visible = vec![false; position.len()];
+        for triangle in &self.triangles {
+            let nodes = triangle.map(|at| self.nodes[at as usize] as usize);
+            let [a, b, c] = nodes.map(|node| position[node]);
+            if lens.sees(a, (b - a).cross(c - a)) {
+                nodes.iter().for_each(|&node| visible[node] = true);
+            }
+        }
+        visible
+    }
+}
