@@ -22,6 +22,12 @@ impl<'a> Sequence<'a> {
         Self { scene, worlds: runs.iter().map(|&run| (run, scene.world(run))).collect() }
     }
 
+    /// The same without the field that the scene colours its bodies by, for those who draw nothing.
+    pub fn without_field(mut self) -> Self {
+        self.worlds.iter_mut().for_each(|(_, world)| world.show(None));
+        self
+    }
+
     /// Goes on towards a frame, each run by `most_steps` at most, and returns whether all runs are there. However the
     /// way is cut up, the states have the same bits.
     ///

@@ -142,7 +142,8 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
 
-        let made = self.frames(pool, options.quiet, |frame| {
+        let with_field = pictures.is_some();
+        let made = self.frames(pool, options.quiet, with_field, |frame| {
             diagnostics.write(frame)?;
             if let Some(states) = &mut states {
                 states.write(frame)?;
@@ -187,15 +188,19 @@ impl Recording<'_> {
         result.and(written)
     }
 
-    /// Simulates frame by frame until all are there or the user wants to stop.
+    /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field.
     fn frames(
         &mut self,
         pool: &ThreadPool,
         quiet: bool,
+        with_field: bool,
         mut take: impl FnMut(&Frame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         // In the pool from the beginning, so that no other threads are ever started.
         let mut sequence = pool.install(|| Sequence::new(self.scene, &self.runs));
+        if !with_field {
+            sequence = sequence.without_field();
+        }
         let steps = sequence.steps_at(self.frames.last().copied().unwrap_or(0));
         let bar = console::progress(&self.scene.title, steps, quiet);
         let slice = slice(&self.scene.body);

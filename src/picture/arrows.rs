@@ -93,12 +93,23 @@ impl Arrows<'_> {
         marks.extend(arrows.map(|ends| arrow(ends, self.size, self.colour, self.halo)));
     }
 
-    /// An arrow that begins and ends where arrows may be; others are left out, for a cut one would say something else.
-    fn inside(&self, ends: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    /// The part of an arrow that lies where arrows may be. The largest reach beyond that first, and without them the
+    /// small ones would tell a wrong tale.
+    fn inside(&self, [from, to]: [DVec2; 2]) -> Option<[DVec2; 2]> {
         let [left, top, width, height] = self.room.map(f64::from);
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
-        let holds = |at: &DVec2| (left..=left + width).contains(&at.x) && (top..=top + height).contains(&at.y);
-        (ends.iter().all(holds) && ends[0].distance(ends[1]) >= shortest).then_some(ends)
+        let (mut begin, mut end) = (0.0, 1.0);
+        for (at, way, low, length) in [(from.x, to.x - from.x, left, width), (from.y, to.y - from.y, top, height)] {
+            let [one, other] = [low, low + length].map(|border| (border - at) / way);
+            match way == 0.0 {
+                true if at < low || at > low + length => return None,
+                true => {}
+                false => (begin, end) = (one.min(other).max(begin), one.max(other).min(end)),
+            }
+        }
+        let ends = [begin, end].map(|share| from.lerp(to, share));
+        // NaN is longer than nothing.
+        (begin < end && ends[0].distance(ends[1]) >= shortest).then_some(ends)
     }
 }
 

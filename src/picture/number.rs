@@ -102,10 +102,13 @@ impl Ticks {
         let [low, high] = [low / factor, high / factor];
         let (values, decimals) = round_values(low, high);
         let place = |value: f64| ((value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0)).clamp(0.0, 1.0);
+        // So many that one tick is told from the next.
+        let digits = (libm::log10(largest / factor / (high - low)).max(0.0) + 3.0) as usize;
         let plain = decimals <= 5 && largest / factor < 99_999.5;
         let text = |value: f64| match plain {
             true => with_minus(format!("{value:.decimals$}")),
-            false => with_minus(format!("{:e}", crate::sim::words::rounded(value, 3))),
+            false if value == 0.0 => "0".to_owned(),
+            false => with_minus(format!("{:e}", crate::sim::words::rounded(value, digits))),
         };
         Self {
             places: values.iter().copied().map(place).collect(),
@@ -186,7 +189,7 @@ mod tests {
             ([-0.02, 0.02], "m", &["−20", "−10", "0", "10", "20"], "mm"),
             ([0.0, 12.5], "J", &["0.0", "2.5", "5.0", "7.5", "10.0", "12.5"][..0], "J"),
             ([0.0, 2e6], "J", &["0.0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
-            ([0.0, 3e-7], "", &["0e0", "1e−7", "2e−7", "3e−7"], ""),
+            ([0.0, 3e-7], "", &["0", "1e−7", "2e−7", "3e−7"], ""),
         ];
         for (range, unit, texts, prefixed) in expected {
             let ticks = Ticks::new(range, unit);

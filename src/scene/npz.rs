@@ -73,7 +73,7 @@ impl Number {
         };
         match order {
             "<" | "|" => Ok(number),
-            _ => Err("has big-endian numbers; expected little-endian ones, as by astype(\"<f8\")".to_owned()),
+            _ => Err("has big-endian numbers; expected little-endian ones, as by astype(\"<f8\") or, for indices, astype(\"<i4\")".to_owned()),
         }
     }
 }
@@ -141,6 +141,10 @@ impl Npz {
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         if path.is_dir() {
             return Err("is a folder; expected a NumPy archive (.npz)".to_owned());
+        }
+        // A pipe would keep everybody waiting.
+        if path.exists() && !path.is_file() {
+            return Err("is no regular file; expected a NumPy archive (.npz)".to_owned());
         }
         let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
         let mut start = [0; 6];

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::view::Follow;
-use super::words::{count, list};
+use super::words::{count, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -100,7 +100,7 @@ impl Scene {
             cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
             obstacles: self.obstacles.iter().map(|one| describe(one, &coordinates)).collect(),
-            grips: self.grips.iter().map(grip).collect(),
+            grips: self.grips.iter().map(|one| grip(one, self.duration)).collect(),
             picture: self.picture(),
         }
     }
@@ -171,26 +171,20 @@ fn path(motion: &Motion) -> String {
 }
 
 /// A grip in words.
-fn grip(grip: &Grip) -> String {
+fn grip(grip: &Grip, duration: f64) -> String {
     let nodes = match grip.nodes.len() {
         1 => format!("node {}", grip.nodes[0]),
         several => format!("{} nodes", count(several as u128)),
     };
     let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "for good".into() };
     let what = if grip.motion == Motion::Still { "held" } else { "dragged" };
-    format!("{nodes} {what} from {} s {until}", short(grip.from))
+    let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
+    format!("{nodes} {what} from {} s {until}{note}", short(grip.from))
 }
 
 fn vector(coordinates: &[f64]) -> String {
     let numbers: Vec<_> = coordinates.iter().map(|&number| short(number)).collect();
     format!("({})", numbers.join(", "))
-}
-
-/// A number with up to four significant digits.
-fn short(number: f64) -> String {
-    // Adding zero takes the sign off a negative one.
-    let rounded = words::rounded(number, 4) + 0.0;
-    if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 impl fmt::Display for Summary {

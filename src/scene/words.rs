@@ -1,5 +1,6 @@
 //! Words for messages.
 
+use crate::sim::words::rounded;
 use serde_json::Value as Json;
 use toml::de::{DeInteger, DeValue};
 
@@ -85,6 +86,13 @@ pub(super) fn count(number: u128) -> String {
         text.push(digit);
     }
     text
+}
+
+/// A number with up to four significant digits.
+pub(super) fn short(number: f64) -> String {
+    // Adding zero takes the sign off a negative one.
+    let rounded = rounded(number, 4) + 0.0;
+    if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 #[cfg(test)]

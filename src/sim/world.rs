@@ -193,8 +193,8 @@ impl SpeedBounds {
         let Surroundings { gravity, obstacles, grips } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
             // A half-space turns under a body that is somewhere near.
-            let reach = obstacle.shape.reach();
-            let near = (low - obstacle.shape.pivot()).length().max((high - obstacle.shape.pivot()).length());
+            let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
+            let near = (low - obstacle.pivot).length().max((high - obstacle.pivot).length());
             (&obstacle.motion, if reach.is_finite() { reach } else { near + extent })
         });
         let dragging = grips.iter().map(|grip| (&grip.motion, extent));

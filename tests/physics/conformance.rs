@@ -3,7 +3,7 @@
 
 use crate::support::{Noise, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, IndexLists, Solids, State};
+use localshape::sim::body::{Body, Dimension, ElementKind, IndexLists, Solids, State};
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::topology::Springs;
@@ -12,8 +12,8 @@ use std::sync::Arc;
 const STIFFNESS: f64 = 1e4;
 
 /// A model, and what is known not to hold of it.
-struct Case {
-    model: Box<dyn ElasticModel>,
+pub(crate) struct Case {
+    pub(crate) model: Box<dyn ElasticModel>,
     /// Whether its forces are the gradient of its energy. Those of Eq. (16) as printed are not: its matrix is no
     /// rotation, so moving it along costs energy.
     has_potential: bool,
@@ -22,7 +22,7 @@ struct Case {
 }
 
 /// Every model and every reading, for a body.
-fn cases(body: &Body, damping: f64) -> Vec<Case> {
+pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     let sound = |model: Box<dyn ElasticModel>| Case { model, has_potential: true, forgets_turns: true };
     // Enough passes for round-off: the suite is about the model, not about the approximation of section 4.
     let shape = ShapeBased { passes: 8, ..shape_based(STIFFNESS, damping) };
@@ -51,7 +51,7 @@ fn cases(body: &Body, damping: f64) -> Vec<Case> {
 }
 
 /// Bodies of every kind of element.
-fn bodies() -> Vec<Arc<Body>> {
+pub(crate) fn bodies() -> Vec<Arc<Body>> {
     let unit = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.1],
@@ -91,6 +91,7 @@ fn bodies() -> Vec<Arc<Body>> {
         body(Dimension::Space, &unit, &[&[0, 1, 2, 3, 4, 5, 6]]),
         // Seven nodes, whose hull has squares and triangles.
         body(Dimension::Space, &mixed[..7], &[&[0, 1, 2, 3, 4, 5, 6]]),
+        octahedron(),
         body(Dimension::Space, &mixed, &[&[0, 1, 2, 3, 4, 5, 6, 7], &[2, 8, 6, 3, 9, 7], &[1, 3, 7, 5, 10], &[0, 11]]),
         body(Dimension::Plane, &flat[..2], &[&[0, 1]]),
         body(Dimension::Plane, &flat[..3], &[&[0, 1, 2]]),
@@ -106,6 +107,15 @@ fn bodies() -> Vec<Arc<Body>> {
     let unequal: Vec<_> = unequal.collect();
     bodies.extend(unequal);
     bodies
+}
+
+/// Six nodes that are no wedge, in no particular order.
+fn octahedron() -> Arc<Body> {
+    let corners = [DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::X, DVec3::Y, -DVec3::Z];
+    let elements = [&[0, 1, 2, 3, 4, 5][..]].into_iter().collect();
+    let body = Body::new(Dimension::Space, corners.to_vec(), vec![1.0; 6], elements, Solids::Convex, None);
+    assert_eq!(body.topology().edges_of(0).len(), 12);
+    Arc::new(body)
 }
 
 /// A displacement that keeps a body in the plane there.
@@ -282,31 +292,36 @@ fn force_is_the_negative_gradient_of_energy() {
 
 #[test]
 fn the_order_of_nodes_and_elements_does_not_matter() {
-    let body = lattice(2, 0.1);
-    let count = body.len() as u32;
-    // 10 has no factor in common with 27, so this is a permutation.
-    let renamed = |node: u32| (node * 10 + 4) % count;
-    let mut rest = vec![DVec3::ZERO; body.len()];
-    for (node, &at) in (0u32..).zip(&body.rest) {
-        rest[renamed(node) as usize] = at;
-    }
-    let mut elements = IndexLists::default();
-    for nodes in body.elements.iter().collect::<Vec<_>>().into_iter().rev() {
-        elements.push(&nodes.iter().map(|&node| renamed(node)).collect::<Vec<_>>());
-    }
-    let other = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; body.len()], elements, Solids::Ordered, None));
-    let state = deformed(&body, 0.2, 1);
-    let mut moved = State::at_rest(vec![DVec3::ZERO; body.len()]);
-    for (node, &at) in (0u32..).zip(&state.position) {
-        moved.position[renamed(node) as usize] = at;
-    }
-    for (a, b) in cases(&body, 0.0).iter().zip(cases(&other, 0.0)) {
-        let (a, b) = (&a.model, &b.model);
-        let first = forces(&body, a.as_ref(), &state);
-        let second = forces(&other, b.as_ref(), &moved);
-        for (node, force) in (0u32..).zip(&first) {
-            let difference = (*force - second[renamed(node) as usize]).length();
-            assert!(difference < 1e-12 * largest(&first), "{a:?}: {difference:e}");
+    for body in bodies() {
+        let count = body.len() as u32;
+        // A step without a common factor makes a permutation.
+        let step = [7, 5, 3, 1].into_iter().find(|step| count % step != 0 || *step == 1).unwrap_or(1);
+        let renamed = |node: u32| (node * step + 1) % count;
+        let mut rest = vec![DVec3::ZERO; body.len()];
+        let mut mass = vec![0.0; body.len()];
+        for (node, (&at, &own)) in (0u32..).zip(body.rest.iter().zip(&body.mass)) {
+            rest[renamed(node) as usize] = at;
+            mass[renamed(node) as usize] = own;
+        }
+        let mut elements = IndexLists::default();
+        for nodes in body.elements.iter().collect::<Vec<_>>().into_iter().rev() {
+            elements.push(&nodes.iter().map(|&node| renamed(node)).collect::<Vec<_>>());
+        }
+        let solids = if body.kinds == [ElementKind::Other] { Solids::Convex } else { Solids::Ordered };
+        let other = Arc::new(Body::new(body.dimension, rest, mass, elements, solids, None));
+        let state = deformed(&body, 0.2, 1);
+        let mut moved = State::at_rest(vec![DVec3::ZERO; body.len()]);
+        for (node, &at) in (0u32..).zip(&state.position) {
+            moved.position[renamed(node) as usize] = at;
+        }
+        for (a, b) in cases(&body, 0.0).iter().zip(cases(&other, 0.0)) {
+            let (a, b) = (&a.model, &b.model);
+            let first = forces(&body, a.as_ref(), &state);
+            let second = forces(&other, b.as_ref(), &moved);
+            for (node, force) in (0u32..).zip(&first) {
+                let difference = (*force - second[renamed(node) as usize]).length();
+                assert!(difference < 1e-12 * largest(&first), "{a:?} on {:?}: {difference:e}", body.kinds);
+            }
         }
     }
 }
@@ -321,18 +336,23 @@ fn every_model_of_the_scene_format_is_in_the_suite() {
     assert_eq!(named, ["shape-based", "mass-spring"], "add the model to `cases`, then here");
 }
 
-/// The same of the readings of a model.
+/// The same of the readings of a model, of the named springs and of the integrators: a new one fails here until the
+/// suites know it.
 #[test]
-fn every_reading_of_the_scene_format_is_in_the_suite() {
-    let schema = localshape::scene::schema().to_string();
-    for (reading, names) in [
-        ("rotation", vec!["arctangent", "vector-length", "linear-update"]),
-        ("damping_of", vec!["relative-motion", "deformation"]),
-    ] {
-        for name in names {
-            assert!(schema.contains(&format!("\"const\":\"{name}\"")), "{reading} {name}");
-        }
-    }
-    assert_eq!(RotationReading::default(), RotationReading::Arctangent);
-    assert_eq!(DampingReading::default(), DampingReading::RelativeMotion);
+fn every_choice_of_the_scene_format_is_in_the_suites() {
+    let schema = localshape::scene::schema();
+    let run = &schema["properties"]["run"]["items"]["properties"];
+    let names = |key: &serde_json::Value| {
+        let text = key.to_string();
+        let consts = text.split("\"const\":\"").skip(1).filter_map(|rest| rest.split('"').next().map(String::from));
+        consts.collect::<Vec<_>>()
+    };
+    let model = |kind: usize, key: &str| names(&run["model"]["oneOf"][kind]["properties"][key]);
+    assert_eq!(model(0, "rotation"), ["arctangent", "vector-length", "linear-update"]);
+    assert_eq!(model(0, "damping_of"), ["relative-motion", "deformation"]);
+    assert_eq!(
+        model(1, "springs"),
+        ["edges", "edges+one-diagonal", "edges+face-diagonals", "edges+body-diagonals", "all"]
+    );
+    assert_eq!(names(&run["integrator"]), ["semi-implicit-euler", "explicit-euler", "velocity-verlet"]);
 }

@@ -8,7 +8,8 @@ use localshape::sim::motion::{Ease, Key, Place};
 const STEP: f64 = 1e-3;
 
 fn obstacle(shape: Shape, restitution: f64, friction: f64, motion: Motion) -> Obstacle {
-    Obstacle { shape, motion, restitution, friction }
+    let pivot = shape.middle();
+    Obstacle { shape, motion, pivot, restitution, friction }
 }
 
 fn floor() -> Shape {

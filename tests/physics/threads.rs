@@ -1,11 +1,16 @@
 //! The same bits for any number of threads.
 
-use crate::support::{Noise, floor, lattice, mass_spring, shape_based, world};
+use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::sim::body::State;
+use localshape::sim::contact::{Motion, Obstacle, Shape};
+use localshape::sim::grip::Grip;
+use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
+use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::motion::Place;
 use localshape::sim::topology::Springs;
-use localshape::sim::world::Surroundings;
+use localshape::sim::world::{Stepping, Surroundings, World};
 
 #[test]
 fn states_have_the_same_bits_for_1_2_and_8_threads() {
@@ -15,18 +20,38 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
     let velocity = vec![DVec3::new(0.3, -5.0, 0.1); body.len()];
     let start = State { position, velocity };
+    let amplitude = Place { shift: DVec3::new(0.1, 0.2, 0.0), turn: DVec3::Z * 0.3 };
+    let swinging = Obstacle {
+        shape: Shape::Sphere { centre: DVec3::new(0.6, -0.2, 0.6), radius: 0.4 },
+        pivot: DVec3::new(0.6, 1.0, 0.6),
+        motion: Motion::Swing { period: 0.05, phase: 0.0, amplitude },
+        restitution: 0.3,
+        friction: 0.5,
+    };
     let around = Surroundings {
         gravity: DVec3::new(0.0, -9.8, 0.0),
-        obstacles: vec![floor(0.5, 0.3)],
-        ..Surroundings::default()
+        obstacles: vec![floor(0.5, 0.3), swinging],
+        grips: vec![Grip { nodes: vec![2000, 2100], from: 0.01, until: 0.03, motion: Motion::Still }],
     };
-    for model in
-        [&shape_based(1e4, 20.0) as &dyn ElasticModel, &mass_spring(&body, 1e4, 20.0, Springs::EdgesOneDiagonal)]
-    {
+    let shape = shape_based(1e4, 20.0);
+    let length = ShapeBased { rotation: RotationReading::VectorLength, ..shape.clone() };
+    let linear = ShapeBased {
+        rotation: RotationReading::LinearUpdate,
+        damping_of: DampingReading::Deformation,
+        ..shape.clone()
+    };
+    let spring = mass_spring(&body, 1e4, 20.0, Springs::EdgesOneDiagonal);
+    for (model, integrator) in [
+        (&shape as &dyn ElasticModel, Integrator::SemiImplicitEuler),
+        (&spring, Integrator::SemiImplicitEuler),
+        (&length, Integrator::VelocityVerlet),
+        (&linear, Integrator::ExplicitEuler),
+    ] {
         let ends = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
             pool.install(|| {
-                let mut world = world(&body, start.clone(), model, 1e-3, around.clone());
+                let stepping = Stepping { integrator, step: 1e-3 };
+                let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
                 world.advance(60);
                 world.state().clone()
             })

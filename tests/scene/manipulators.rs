@@ -83,6 +83,69 @@ fn paths_that_would_jump_or_go_nowhere() {
 }
 
 #[test]
+fn motions_that_a_step_cannot_follow() {
+    // T/50 is 0.00126 s.
+    case(
+        WORLD,
+        &sphere("swing = { period = 1e-3, shift = [1, 0, 0] }"),
+        &[(
+            5,
+            20,
+            "it would swing once in 0.001 s, but a time step takes 1.257e-3 s take a period of at least 4 steps",
+        )],
+    );
+    case(
+        WORLD,
+        &sphere("path.keys = [{ time = 0 }, { time = 1e-9, shift = [1, 0, 0] }]"),
+        &[(
+            5,
+            37,
+            "`obstacle[0].path.keys[1]` is 1.000e-9 s after the key before it, but a time step takes 1.257e-3 s",
+        )],
+    );
+    case(
+        WORLD,
+        "[[hold]]\nnodes = [1]\nfrom = 0.5\nuntil = 0.5005",
+        &[(4, 9, "`hold[0]` lasts 5.000e-4 s, but a time step takes 1.257e-3 s it would hold nothing")],
+    );
+    case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.5001 }]", &[(3, 39, "it would jump")]);
+}
+
+#[test]
+fn an_obstacle_turns_about_its_middle_or_another_point() {
+    let pendulum = sphere(
+        "about = [1, 2, 1]\nswing = { period = 1, rotation = { axis = [0, 0, 1], angle = 1.5707963267948966 } }",
+    );
+    let scene = good(&format!("{WORLD}{pendulum}"));
+    let obstacle = &scene.obstacles[0];
+    let middle = obstacle.pose(0.25).apply(obstacle.pivot, DVec3::ONE);
+    assert!(middle.distance(DVec3::new(2.0, 2.0, 1.0)) < 1e-12, "{middle}");
+    case(WORLD, &sphere("about = [1, 2]"), &[(5, 9, "`obstacle[0].about` has 2 coordinates; expected 3")]);
+}
+
+#[test]
+fn convex_elements_may_list_their_nodes_in_any_order() {
+    let head = "time = { duration = 1 }\nrun = [{ name = 'one', model = { kind = 'mass-spring', stiffness = 1, springs = 'edges' } }]\n";
+    let octahedron =
+        "[body]\nnodes = [[1,0,0],[0,-1,0],[0,0,1],[-1,0,0],[0,1,0],[0,0,-1]]\nelements = [[0,1,2,3,4,5]]\n";
+    let scene = good(&format!("{head}{octahedron}convex = true"));
+    assert!(scene.runs[0].model.describe(&scene.body).starts_with("12 springs"));
+    assert_eq!(scene.body.faces.nodes.len(), 8);
+    let cloth = "[body]\nnodes = [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]\nelements = [[0,1,2,3]]\n";
+    assert_eq!(good(&format!("{head}{cloth}convex = true")).body.faces.nodes.len(), 1);
+    let error = bad(&format!("{head}{cloth}")).to_string();
+    assert!(error.contains("no volume: its nodes are in a plane, or not in their order"), "{error}");
+    assert!(error.contains("write convex = true in [body]"), "{error}");
+}
+
+#[test]
+fn polygons_whose_sides_cross() {
+    let head = "time = { duration = 1 }\nrun = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1 } }]\n";
+    let error = bad(&format!("{head}[body]\nnodes = [[0,0],[2,0],[0,1],[1,1.5]]\nelements = [[0,1,2,3]]")).to_string();
+    assert!(error.contains("the sides 1–2 and 3–0 of `body.elements[0]` cross"), "{error}");
+}
+
+#[test]
 fn obstacles_without_extent_or_direction() {
     case(
         WORLD,
@@ -122,11 +185,7 @@ fn obstacles_that_start_inside_the_body() {
         &[(1, 1, "the body starts inside this sphere: node 1 lies 3.000e-2 m below its surface move one")],
     );
     let hidden = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.05, 0.15, 0]\nradius = 0.01";
-    case(
-        WORLD,
-        hidden,
-        &[(1, 1, "this sphere starts inside the body, at [0.05, 0.15, 0]: no node would ever meet it")],
-    );
+    case(WORLD, hidden, &[(1, 1, "this sphere starts inside the body, at [0.05, 0.15, 0], between its nodes")]);
     let hidden = "[[obstacle]]\nkind = 'box'\ncentre = [0.05, 0.15]\nsize = [0.01, 0.01]";
     case(PLANE, hidden, &[(1, 1, "this box starts inside the body, at [0.05, 0.15]")]);
     let floor = "[[obstacle]]\nkind = 'floor'\nheight = 0.15";
@@ -135,6 +194,9 @@ fn obstacles_that_start_inside_the_body() {
         floor,
         &[(1, 1, "the body starts inside this floor: node 0 lies 5.000e-2 m below its surface move the floor")],
     );
+    // Right through it, between all nodes.
+    let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [0.05, 0.15, -1]\nto = [0.05, 0.15, 1]\nradius = 0.01";
+    case(WORLD, rod, &[(1, 1, "this capsule starts inside the body, at [0.05, 0.15, ")]);
     // A path that starts elsewhere counts, and so does a floor that is just touched.
     let away = "path.keys = [{ time = 0, shift = [0, 9, 0] }]";
     good(&format!("{WORLD}{touching}\n{away}"));

@@ -66,7 +66,7 @@ impl Draft<'_> {
         {
             let pose = moving.pose(time);
             plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
-            anchor = pose.apply(moving.shape.pivot(), DVec3::ZERO);
+            anchor = pose.apply(moving.pivot, DVec3::ZERO);
         }
         (plane, anchor)
     }

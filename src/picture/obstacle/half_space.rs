@@ -73,6 +73,7 @@ mod tests {
         let plate = Obstacle {
             shape: Shape::Plate { point: DVec3::Y, normal: -DVec3::Y },
             motion: Motion::at(place),
+            pivot: DVec3::Y,
             restitution: 0.0,
             friction: 0.0,
         };

@@ -46,7 +46,7 @@ impl Site<'_> {
 
     /// How an obstacle moves at a point of it (m) that is at most `reach` (m) away from its pivot, or nearly.
     fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> Going {
-        let pivot = obstacle.shape.pivot();
+        let pivot = obstacle.pivot;
         let own = obstacle.pose(self.time).undo(pivot, point);
         let half = 0.25 * self.frame;
         let [before, after] = [self.time - half, self.time + half].map(|time| obstacle.pose(time).apply(pivot, own));

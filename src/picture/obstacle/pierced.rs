@@ -12,7 +12,7 @@ impl Staging<'_> {
     /// The lines in which surfaces of the body go into solid obstacles.
     pub(in crate::picture) fn pierced(&self, meshes: &[&Mesh], lines: &mut Vec<Line>) {
         for obstacle in self.site.obstacles {
-            let (pose, pivot, reach) = (obstacle.pose(self.site.time), obstacle.shape.pivot(), obstacle.shape.reach());
+            let (pose, pivot, reach) = (obstacle.pose(self.site.time), obstacle.pivot, obstacle.shape.reach());
             if !reach.is_finite() {
                 continue;
             }

@@ -61,7 +61,7 @@ impl Flat<'_> {
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and where
     /// nothing is left.
     fn outline(&self, obstacle: &Obstacle, inwards: f64) -> Option<Vec<DVec3>> {
-        let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.shape.pivot());
+        let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.pivot);
         let place = |point: DVec3| pose.apply(pivot, point);
         match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => None,

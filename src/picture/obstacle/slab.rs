@@ -40,7 +40,7 @@ pub(super) struct Loose {
 impl Staging<'_> {
     /// The middle of the drawn part of a plate's surface (m), and half its sides (m).
     pub(super) fn span(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
-        let pivot = obstacle.shape.pivot();
+        let pivot = obstacle.pivot;
         let [first, second] = Plane::new(normal, 0.0).axes;
         let farthest = FARTHEST_EDGE * self.site.extent;
         let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
@@ -154,7 +154,7 @@ impl Staging<'_> {
             return None;
         }
         let seen = self.site.lens.sees(middle, out);
-        let anchor = pose.apply(obstacle.shape.pivot(), DVec3::ZERO);
+        let anchor = pose.apply(obstacle.pivot, DVec3::ZERO);
         let shift = axes.map(|axis| {
             // The grid's lines go through the origin of the world, or where the floor has brought it.
             ((middle - anchor) / self.site.side).dot(axis).rem_euclid(self.cell) / self.cell

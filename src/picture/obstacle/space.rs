@@ -51,7 +51,7 @@ impl Staging<'_> {
                     self.round(shape, radius, centre, &mut solids, lines, &mut staged);
                 }
                 Shape::Capsule { from, to, radius } => {
-                    let ends = [from, to].map(|end| pose.apply(obstacle.shape.pivot(), end));
+                    let ends = [from, to].map(|end| pose.apply(obstacle.pivot, end));
                     let shape = |segments| rod(ends, radius, segments);
                     let middle = ends[0].midpoint(ends[1]);
                     self.round(shape, radius, middle, &mut solids, lines, &mut staged);

@@ -37,8 +37,9 @@ pub(in crate::scene) struct BodyFile {
     #[schemars(length(min = 1))]
     pub(in crate::scene) nodes: Option<Vec<Coordinates>>,
     /// The nodes of each element, two or more, counted from 0. In the plane polygons, counter-clockwise; in space
-    /// tetrahedra, pyramids, wedges, hexahedra (corners in bit order: x fastest, then y, then z) or, with any other
-    /// number of nodes in any order, whatever their convex hull is.
+    /// tetrahedra and pyramids (the base counter-clockwise seen from the last node), wedges (two triangles, both
+    /// counter-clockwise seen from the second), hexahedra (corners in bit order: x fastest, then y, then z) or, with any
+    /// other number of nodes in any order, whatever their convex hull is; see also `convex`.
     #[schemars(length(min = 1), inner(length(min = 2)))]
     pub(in crate::scene) elements: Option<Vec<Vec<u32>>>,
     /// Pairs of nodes, for mass-spring models without a named topology.
@@ -109,6 +110,7 @@ pub(in crate::scene) struct LatticeFile {
     pub(in crate::scene) irregular: f64,
     /// Chooses among the random blocks that `irregular` and `mixed` allow. The same seed makes the same block everywhere.
     #[serde(default = "first")]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub(in crate::scene) seed: u32,
 }
 

@@ -29,7 +29,7 @@ pub(in crate::scene) struct KeyFile {
     pub(in crate::scene) time: f64,
     /// The shift (m). Default: no shift, whatever the key before has.
     pub(in crate::scene) shift: Option<Coordinates>,
-    /// The turn about its middle. Angles beyond a whole turn go round more than once. Default: no turn, whatever the
+    /// The turn, about the middle unless `about` says otherwise. Angles beyond a whole turn go round more than once. Default: no turn, whatever the
     /// key before has.
     pub(in crate::scene) rotation: Option<RotationFile>,
 }
@@ -46,7 +46,7 @@ pub(in crate::scene) struct SwingFile {
     pub(in crate::scene) phase: f64,
     /// The farthest shift (m). Default: none.
     pub(in crate::scene) shift: Option<Coordinates>,
-    /// The farthest turn about its middle. Default: none.
+    /// The farthest turn, about the middle unless `about` says otherwise. Default: none.
     pub(in crate::scene) rotation: Option<RotationFile>,
 }
 

@@ -25,6 +25,7 @@ pub(in crate::scene) enum ObstacleFile {
 pub(in crate::scene) struct Common<'a> {
     pub(in crate::scene) restitution: f64,
     pub(in crate::scene) friction: f64,
+    pub(in crate::scene) about: Option<&'a Coordinates>,
     pub(in crate::scene) path: Option<&'a MotionFile>,
     pub(in crate::scene) swing: Option<&'a SwingFile>,
 }
@@ -47,6 +48,9 @@ macro_rules! kinds {
                 #[serde(default)]
                 #[schemars(range(min = 0.0))]
                 friction: f64,
+                /// The point about which the turns of `path` or `swing` go (m): a sphere swings like a pendulum about a
+                /// point above it. Default: as said for this kind.
+                about: Option<Coordinates>,
                 /// A path along which it moves. Not together with `swing`.
                 path: Option<MotionFile>,
                 /// A periodic motion to and fro. Not together with `path`.
@@ -57,9 +61,10 @@ macro_rules! kinds {
         impl ObstacleFile {
             pub(in crate::scene) fn common(&self) -> Common<'_> {
                 match self {
-                    $(Self::$kind($table { restitution, friction, path, swing, .. }) => Common {
+                    $(Self::$kind($table { restitution, friction, about, path, swing, .. }) => Common {
                         restitution: *restitution,
                         friction: *friction,
+                        about: about.as_ref(),
                         path: path.as_ref(),
                         swing: swing.as_ref(),
                     },)*

@@ -54,6 +54,22 @@ pub(super) fn resolve(
     (named.len() == holds.len() + grabs.len()).then(|| named.into_iter().map(|(_, _, grip)| grip).collect())
 }
 
+/// Reports grips that end before a time step (s) has passed, so that they would hold nothing.
+pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>], step: f64, report: &mut Report<'_>) {
+    for (at, hold) in holds.iter().enumerate() {
+        let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
+        if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
+            let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
+            let help = "it would hold nothing: let it last longer".to_owned();
+            report.at(&[Way::Key("hold"), Way::Index(at), Way::Key("until")], message, help);
+        }
+    }
+    for (at, grab) in grabs.iter().enumerate() {
+        let path = [Way::Key("grab"), Way::Index(at), Way::Key("path")];
+        grab.iter().for_each(|grab| motion::check_steps(&grab.path, step, &path, report));
+    }
+}
+
 /// Reports nodes that two hands have at the same time.
 fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
     let mut holders: HashMap<u32, Vec<usize>> = HashMap::new();
@@ -120,6 +136,11 @@ fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &m
         RegionFile { low: Some(low), high: Some(high), .. } => {
             let (low, high) = (point(low, "low"), point(high, "high"));
             let (low, high) = (low?, high?);
+            if low.cmpgt(high).any() {
+                let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
+                report.at(&[path, &[Way::Key("low")]].concat(), message, None);
+                return None;
+            }
             let is_inside = |at: &glam::DVec3| at.cmpge(low).all() && at.cmple(high).all();
             (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect()
         }

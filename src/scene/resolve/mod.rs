@@ -146,6 +146,11 @@ pub(super) fn resolve(
         }
         _ => None,
     };
+    if let (0, Some(runs)) = (report.total(), &runs) {
+        let longest = runs.iter().fold(0.0, |longest: f64, run| longest.max(run.step));
+        obstacles::check_steps(&parts.obstacles, longest, report);
+        grips::check_steps(&parts.holds, &parts.grabs, longest, report);
+    }
     if report.total() > 0 {
         return None;
     }

@@ -125,3 +125,18 @@ pub(super) fn swing(
     let amplitude = place(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
     Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
 }
+
+/// Reports keys that are nearer to each other than a time step (s).
+pub(super) fn check_steps(typed: &MotionFile, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
+    for (at, pair) in typed.keys.windows(2).enumerate() {
+        let apart = pair[1].time - pair[0].time;
+        if apart > 0.0 && apart < step {
+            let key = [path, &[Way::Key("keys"), Way::Index(at + 1)]].concat();
+            let message = format!(
+                "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: it would jump",
+                written(&key)
+            );
+            report.at(&[&key[..], &[Way::Key("time")]].concat(), message, "leave more time between them".to_owned());
+        }
+    }
+}

@@ -5,8 +5,9 @@ use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::scene::file::{Coordinates, ObstacleFile};
 use crate::scene::report::{Report, Way};
-use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::body::{Dimension, IndexLists, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::words::rounded;
 use glam::{DQuat, DVec3};
 
 /// The obstacles, or `None` after reporting every mistake in them.
@@ -38,7 +39,13 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
         (None, Some(typed)) => motion::swing(typed, dimension, &[path, &[Way::Key("swing")]].concat(), report),
         (None, None) => Some(Motion::Still),
     };
-    Some(Obstacle { shape: shape?, motion: motion?, restitution: common.restitution, friction: common.friction })
+    let about = common.about.map(|typed| vector(typed, dimension, &[path, &[Way::Key("about")]].concat(), report));
+    let (shape, motion) = (shape?, motion?);
+    let pivot = match about {
+        Some(typed) => typed?,
+        None => shape.middle(),
+    };
+    Some(Obstacle { shape, motion, pivot, restitution: common.restitution, friction: common.friction })
 }
 
 fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {
@@ -113,20 +120,66 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         };
         return report.at(path, message, help.to_owned());
     }
-    let (pose, pivot) = (obstacle.pose(0.0), obstacle.shape.pivot());
-    let inner = match obstacle.shape {
-        Shape::Floor { .. } | Shape::Plate { .. } => return,
-        Shape::Sphere { centre, .. } | Shape::Box { centre, .. } => vec![centre],
-        Shape::Capsule { from, to, .. } => vec![from, 0.5 * (from + to), to],
-    };
-    if let Some(point) = inner.into_iter().map(|point| pose.apply(pivot, point)).find(|&point| is_within(body, point)) {
-        let [x, y, z] = point.to_array();
+    let (pose, pivot) = (obstacle.pose(0.0), obstacle.pivot);
+    let (low, high) = bounds(&body.initial.position);
+    let near = |point: &DVec3| point.cmpge(low).all() && point.cmple(high).all();
+    let points = inner_points(&obstacle.shape, body.body.dimension);
+    let within =
+        points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).find(|&point| is_within(body, point));
+    if let Some(point) = within {
+        let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
         let point =
             if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
-        let message = format!("this {name} starts inside the body, at {point}: no node would ever meet it");
-        report.at(path, message, "move one of them; nodes bounce off an obstacle from outside".to_owned());
+        let message = format!("this {name} starts inside the body, at {point}, between its nodes");
+        report.at(path, message, "move one of them; only nodes bounce off an obstacle, from outside".to_owned());
     }
 }
+
+/// How many steps are taken through an obstacle in each direction to see whether it lies in a body.
+const SAMPLES: u32 = 8;
+
+/// Points all over the inside of an obstacle, its middle first; none of half-spaces, which nodes tell of.
+fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
+    let steps = || (0..=SAMPLES).map(|at| f64::from(at) / f64::from(SAMPLES) * 2.0 - 1.0);
+    let across =
+        || steps().filter(move |_| dimension == Dimension::Space).chain((dimension == Dimension::Plane).then_some(0.0));
+    let cube = || steps().flat_map(move |x| steps().flat_map(move |y| across().map(move |z| DVec3::new(x, y, z))));
+    let ball =
+        |centre: DVec3, radius: f64| cube().filter(|at| at.length_squared() <= 1.0).map(move |at| centre + radius * at);
+    let middle = shape.middle();
+    match *shape {
+        Shape::Floor { .. } | Shape::Plate { .. } => Vec::new(),
+        Shape::Sphere { centre, radius } => std::iter::once(middle).chain(ball(centre, radius)).collect(),
+        Shape::Capsule { from, to, radius } => {
+            let along = (0..=32).map(move |at| from.lerp(to, f64::from(at) / 32.0));
+            let ends = ball(from, radius).chain(ball(to, radius)).chain(ball(middle, radius));
+            std::iter::once(middle).chain(along).chain(ends).collect()
+        }
+        Shape::Box { centre, half, turn } => {
+            let half = DVec3::select(half.is_finite_mask(), half, DVec3::ZERO);
+            std::iter::once(middle).chain(cube().map(|at| centre + turn * (at * half))).collect()
+        }
+    }
+}
+
+/// Reports motions so quick that a step cannot follow them: nodes would meet an obstacle that jumps.
+pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
+    for (at, obstacle) in typed.iter().enumerate() {
+        let Some(common) = obstacle.as_ref().map(ObstacleFile::common) else { continue };
+        let path = [Way::Key("obstacle"), Way::Index(at)];
+        if let Some(typed) = common.path {
+            motion::check_steps(typed, step, &[&path[..], &[Way::Key("path")]].concat(), report);
+        }
+        if let Some(swing) = common.swing.filter(|swing| swing.period < LEAST_STEPS * step) {
+            let message = format!("it would swing once in {} s, but a time step takes {step:.3e} s", swing.period);
+            let help = format!("take a period of at least {LEAST_STEPS} steps, or shorter steps");
+            report.at(&[&path[..], &[Way::Key("swing"), Way::Key("period")]].concat(), message, help);
+        }
+    }
+}
+
+/// How many steps a swing to and fro must take at least to be one.
+const LEAST_STEPS: f64 = 4.0;
 
 /// Whether a point lies within the outer surface of a body at its start, by how often that winds around it.
 fn is_within(body: &ResolvedBody, point: DVec3) -> bool {

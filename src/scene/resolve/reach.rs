@@ -49,7 +49,7 @@ impl Neighbourhood<'_> {
         if outermost.is_empty() {
             return;
         }
-        let pivot = obstacle.shape.pivot();
+        let pivot = obstacle.pivot;
         for time in times(&obstacle.motion, [0.0, self.scene.duration]) {
             let pose = obstacle.pose(time);
             outermost.iter().for_each(|&point| self.add(pose.apply(pivot, point), points));

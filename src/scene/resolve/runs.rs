@@ -44,16 +44,21 @@ pub(super) fn resolve(
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
                 format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
-            report.at(path, message, "make it larger".to_owned());
+            report.at(path, message, "make it larger, or masses and stiffness less extreme".to_owned());
             return None;
         }
         if step > time.duration && time.duration > 0.0 {
             let message = format!(
-                "the time step of {} is {step:.4} s, longer than the whole scene of {} s: nothing would move",
+                "the time step of {} is {} s, longer than the whole scene of {} s: nothing would move",
                 words::quoted(&run.name),
-                time.duration
+                words::short(step),
+                words::short(time.duration)
             );
-            report.at(path, message, format!("T = {cycle:.4} s; make the step smaller or the duration longer"));
+            report.at(
+                path,
+                message,
+                format!("T = {} s; make the step smaller or the duration longer", words::short(cycle)),
+            );
             return None;
         }
         let integrator = run.integrator.unwrap_or(time.integrator);

@@ -113,12 +113,24 @@ fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
     (1..=runs.max(1)).fold(1, |best, columns| if side(columns) > side(best) { columns } else { best })
 }
 
+/// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
+const NARROWEST: f64 = 1e-9;
+
 /// The colours of a field, over a range that follows from the scene if none is typed.
 fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
     let range = match typed.range {
         Some([low, high]) if low >= high => {
             let message = format!("`view.colour.range` runs from {low} to {high}; expected a rising range");
             report.at(&[Way::Key("view"), Way::Key("colour"), Way::Key("range")], message, None);
+            return None;
+        }
+        Some([low, high]) if high - low < NARROWEST * low.abs().max(high.abs()) => {
+            let message = format!("`view.colour.range` from {low} to {high} is too narrow for its numbers");
+            report.at(
+                &[Way::Key("view"), Way::Key("colour"), Way::Key("range")],
+                message,
+                "move its ends apart".to_owned(),
+            );
             return None;
         }
         Some(range) => range,

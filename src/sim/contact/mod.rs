@@ -13,8 +13,10 @@ use glam::DVec3;
 pub struct Obstacle {
     /// Its shape and place, before it moves.
     pub shape: Shape,
-    /// How it moves, turning about [`Shape::pivot`].
+    /// How it moves.
     pub motion: Motion,
+    /// The point about which it turns when it moves (m), of its own: it moves along with its shifts.
+    pub pivot: DVec3,
     /// Restitution coefficient `e`, 0 to 1: the part of the normal velocity that a rebound gives back.
     pub restitution: f64,
     /// Friction coefficient `μ`, 0 or more.
@@ -42,7 +44,7 @@ impl Obstacle {
         if self.motion == Motion::Still {
             return Some((normal, height));
         }
-        let (pose, pivot) = (self.pose(time), self.shape.pivot());
+        let (pose, pivot) = (self.pose(time), self.pivot);
         let normal = pose.turn * normal;
         Some((normal, normal.dot(pose.apply(pivot, pivot))))
     }
@@ -50,7 +52,7 @@ impl Obstacle {
     /// The obstacle as nodes meet it at the end of a step (s) that ends at a time (s).
     pub fn at(&self, time: f64, step: f64) -> Placed<'_> {
         let moving = (self.motion != Motion::Still).then(|| Moving {
-            pivot: self.shape.pivot(),
+            pivot: self.pivot,
             now: self.pose(time),
             // At the start nothing has moved yet.
             before: self.pose((time - step).max(0.0)),

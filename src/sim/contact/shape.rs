@@ -82,9 +82,8 @@ impl Shape {
         (depth > 0.0).then_some(Contact { depth, normal })
     }
 
-    /// The point about which the obstacle turns when it moves (m): its middle, for a plate its point, for a floor the
-    /// point nearest to the origin.
-    pub fn pivot(&self) -> DVec3 {
+    /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.
+    pub fn middle(&self) -> DVec3 {
         match *self {
             Self::Floor { normal, height } => normal * height,
             Self::Plate { point, .. } => point,
@@ -93,7 +92,7 @@ impl Shape {
         }
     }
 
-    /// How far the obstacle reaches from its pivot (m); infinite for half-spaces.
+    /// How far the obstacle reaches from its middle (m); infinite for half-spaces.
     pub fn reach(&self) -> f64 {
         match *self {
             Self::Floor { .. } | Self::Plate { .. } => f64::INFINITY,
@@ -162,7 +161,7 @@ mod tests {
         for shape in shapes() {
             let out = match shape {
                 Shape::Capsule { from, to, .. } => shape.contact(0.5 * (from + to)),
-                _ => shape.contact(shape.pivot() - 1e-9 * DVec3::Z),
+                _ => shape.contact(shape.middle() - 1e-9 * DVec3::Z),
             };
             assert!(out.is_none_or(|contact| contact.normal.is_finite() && contact.depth.is_finite()));
         }
