@@ -8,6 +8,7 @@ mod fig4a;
 mod fig4b;
 mod fig4c;
 mod figures;
+mod free_form;
 mod grips;
 mod integrators;
 mod readings;
