@@ -195,5 +195,5 @@ pub(super) fn numbers(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64
         return vec![format!("smallest area ratio {ratio}"), format!("area ratio {ratio}")];
     }
     let error = number::length(snapshot.diagnostics.shape_error, scene.body.extent());
-    vec![format!("shape error {error}"), error]
+    vec![format!("shape error {error}"), format!("error {error}"), error]
 }
