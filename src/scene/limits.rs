@@ -60,14 +60,24 @@ impl Demand {
         Self { runs: models.map(|model| model.needs(&body)).collect(), body, less }
     }
 
-    /// Memory (bytes), a rough estimate, some tenths above what was measured on a million cubes: the body with its
-    /// faces while they are matched; then for a while one model that is being made, or for each run its state and
-    /// what its model keeps.
+    /// Memory (bytes), a rough estimate, some tenths above what was measured on a million cubes and a few hundredths on
+    /// 200 000 listed heptads and hexahedra: the body with its faces while they are matched; then for a while one model
+    /// that is being made, or for each run its state and what its model keeps. Listed bodies are held as they were read
+    /// besides, and hulls have faces of their own.
     pub(super) fn bytes(&self) -> u128 {
         const NODE: u128 = 80;
         const CORNER: u128 = 60;
         const NODE_IN_RUN: u128 = 120;
-        let body = self.body.nodes.saturating_mul(NODE).saturating_add(self.body.corners().saturating_mul(CORNER));
+        const LISTED_NODE: u128 = 60;
+        const LISTED_CORNER: u128 = 16;
+        const HULL_CORNER: u128 = 16;
+        let (nodes, corners) = (self.body.nodes, self.body.corners());
+        let mut body = nodes.saturating_mul(NODE).saturating_add(corners.saturating_mul(CORNER));
+        if !self.body.lattice {
+            let lists = nodes.saturating_mul(LISTED_NODE).saturating_add(corners.saturating_mul(LISTED_CORNER));
+            let hulls = self.body.hull_corners().saturating_mul(HULL_CORNER);
+            body = body.saturating_add(lists).saturating_add(hulls);
+        }
         let state = self.body.nodes.saturating_mul(NODE_IN_RUN);
         let making = self.runs.iter().map(|run| run.making).max().unwrap_or(0);
         let working = self.runs.iter().fold(0, |sum: u128, run| sum.saturating_add(run.working.saturating_add(state)));

@@ -39,19 +39,10 @@ impl Census {
         self.sum(|_, nodes| nodes as u128)
     }
 
-    /// Entries in the lists of all elements' faces together, before faces shared by two are made one; at most that many
-    /// for elements of no particular kind.
-    pub fn face_corners(&self) -> u128 {
-        self.sum(|kind, nodes| match kind {
-            ElementKind::Segment => 0,
-            // Twice the 3n − 6 edges that a convex solid has at most.
-            ElementKind::Other => (6 * nodes as u128).saturating_sub(12),
-            ElementKind::Polygon | ElementKind::Triangle => nodes as u128,
-            ElementKind::Tetrahedron => 12,
-            ElementKind::Pyramid => 16,
-            ElementKind::Wedge => 18,
-            ElementKind::Hexahedron => 24,
-        })
+    /// Entries in the lists of the faces of all elements that are convex hulls, at most.
+    pub fn hull_corners(&self) -> u128 {
+        let hulls = |kind, nodes: usize| if kind == ElementKind::Other { face_corners(kind, nodes) } else { 0 };
+        self.sum(hulls)
     }
 
     /// The sum over all elements of something that follows from an element's kind and its number of nodes.
@@ -59,6 +50,20 @@ impl Census {
         self.elements.iter().fold(0, |sum: u128, (&nodes, &count)| {
             sum.saturating_add(of_one(topology::kind(self.dimension, self.solids, nodes), nodes).saturating_mul(count))
         })
+    }
+}
+
+/// Entries in the lists of one element's faces, at most.
+fn face_corners(kind: ElementKind, nodes: usize) -> u128 {
+    match kind {
+        ElementKind::Segment => 0,
+        // Twice the 3n − 6 edges that a convex solid has at most.
+        ElementKind::Other => (6 * nodes as u128).saturating_sub(12),
+        ElementKind::Polygon | ElementKind::Triangle => nodes as u128,
+        ElementKind::Tetrahedron => 12,
+        ElementKind::Pyramid => 16,
+        ElementKind::Wedge => 18,
+        ElementKind::Hexahedron => 24,
     }
 }
 
@@ -86,7 +91,11 @@ mod tests {
                 let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
                 let hulls = Hulls::new(&lists, &kinds, &rest);
                 let faces = topology::Elements { nodes: &lists, kinds: &kinds, hulls: &hulls, rest: &rest }.faces_of(0);
-                assert_eq!(census.face_corners(), faces.iter().map(|face| face.len() as u128).sum::<u128>(), "{nodes}");
+                assert_eq!(
+                    census.sum(face_corners),
+                    faces.iter().map(|face| face.len() as u128).sum::<u128>(),
+                    "{nodes}"
+                );
             }
         }
     }
