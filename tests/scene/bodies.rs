@@ -142,16 +142,19 @@ fn a_body_made_by_a_rule_moves_like_the_same_body_listed_in_any_order() {
                 "rotation = { axis = [1, 0, 2], angle = 0.1 }\nlowest = 0.02\nvelocity = [0.3, -2, 0.1]"
             }
         };
-        let made = good(&world(&format!("{body}\n{start}"), dimension));
-        let (text, renamed) = listed(&made);
-        let listed = good(&world(&format!("{text}\n{start}"), dimension));
-        assert_eq!(listed.summary().elements, made.summary().elements);
-        for (run, (one, other)) in end(&made).iter().zip(&end(&listed)).enumerate() {
-            let moved = one[0].distance(made.initial.position[0]);
-            assert!(moved > 0.01, "{body}: {moved}");
-            for (node, position) in one.iter().enumerate() {
-                let distance = position.distance(other[renamed(node)]);
-                assert!(distance <= 1e-12, "{body}, run {run}, node {node}: {distance:e}");
+        for springs in ["edges+face-diagonals", "edges+one-diagonal"] {
+            let with = |text: String| good(&world(&text, dimension).replace("edges+face-diagonals", springs));
+            let made = with(format!("{body}\n{start}"));
+            let (text, renamed) = listed(&made);
+            let listed = with(format!("{text}\n{start}"));
+            assert_eq!(listed.summary().elements, made.summary().elements);
+            for (run, (one, other)) in end(&made).iter().zip(&end(&listed)).enumerate() {
+                let moved = one[0].distance(made.initial.position[0]);
+                assert!(moved > 0.01, "{body}: {moved}");
+                for (node, position) in one.iter().enumerate() {
+                    let distance = position.distance(other[renamed(node)]);
+                    assert!(distance <= 1e-12, "{body}, run {run}, node {node}: {distance:e}");
+                }
             }
         }
     }
