@@ -49,16 +49,6 @@ fn segment(
     return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
 }
 
-fn texel_of(place: vec2<f32>) -> vec2<i32> {
-    let low = panel.region.xy;
-    let high = low + panel.region.zw - 1.0;
-    return vec2<i32>(clamp(floor(place), low, high));
-}
-
-fn depth_at(pixel: vec2<f32>) -> f32 {
-    return load_depth(texel_of(pixel));
-}
-
 fn distance_of(depth: f32) -> f32 {
     return panel.near / max(depth, 1e-9);
 }

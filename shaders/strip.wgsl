@@ -40,3 +40,14 @@ fn strip_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: 
 
 // Outside of everything.
 const NOWHERE = vec4<f32>(0.0, 0.0, -1.0, 1.0);
+
+// The texel of a pixel in the textures that hold the bodies, and the depth of the bodies there.
+fn texel_of(place: vec2<f32>) -> vec2<i32> {
+    let low = panel.region.xy;
+    let high = low + panel.region.zw - 1.0;
+    return vec2<i32>(clamp(floor(place), low, high));
+}
+
+fn depth_at(pixel: vec2<f32>) -> f32 {
+    return load_depth(texel_of(pixel));
+}

@@ -54,13 +54,6 @@ fn stroke(
     return Stroke(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, first, second, other, size, kind);
 }
 
-// The depth of the bodies at a pixel of the textures that hold them.
-fn depth_at(pixel: vec2<f32>) -> f32 {
-    let low = panel.region.xy;
-    let high = low + panel.region.zw - 1.0;
-    return load_depth(vec2<i32>(clamp(floor(pixel), low, high)));
-}
-
 // An sRGB colour as linear light.
 fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
