@@ -215,4 +215,20 @@ mod tests {
             assert!((at_rest(heptad(thickness)).volume_ratio - 1.0).abs() < 1e-8);
         }
     }
+
+    #[test]
+    fn hulls_count_with_their_own_volume() {
+        // An octahedron of volume 4/3, squashed to a half, above a cube of volume 1 that keeps its shape.
+        let octahedron = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
+        let cube =
+            (0..8u32).map(|bit| DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1))) - DVec3::Y * 3.0);
+        let rest: Vec<_> = octahedron.into_iter().chain(cube).collect();
+        let elements = [&[0, 1, 2, 3, 4, 5][..], &[6, 7, 8, 9, 10, 11, 12, 13]].into_iter().collect();
+        let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 14], elements, Solids::Convex, None);
+        let mut now = rest;
+        now[..6].iter_mut().for_each(|corner| corner.y *= 0.5);
+        let nothing = Measure { energy: None, residual: None };
+        let ratio = Diagnose::new(&Arc::new(body)).state(&State::at_rest(now), DVec3::ZERO, nothing).0.volume_ratio;
+        assert!((ratio - (2.0 / 3.0 + 1.0) / (4.0 / 3.0 + 1.0)).abs() < 1e-12, "{ratio}");
+    }
 }

@@ -124,8 +124,11 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     let (low, high) = bounds(&body.initial.position);
     let near = |point: &DVec3| point.cmpge(low).all() && point.cmple(high).all();
     let points = inner_points(&obstacle.shape, body.body.dimension);
-    let within =
-        points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).find(|&point| is_within(body, point));
+    let points: Vec<_> = points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).collect();
+    // Of large bodies fewer points are asked, the middle of the obstacle always.
+    let faces = body.body.faces.nodes.len().max(1);
+    let stride = (points.len() * faces).div_ceil(MOST_COMPARED).max(1);
+    let within = points.into_iter().step_by(stride).find(|&point| is_within(body, point));
     if let Some(point) = within {
         let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
         let point =
@@ -134,6 +137,9 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         report.at(path, message, "move one of them; only nodes bounce off an obstacle, from outside".to_owned());
     }
 }
+
+/// How many points of an obstacle, times faces of the body, are looked at: some tenths of a second of work at most.
+const MOST_COMPARED: usize = 10_000_000;
 
 /// How many steps are taken through an obstacle in each direction to see whether it lies in a body.
 const SAMPLES: u32 = 8;
