@@ -29,7 +29,7 @@ pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
-pub use view::{Camera, ColourScale, Follow, Theme, View, Visible};
+pub use view::{Camera, ColourScale, FloorStyle, Follow, Labels, Light, Theme, View, Visible};
 
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;
