@@ -32,6 +32,11 @@ pub(super) fn ramp(theme: Theme) -> Vec<Colour> {
     (0..SHADES).map(|at| encoded(point(along(at)))).collect()
 }
 
+/// Placeholder
+pub(super) fn diverging(theme: Theme) -> Vec<Colour> {
+    ramp(theme)
+}
+
 /// The colour of a place on a scale, from 0 to 1.
 pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
     let last = ramp.len().saturating_sub(1);
