@@ -193,7 +193,7 @@ impl Lens {
 mod tests {
     use super::*;
     use crate::picture::narrow::narrow_point;
-    use crate::scene::{Theme, Visible};
+    use crate::scene::{Look, Theme, Visible};
 
     fn at_heights(heights: [f64; 2]) -> Middles {
         let [low, high] = heights.map(|height| height * DVec3::Y);
@@ -206,6 +206,7 @@ mod tests {
         View {
             size: [1280, 720],
             theme: Theme::Light,
+            look: Look::of(Theme::Light),
             camera: Camera {
                 azimuth: 31_f64.to_radians(),
                 elevation: 17_f64.to_radians(),

@@ -225,7 +225,7 @@ impl<'a> Draft<'a> {
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
             colour: self.composer.palette.arrows[usize::from(has_springs)],
-            halo: self.composer.palette.background,
+            halo: self.composer.palette.halo,
         };
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }

@@ -1,11 +1,11 @@
 //! How the scene is looked at.
 
 use super::body::ResolvedBody;
-use super::{reach, vector};
+use super::{look, reach, vector};
 use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, ColourFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, ColourScale, Follow, View, Visible};
+use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, View, Visible};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
@@ -32,7 +32,12 @@ const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 const COLUMNS: usize = 3;
 
 /// The view, or `None` if there is a mistake in it.
-pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<View> {
+pub(super) fn resolve(
+    typed: &ViewFile,
+    scene: &Around<'_>,
+    font: Option<FontFiles>,
+    report: &mut Report<'_>,
+) -> Option<View> {
     let &Around { body, obstacles, .. } = scene;
     let runs = scene.runs.len();
     let dimension = body.body.dimension;
@@ -90,9 +95,11 @@ pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<
         },
         None => Visible::usual(dimension, body.body.len()),
     };
+    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     Some(View {
         size: typed.size,
-        theme: typed.theme,
+        theme,
+        look,
         camera: chosen,
         clock: typed.clock.clone(),
         columns,
@@ -136,7 +143,7 @@ fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Op
         Some(range) => range,
         None => [0.0, scene.largest(typed.by)],
     };
-    Some(ColourScale { field: typed.by, range })
+    Some(ColourScale { field: typed.by, range, map: typed.map })
 }
 
 /// What a view follows from.
