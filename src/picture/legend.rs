@@ -114,7 +114,7 @@ impl Legend {
     fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
-        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.background));
+        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
         // The words stand still when the camera moves.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(

@@ -213,7 +213,7 @@ impl Flat<'_> {
         if room > 0.55 * disc {
             let white = [255; 3];
             self.round(middle, disc, white, white, MarkShape::Node, marks);
-            let colour = Palette::alarm_on_white();
+            let colour = self.palette.alarm_on_white;
             self.round(middle, ring, colour, colour, MarkShape::Clockwise, marks);
         }
     }

@@ -18,7 +18,7 @@ use super::skin::Skin;
 use super::tally::Tally;
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
-use crate::scene::{Camera, Follow, Scene};
+use crate::scene::{Camera, Follow, Scene, StrainScale};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
@@ -86,11 +86,14 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |_| ramp::ramp(scene.view.theme)),
-            spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |_| ramp::diverging(scene.view.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+            spring_ramp: scene
+                .view
+                .spring_strain
+                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: Palette::of(scene.view.theme),
+            palette: scene.view.look.palette,
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
@@ -227,12 +230,7 @@ impl<'a> Composer<'a> {
         if !view.legend || !view.visible.displacements && bars == 0 {
             return None;
         }
-        Legend::new(
-            view.size.map(|length| length.max(1)),
-            Layout::around(view, runs),
-            view.visible.displacements,
-            bars,
-        )
+        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), view.visible.displacements, bars)
     }
 
     /// The scales of colours in a frame.
@@ -243,7 +241,7 @@ impl<'a> Composer<'a> {
             Bar::new([colour.field.name(), colour.field.unit()], colour.range, &self.ramp, values)
         });
         let body = &*self.scene.body;
-        let of_springs = view.spring_strain.map(|range| {
+        let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
             let whole = frame.runs.iter().filter(|run| run.snapshot.position.len() == body.len());
             let strains = whole.flat_map(|run| {
                 let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());

@@ -231,7 +231,7 @@ impl<'a> Draft<'a> {
                 Some(_) => self.composer.palette.text,
                 None => self.composer.palette.arrows[usize::from(has_springs)],
             },
-            halo: self.composer.palette.background,
+            halo: self.composer.palette.halo,
         };
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
