@@ -101,7 +101,9 @@ impl Wire<'_> {
         let middle = ends_now[0].midpoint(ends_now[1]);
         let faded = |colour| mixed(colour, self.palette.background, haze(middle));
         let plain = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
-        Stroke { second: Second::Casing(faded(self.palette.casing)), ..plain }
+        // Beside surfaces, lines of all colours must stand out.
+        let second = if self.surfaces { Second::Casing(faded(self.palette.casing)) } else { Second::None };
+        Stroke { second, ..plain }
     }
 
     /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.

@@ -196,6 +196,8 @@ pub enum ColourMap {
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.
     Greys,
+    /// From violet through grey to green, made for lines: values near the middle recede, yet are seen on any ground.
+    VioletGreen,
     /// From purple through white to green (ColorBrewer PRGn), in either theme: for values on both sides of a middle.
     PurpleGreen,
 }

@@ -153,16 +153,16 @@ impl LabelFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(in crate::scene) struct SpringColourFile {
-    /// The strains at the ends of the scale. Default: −0.5 and 0.5.
+    /// The strains at the ends of the scale. Default: −0.3 and 0.3.
     pub(in crate::scene) range: Option<[f64; 2]>,
-    /// The colours of the scale. Default: `"purple-green"`, purple where springs are shortened, green where they are
+    /// The colours of the scale. Default: `"violet-green"`, violet where springs are shortened, green where they are
     /// lengthened.
     pub(in crate::scene) map: ColourMap,
 }
 
 impl Default for SpringColourFile {
     fn default() -> Self {
-        Self { range: None, map: ColourMap::PurpleGreen }
+        Self { range: None, map: ColourMap::VioletGreen }
     }
 }
 

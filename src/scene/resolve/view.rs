@@ -157,7 +157,7 @@ fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
 }
 
 /// The strains at the ends of the scale that colours springs.
-const SPRING_STRAIN: [f64; 2] = [-0.5, 0.5];
+const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
