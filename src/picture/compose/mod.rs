@@ -189,7 +189,8 @@ impl<'a> Composer<'a> {
             }
             // One camera for all panels, and so one bar.
             if view.scale_bar && at == 0 {
-                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale);
+                let room = to - from - 2.0 * writer.scale.gap();
+                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
                 writer.scale_bar(viewport, [from, to], metres, pixels);
             }
         }
@@ -204,10 +205,10 @@ impl<'a> Composer<'a> {
         (view.legend && (view.strip.is_some() || has_arrows)).then_some((colour, has_springs && view.strip.is_some()))
     }
 
-    /// What the scale bar stands for (m), and how long it is in this frame and without a moving camera (px).
-    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> (f64, [f64; 2]) {
+    /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).
+    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, [f64; 2]) {
         let [now, usual] = self.pixels_a_metre(viewport, framing, scale);
-        let metres = number::round_below(SCALE_BAR * scale.unit / usual);
+        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / usual);
         (metres, [now, usual].map(|pixels| metres * pixels))
     }
 
