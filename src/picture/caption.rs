@@ -4,7 +4,7 @@ use super::layout::{Baselines, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
-use super::text::{TextRun, Weight, lay_out, shortened, width};
+use super::text::{Fonts, TextRun, Weight};
 use super::{Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Snapshot, Status};
@@ -17,6 +17,7 @@ const LABEL_SHARE: f64 = 0.55;
 /// Writes one panel after the other.
 pub(super) struct Writer<'a> {
     pub(super) palette: &'a Palette,
+    pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,
     pub(super) marks: Vec<Mark>,
     pub(super) words: Vec<TextRun>,
@@ -49,29 +50,29 @@ impl Writer<'_> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let free = taken.map(|taken| room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 });
-        let name = shortened(name, Weight::SemiBold, title, free[0]);
+        let name = self.fonts.shortened(name, Weight::SemiBold, title, free[0]);
         self.left(&name, Weight::SemiBold, title, self.palette.text, room.left, room.top + lines.title);
-        let second = shortened(second, Weight::Regular, caption, free[1]);
+        let second = self.fonts.shortened(second, Weight::Regular, caption, free[1]);
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
     /// How much room the clock and its label take (px), at any time.
     pub(super) fn clock_room(&self, panel: Rectangle, label: &str) -> [f64; 2] {
         let label = self.clock_label(panel, label);
-        let time = width(WIDEST_TIME, Weight::Regular, self.scale.title());
-        [time, width(&label, Weight::Regular, self.scale.caption())]
+        let time = self.fonts.width(WIDEST_TIME, Weight::Regular, self.scale.title());
+        [time, self.fonts.width(&label, Weight::Regular, self.scale.caption())]
     }
 
     fn clock_label(&self, panel: Rectangle, label: &str) -> String {
         let room = LABEL_SHARE * Room::new(panel, self.scale).width();
-        shortened(label, Weight::Regular, self.scale.caption(), room)
+        self.fonts.shortened(label, Weight::Regular, self.scale.caption(), room)
     }
 
     /// The clock with its label, upper right.
     pub(super) fn clock(&mut self, panel: Rectangle, time: f64, label: &str) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let time = shortened(&number::time(time), Weight::Regular, title, room.width());
+        let time = self.fonts.shortened(&number::time(time), Weight::Regular, title, room.width());
         self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
         let label = self.clock_label(panel, label);
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
@@ -101,13 +102,13 @@ impl Writer<'_> {
             let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
             let all = snapshot.turned_over.len();
             let free = room.right - left;
-            let count = shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
+            let count = self.fonts.shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
             self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-            let explained = shortened("turned over", Weight::Regular, caption, free);
+            let explained = self.fonts.shortened("turned over", Weight::Regular, caption, free);
             self.left(&explained, Weight::Regular, caption, second, left, baseline);
             // The widest count, so that the number beside it does not come and go.
             right_of_count =
-                left + width(&format!("{all} of {all}"), Weight::SemiBold, title).max(width(
+                left + self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, title).max(self.fonts.width(
                     &explained,
                     Weight::Regular,
                     caption,
@@ -121,7 +122,9 @@ impl Writer<'_> {
         let wordings = numbers.iter().flat_map(|text| sizes.map(|size| (text, size)));
         let free = room.right - right_of_count;
         // By the room of the widest number, or the words beside it would come and go.
-        if let Some((text, size)) = { wordings }.find(|&(text, size)| width(&widest(text), weight, size) <= free) {
+        if let Some((text, size)) =
+            { wordings }.find(|&(text, size)| self.fonts.width(&widest(text), weight, size) <= free)
+        {
             self.right(text, weight, size, colour, room.right, baseline);
         }
     }
@@ -160,12 +163,13 @@ impl Writer<'_> {
 
     fn left(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, left: f64, baseline: f64) {
         if Scale::legible(size) && !text.is_empty() {
-            self.words.push(lay_out(text, weight, size, colour, left, baseline));
+            let run = self.fonts.lay_out(text, weight, size, colour, left, baseline);
+            self.words.push(run);
         }
     }
 
     fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
-        let left = right - width(text, weight, size);
+        let left = right - self.fonts.width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
     }
 }

@@ -84,7 +84,7 @@ impl Overlay {
         self.under = picture.under.len() as u32;
         for run in &picture.words {
             for glyph in &run.glyphs {
-                if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
+                if let Some((raster, [x, y])) = self.glyphs.raster(&picture.fonts, run, glyph) {
                     let [width, height] = raster.size.map(|length| length as f32);
                     marks.push(Mark {
                         rectangle: [x + raster.offset[0], y + raster.offset[1], width, height],

@@ -16,6 +16,7 @@ use super::plane::LEVEL;
 use super::ramp;
 use super::skin::Skin;
 use super::tally::Tally;
+use super::text::Fonts;
 use super::wire::Edges;
 use super::{Colour, Framing, Picture};
 use crate::scene::{Camera, Follow, Scene};
@@ -33,6 +34,7 @@ const SOFT_SHARE: f64 = 4.5;
 pub struct Composer<'a> {
     scene: &'a Scene,
     palette: Palette,
+    fonts: Fonts,
     /// The elements in rows.
     tally: Tally,
     /// The second line of each run.
@@ -85,6 +87,7 @@ impl<'a> Composer<'a> {
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette,
+            fonts: Fonts::new(&scene.view.look.font),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
@@ -108,7 +111,8 @@ impl<'a> Composer<'a> {
         let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
         let framing = self.framing(frame);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
-        let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
+        let mut writer =
+            Writer { palette: &self.palette, fonts: &self.fonts, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&panels);
         self.write(frame, &panels, &mut writer);
         if let Some((legend, &viewport)) = legend.zip(panels.first()) {
@@ -123,7 +127,8 @@ impl<'a> Composer<'a> {
             .zip(&frame.runs)
             .map(|(&viewport, run)| Draft::new(self, viewport, run, &framing, scale).panel(&mut under, &mut marks))
             .collect();
-        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+        let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
+        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, words }
     }
 
     /// What the camera of all panels looks at.
