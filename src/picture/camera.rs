@@ -193,7 +193,6 @@ impl Lens {
 mod tests {
     use super::*;
     use crate::picture::narrow::narrow_point;
-    use crate::scene::{Look, Theme, Visible};
 
     fn at_heights(heights: [f64; 2]) -> Middles {
         let [low, high] = heights.map(|height| height * DVec3::Y);
@@ -204,9 +203,6 @@ mod tests {
 
     fn view() -> View {
         View {
-            size: [1280, 720],
-            theme: Theme::Light,
-            look: Look::of(Theme::Light),
             camera: Camera {
                 azimuth: 31_f64.to_radians(),
                 elevation: 17_f64.to_radians(),
@@ -216,12 +212,9 @@ mod tests {
                 rise: 0.0,
                 follow: Follow::Height,
             },
-            clock: String::new(),
             columns: 2,
-            visible: Visible::default(),
-            colour: None,
-            arrow_scale: 1.0,
             side: 0.1,
+            ..View::default()
         }
     }
 

@@ -34,7 +34,9 @@ pub use limits::Limits;
 pub use palette::Palette;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
-pub use view::{Camera, ColourMap, ColourScale, Follow, FontFiles, Look, Theme, View, Visible};
+pub use view::{
+    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, Theme, View, Visible,
+};
 
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;

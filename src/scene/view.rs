@@ -3,6 +3,7 @@
 use super::palette::Palette;
 use crate::sim::body::Dimension;
 use crate::sim::field::Field;
+use crate::sim::snapshot::Diagnostic;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,117 @@ pub struct View {
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
     pub side: f64,
+    /// A title above all panels; empty for none.
+    pub title: String,
+    /// A caption below all panels; empty for none.
+    pub caption: String,
+    /// What is written in each panel.
+    pub labels: Labels,
+    /// Whether a bar says how long a round length is.
+    pub scale_bar: bool,
+    /// Whether keys say what colours and arrows mean.
+    pub legend: bool,
+    /// The diagnostic that is drawn over time below each panel.
+    pub strip: Option<Diagnostic>,
+    /// Opacity of sound elements, from 0.1 to 1.
+    pub opacity: f64,
+    /// How far elements are drawn apart, in parts of their distance from the body's middle; 0 leaves them together.
+    pub explode: f64,
+    /// The strains at the ends of the scale that colours springs, if it does.
+    pub spring_strain: Option<[f64; 2]>,
+    /// From where the light falls.
+    pub light: Light,
+    /// Whether there are shadows.
+    pub shadow: bool,
+    /// How the floor is drawn in space.
+    pub floor: FloorStyle,
+    /// Whether edges in front, and edges behind the body, are drawn.
+    pub edges: [bool; 2],
+}
+
+impl Default for View {
+    /// What a scene shows that says nothing about it, from a metre before the origin.
+    fn default() -> Self {
+        Self {
+            size: [1280, 720],
+            theme: Theme::default(),
+            look: Look::of(Theme::default()),
+            camera: Camera {
+                azimuth: 0.0,
+                elevation: 0.0,
+                field_of_view: 20.0 / 180.0 * std::f64::consts::PI,
+                target: DVec3::ZERO,
+                distance: 1.0,
+                rise: 0.0,
+                follow: Follow::Nothing,
+            },
+            clock: String::new(),
+            columns: 1,
+            visible: Visible { surfaces: true, ..Visible::default() },
+            colour: None,
+            arrow_scale: 1.0,
+            side: 1.0,
+            title: String::new(),
+            caption: String::new(),
+            labels: Labels { letter: false, name: true, model: true, clock: true, count: true, number: true },
+            scale_bar: true,
+            legend: true,
+            strip: None,
+            opacity: 1.0,
+            explode: 0.0,
+            spring_strain: None,
+            light: Light::default(),
+            shadow: true,
+            floor: FloorStyle::default(),
+            edges: [true; 2],
+        }
+    }
+}
+
+/// What is written in each panel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Labels {
+    /// A letter before the name.
+    pub letter: bool,
+    /// The run's name.
+    pub name: bool,
+    /// The model and its parameters.
+    pub model: bool,
+    /// The time, in one panel for all.
+    pub clock: bool,
+    /// How many elements have turned over.
+    pub count: bool,
+    /// One number that measures the deformation.
+    pub number: bool,
+}
+
+/// Where the light comes from, seen from the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Turn around the vertical from straight behind the camera to its left (rad).
+    pub azimuth: f64,
+    /// Height above the horizon (rad).
+    pub elevation: f64,
+}
+
+impl Default for Light {
+    /// 62° from the left, 50° up.
+    fn default() -> Self {
+        Self { azimuth: 62.0 / 180.0 * std::f64::consts::PI, elevation: 50.0 / 180.0 * std::f64::consts::PI }
+    }
+}
+
+/// How the floor is drawn in space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FloorStyle {
+    /// With a grid of one cell for each edge of an element.
+    #[default]
+    Grid,
+    /// Without a grid.
+    Plain,
+    /// Not at all, but for the shadows on it.
+    None,
 }
 
 /// What is drawn of a body.

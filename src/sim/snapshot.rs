@@ -1,6 +1,8 @@
 //! What one run looks like at one moment: all that drawing, diagnostics and files ever see of a simulation.
 
 use glam::{DMat3, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Where and when a run blew up. That is a result, not an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +89,78 @@ pub struct Diagnostics {
     pub volume_ratio: f64,
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
     pub shape_error: f64,
+}
+
+/// A number that describes a state, to be shown over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Diagnostic {
+    /// How many elements have turned over.
+    TurnedOver,
+    /// Total signed volume over the rest value; in the plane, area.
+    VolumeRatio,
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    ShapeError,
+    /// Kinetic energy (J).
+    Kinetic,
+    /// Elastic energy (J).
+    Elastic,
+    /// Potential energy in the field of gravity (J), zero at the origin.
+    Gravitational,
+    /// The sum of all energies (J).
+    Energy,
+    /// Length of the momentum (kg m/s).
+    Momentum,
+    /// Length of the angular momentum about the origin (kg m²/s).
+    AngularMomentum,
+    /// The largest angular acceleration that approximation errors of the rotations amount to (rad/s²).
+    Residual,
+}
+
+impl Diagnostic {
+    /// Its value; NaN where a model or a body has none.
+    pub fn of(self, all: &Diagnostics) -> f64 {
+        match self {
+            Self::TurnedOver => all.turned_over as f64,
+            Self::VolumeRatio => all.volume_ratio,
+            Self::ShapeError => all.shape_error,
+            Self::Kinetic => all.kinetic,
+            Self::Elastic => all.elastic,
+            Self::Gravitational => all.gravitational,
+            Self::Energy => all.kinetic + all.elastic + all.gravitational,
+            Self::Momentum => all.momentum.length(),
+            Self::AngularMomentum => all.angular_momentum.length(),
+            Self::Residual => all.residual,
+        }
+    }
+
+    /// What a reader calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TurnedOver => "turned over",
+            Self::VolumeRatio => "volume ratio",
+            Self::ShapeError => "shape error",
+            Self::Kinetic => "kinetic energy",
+            Self::Elastic => "elastic energy",
+            Self::Gravitational => "energy in gravity",
+            Self::Energy => "total energy",
+            Self::Momentum => "momentum",
+            Self::AngularMomentum => "angular momentum",
+            Self::Residual => "residual α",
+        }
+    }
+
+    /// Its unit; empty for a pure number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::TurnedOver | Self::VolumeRatio => "",
+            Self::ShapeError => "m",
+            Self::Kinetic | Self::Elastic | Self::Gravitational | Self::Energy => "J",
+            Self::Momentum => "kg m/s",
+            Self::AngularMomentum => "kg m²/s",
+            Self::Residual => "rad/s²",
+        }
+    }
 }
 
 /// One frame of a scene: every run asked for, at the same moment.

@@ -76,7 +76,7 @@ fn unknown_keys() {
     );
     case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `view`")]);
     case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
-    case(PLANE, "mass = 1", "azimuth = 1", &[(9, 1, "`azimuth` belongs to `view.camera`")]);
+    case(PLANE, "mass = 1", "follow = true", &[(9, 1, "`follow` belongs to `view.camera`")]);
     case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", &[(5, 44, "`rotation` belongs to `body`")]);
     case(PLANE, "mass = 1", "\"\" = 1", &[(9, 1, "unknown key `` in `body`")]);
     case(PLANE, "mass = 1", "\"a\\u0007\" = 1", &[(9, 1, "unknown key `a\u{fffd}`")]);
@@ -655,6 +655,22 @@ fn mistakes_of_what_is_shown() {
     view("colour = { range = [0, 1] }", &[(20, 10, "`view.colour` has no `by`")]);
     view("colour = { by = 'speed', range = [3, 1] }", &[(20, 34, "runs from 3 to 1; expected a rising range")]);
     view("colour = { by = 'speed', range = [0, inf] }", &[(20, 38, "is inf; expected a finite number")]);
+    view("strip = 'turned over'", &[(20, 9, "did you mean \"turned_over\"?")]);
+    view("opacity = 0", &[(20, 11, "expected a number from 0.1 to 1")]);
+    view("explode = -1", &[(20, 11, "expected a number from 0 to 3")]);
+    view(
+        "explode = 1\nshow = ['surfaces', 'springs']",
+        &[(20, 1, "`view.explode` draws elements apart, where springs have no place")],
+    );
+    view("spring_colour = {}", &[(20, 1, "`view.spring_colour` is given, but springs are not shown")]);
+    view(
+        "show = ['springs']\nspring_colour = { range = [1, 1] }",
+        &[(21, 27, "`view.spring_colour.range` runs from 1 to 1; expected a rising range")],
+    );
+    view("labels = ['title']", &[(20, 11, "expected \"name\", \"model\", \"clock\", \"count\" or \"number\"")]);
+    view("light = { elevation = 0 }", &[(20, 23, "expected a number from 0.1 to 1.57")]);
+    view("floor = 'tiles'", &[(20, 9, "expected \"grid\", \"plain\" or \"none\"")]);
+    view("edges = 'none'", &[(20, 9, "expected \"all\", \"visible\" or \"outline\"")]);
     view("show = []", &[(20, 8, "`view.show` is empty; expected at least 1")]);
     view("show = ['spring']", &[(20, 9, "did you mean \"springs\"?")]);
     view("arrow_scale = 0", &[(20, 15, "expected a number greater than 0")]);

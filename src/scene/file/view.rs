@@ -2,8 +2,9 @@
 
 use super::Coordinates;
 use super::look::{BackgroundFile, ColoursFile, FontFile};
-use crate::scene::view::{ColourMap, Follow, Theme};
+use crate::scene::view::{ColourMap, FloorStyle, Follow, Light, Theme};
 use crate::sim::field::Field;
+use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +55,41 @@ pub(in crate::scene) struct ViewFile {
     /// its node; at 1 it ends at the node.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) arrow_scale: f64,
+    /// A title above all panels. Default: none.
+    #[schemars(length(max = 200))]
+    pub(in crate::scene) title: String,
+    /// A caption below all panels, set in lines as wide as the picture; `\n` begins a new line. Default: none.
+    #[schemars(length(max = 2000))]
+    pub(in crate::scene) caption: String,
+    /// Whether each panel bears a letter before its name, a, b, c and so on, to speak of it in a text.
+    pub(in crate::scene) letters: bool,
+    /// What is written in each panel.
+    pub(in crate::scene) labels: Vec<LabelFile>,
+    /// Whether a bar says how long a round length is (m): in space, at the distance of the point looked at.
+    pub(in crate::scene) scale_bar: bool,
+    /// Whether keys say what colours and arrows mean, where there are any.
+    pub(in crate::scene) legend: bool,
+    /// A diagnostic drawn over time below each panel, with the present moment marked. The scene is then simulated once
+    /// before the first frame is drawn, so that every frame shows the whole course. Default: none.
+    pub(in crate::scene) strip: Option<Diagnostic>,
+    /// Opacity of sound elements: below 1, what lies behind and within the body is seen through them.
+    #[schemars(range(min = 0.1, max = 1.0))]
+    pub(in crate::scene) opacity: f64,
+    /// How far elements are drawn apart, in parts of their distance from the body's middle, to show what is inside. Not
+    /// together with springs and displacements.
+    #[schemars(range(min = 0.0, max = 3.0))]
+    pub(in crate::scene) explode: f64,
+    /// Colours springs by their strain, the change of their length over their length at rest, instead of drawing them
+    /// all alike. Default: no. Needs `"springs"` in `show`.
+    pub(in crate::scene) spring_colour: Option<SpringColourFile>,
+    /// From where the light falls.
+    pub(in crate::scene) light: LightFile,
+    /// Whether bodies and obstacles throw shadows on the floor.
+    pub(in crate::scene) shadow: bool,
+    /// How the floor is drawn in space.
+    pub(in crate::scene) floor: FloorStyle,
+    /// Which lines are drawn on surfaces.
+    pub(in crate::scene) edges: EdgesFile,
     /// From where the scene is seen.
     pub(in crate::scene) camera: CameraFile,
 }
@@ -74,9 +110,77 @@ impl Default for ViewFile {
             show: None,
             colour: None,
             arrow_scale: 1.0,
+            title: String::new(),
+            caption: String::new(),
+            letters: false,
+            labels: LabelFile::ALL.to_vec(),
+            scale_bar: true,
+            legend: true,
+            strip: None,
+            opacity: 1.0,
+            explode: 0.0,
+            spring_colour: None,
+            light: LightFile::default(),
+            shadow: true,
+            floor: FloorStyle::default(),
+            edges: EdgesFile::default(),
             camera: CameraFile::default(),
         }
     }
+}
+
+/// Something that is written in a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum LabelFile {
+    /// The run's name.
+    Name,
+    /// The model and its parameters.
+    Model,
+    /// The time, in one panel for all.
+    Clock,
+    /// How many elements have turned over.
+    Count,
+    /// The shape error; in the plane, the smallest area ratio. That a run diverged is written in any case.
+    Number,
+}
+
+impl LabelFile {
+    const ALL: [Self; 5] = [Self::Name, Self::Model, Self::Clock, Self::Count, Self::Number];
+}
+
+/// Colours of springs.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(in crate::scene) struct SpringColourFile {
+    /// The strains at the ends of the scale. Default: −0.5 and 0.5.
+    pub(in crate::scene) range: Option<[f64; 2]>,
+}
+
+/// Where the light comes from, seen from the camera.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(in crate::scene) struct LightFile {
+    /// Turn to the left around the vertical, from straight behind the viewer (rad); negative to the right. Default: 62°.
+    #[schemars(range(min = -3.1416, max = 3.1416))]
+    pub(in crate::scene) azimuth: f64,
+    /// Height above the horizon (rad). Default: 50°. It falls more steeply on bodies that fly high, or their shadows would
+    /// leave the picture.
+    #[schemars(range(min = 0.1, max = 1.57))]
+    pub(in crate::scene) elevation: f64,
+}
+
+/// Which lines are drawn on surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum EdgesFile {
+    /// The outline and all edges, those behind the body faintly.
+    #[default]
+    All,
+    /// The outline and the edges in front.
+    Visible,
+    /// The outline alone; edges of turned-over elements are drawn in any case.
+    Outline,
 }
 
 /// How panels stand.
@@ -104,6 +208,13 @@ pub(in crate::scene) enum ShowFile {
     /// An arrow to each node from where the rigid placement of the rest shape nearest to the body has it. Only nodes on
     /// the surface get one, in space those that face the viewer, and at most 500.
     Displacements,
+}
+
+impl Default for LightFile {
+    fn default() -> Self {
+        let Light { azimuth, elevation } = Light::default();
+        Self { azimuth, elevation }
+    }
 }
 
 /// A scalar field and its scale of colours.

@@ -3,9 +3,9 @@
 use super::body::ResolvedBody;
 use super::{look, reach, vector};
 use crate::scene::Run;
-use crate::scene::file::{ArrangementFile, ColourFile, ShowFile, ViewFile};
+use crate::scene::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, View, Visible};
+use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, View, Visible};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
@@ -96,6 +96,24 @@ pub(super) fn resolve(
         None => Visible::usual(dimension, body.body.len()),
     };
     let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
+    let at = |key| [Way::Key("view"), Way::Key(key)];
+    if typed.explode > 0.0 && (visible.springs || visible.displacements) {
+        let what = if visible.springs { "springs" } else { "displacements" };
+        let message = format!("`view.explode` draws elements apart, where {what} have no place");
+        report.at_key(&at("explode"), message, format!("take `explode` or `\"{what}\"` out"));
+    }
+    let spring_strain = match &typed.spring_colour {
+        Some(_) if !visible.springs => {
+            let message = "`view.spring_colour` is given, but springs are not shown".to_owned();
+            report.at_key(&at("spring_colour"), message, "add `\"springs\"` to `show`".to_owned());
+            None
+        }
+        Some(springs) => {
+            let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
+            Some(rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?)
+        }
+        None => None,
+    };
     Some(View {
         size: typed.size,
         theme,
@@ -107,6 +125,23 @@ pub(super) fn resolve(
         colour,
         arrow_scale: typed.arrow_scale,
         side: body.side,
+        title: typed.title.trim().to_owned(),
+        caption: typed.caption.trim().to_owned(),
+        labels: labels(typed),
+        scale_bar: typed.scale_bar,
+        legend: typed.legend,
+        strip: typed.strip,
+        opacity: typed.opacity,
+        explode: typed.explode,
+        spring_strain,
+        light: Light { azimuth: typed.light.azimuth, elevation: typed.light.elevation },
+        shadow: typed.shadow,
+        floor: typed.floor,
+        edges: match typed.edges {
+            EdgesFile::All => [true, true],
+            EdgesFile::Visible => [true, false],
+            EdgesFile::Outline => [false, false],
+        },
     })
 }
 
@@ -120,30 +155,49 @@ fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
     (1..=runs.max(1)).fold(1, |best, columns| if side(columns) > side(best) { columns } else { best })
 }
 
+/// The strains at the ends of the scale that colours springs.
+const SPRING_STRAIN: [f64; 2] = [-0.5, 0.5];
+
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
 
 /// The colours of a field, over a range that follows from the scene if none is typed.
 fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
+    let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
     let range = match typed.range {
-        Some([low, high]) if low >= high => {
-            let message = format!("`view.colour.range` runs from {low} to {high}; expected a rising range");
-            report.at(&[Way::Key("view"), Way::Key("colour"), Way::Key("range")], message, None);
-            return None;
-        }
-        Some([low, high]) if high - low < NARROWEST * low.abs().max(high.abs()) => {
-            let message = format!("`view.colour.range` from {low} to {high} is too narrow for its numbers");
-            report.at(
-                &[Way::Key("view"), Way::Key("colour"), Way::Key("range")],
-                message,
-                "move its ends apart".to_owned(),
-            );
-            return None;
-        }
-        Some(range) => range,
+        Some(range) => rising(range, &way, report)?,
         None => [0.0, scene.largest(typed.by)],
     };
     Some(ColourScale { field: typed.by, range, map: typed.map })
+}
+
+/// The ends of a scale, if they rise and are far enough apart to be told from each other.
+fn rising([low, high]: [f64; 2], way: &[Way<'_>; 3], report: &mut Report<'_>) -> Option<[f64; 2]> {
+    let keys = way.iter().filter_map(|step| if let Way::Key(key) = step { Some(*key) } else { None });
+    let name = keys.collect::<Vec<_>>().join(".");
+    if low >= high {
+        report.at(way, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);
+        return None;
+    }
+    if high - low < NARROWEST * low.abs().max(high.abs()) {
+        let message = format!("`{name}` from {low} to {high} is too narrow for its numbers");
+        report.at(way, message, "move its ends apart".to_owned());
+        return None;
+    }
+    Some([low, high])
+}
+
+/// What is written in panels.
+fn labels(typed: &ViewFile) -> Labels {
+    let has = |label| typed.labels.contains(&label);
+    Labels {
+        letter: typed.letters,
+        name: has(LabelFile::Name),
+        model: has(LabelFile::Model),
+        clock: has(LabelFile::Clock),
+        count: has(LabelFile::Count),
+        number: has(LabelFile::Number),
+    }
 }
 
 /// What a view follows from.
