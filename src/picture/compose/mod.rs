@@ -16,6 +16,7 @@ use super::plane::LEVEL;
 use super::ramp;
 use super::skin::Skin;
 use super::tally::Tally;
+use super::text::Fonts;
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
 use crate::scene::{Camera, Follow, Scene, StrainScale};
@@ -36,6 +37,7 @@ const SCALE_BAR: f64 = 120.0;
 pub struct Composer<'a> {
     scene: &'a Scene,
     palette: Palette,
+    fonts: Fonts,
     /// The elements in rows.
     tally: Tally,
     /// The second line of each run.
@@ -94,6 +96,7 @@ impl<'a> Composer<'a> {
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette,
+            fonts: Fonts::new(&scene.view.look.font),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
@@ -115,7 +118,8 @@ impl<'a> Composer<'a> {
         let caption = self.caption(frame.runs.len());
         let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
         let (scale, framing) = (layout.scale, self.framing(frame));
-        let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
+        let mut writer =
+            Writer { palette: &self.palette, fonts: &self.fonts, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, &layout, &framing, &mut writer);
@@ -136,7 +140,8 @@ impl<'a> Composer<'a> {
         for word in &mut words {
             word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
         }
-        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+        let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
+        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, words }
     }
 
     /// The lines of the caption.
@@ -146,7 +151,7 @@ impl<'a> Composer<'a> {
         if !Scale::legible(around.caption()) {
             return Vec::new();
         }
-        wrapped(&view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
+        wrapped(&self.fonts, &view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
     }
 
     /// What the camera of all panels looks at.

@@ -103,6 +103,7 @@ pub(super) fn resolve(
         },
         None => Visible::usual(dimension, body.body.len()),
     };
+    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -122,7 +123,6 @@ pub(super) fn resolve(
         }
         None => None,
     };
-    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     Some(View {
         size: typed.size,
         theme,
