@@ -5,7 +5,7 @@ use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
 use super::text::{TextRun, Weight, lay_out, shortened, width};
-use super::{Mark, MarkShape, number};
+use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Snapshot, Status};
 
@@ -19,6 +19,7 @@ pub(super) struct Writer<'a> {
     pub(super) palette: &'a Palette,
     pub(super) scale: Scale,
     pub(super) marks: Vec<Mark>,
+    pub(super) curves: Vec<Curve>,
     pub(super) words: Vec<TextRun>,
 }
 

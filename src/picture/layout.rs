@@ -28,6 +28,18 @@ pub(super) fn panels(size: [u32; 2], count: usize, columns: usize) -> Vec<Rectan
         .collect()
 }
 
+/// A panel without the room of its strip, and that room inside its margins.
+pub(super) fn cut(panel: Rectangle, scale: Scale, with_strip: bool) -> (Rectangle, Rectangle) {
+    let [left, top, width, height] = panel;
+    if !with_strip {
+        return (panel, [left, top, 0, 0]);
+    }
+    let strip = ((110.0 * scale.unit).round() as u32).min(height - 1);
+    let margin = (scale.margin().round() as u32).min(width / 2);
+    let above = ((16.0 * scale.unit).round() as u32).min(height - strip);
+    ([left, top, width, height - strip], [left + margin, top + height - strip - above, width - 2 * margin, strip])
+}
+
 /// Sizes of type and lines of one picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {

@@ -15,9 +15,11 @@ use super::palette::Palette;
 use super::plane::LEVEL;
 use super::ramp;
 use super::skin::Skin;
+use super::strip::Strips;
 use super::tally::Tally;
 use super::wire::Edges;
 use super::{Colour, Framing, Picture};
+use crate::history::History;
 use crate::scene::{Camera, Follow, Scene};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -59,15 +61,27 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
+    /// The curves below the panels, once the scene's course is known.
+    strips: Option<Strips>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
+///
+/// If the scene asks for strips, the runs of the frame are simulated from start to end for them.
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
-    Composer::new(scene).compose(frame)
+    let mut composer = Composer::new(scene);
+    if scene.view.strip.is_some() {
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        composer.set_history(&History::new(scene, &runs));
+    }
+    composer.compose(frame)
 }
 
 impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene.
+    ///
+    /// A scene with strips ([`crate::scene::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
+    /// places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
@@ -95,7 +109,14 @@ impl<'a> Composer<'a> {
             start_box: bounds(&scene.initial.position).into(),
             start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
+            strips: None,
         }
+    }
+
+    /// Takes note of the scene's course for the strips below the panels: that of all runs to be shown, whichever frames
+    /// of them are. Scenes without strips have no use for it.
+    pub fn set_history(&mut self, history: &History) {
+        self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
     }
 
     /// Composes one frame.
@@ -108,22 +129,30 @@ impl<'a> Composer<'a> {
         let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
         let framing = self.framing(frame);
         let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
-        let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
+        let (marks, curves, words) = Default::default();
+        let mut writer = Writer { palette: &self.palette, scale, marks, curves, words };
         writer.hairlines(&panels);
+        let (panels, rooms): (Vec<_>, Vec<_>) =
+            panels.into_iter().map(|panel| layout::cut(panel, scale, view.strip.is_some())).unzip();
+        if let Some(strips) = &self.strips {
+            for (run, room) in frame.runs.iter().zip(rooms) {
+                strips.draw(&mut writer, room, run);
+            }
+        }
         self.write(frame, &panels, &mut writer);
         if let Some((legend, &viewport)) = legend.zip(panels.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, viewport, &framing, scale));
             let colours = view.colour.as_ref().map(|colour| (colour, &self.ramp[..], legend::beyond(colour, frame)));
             legend.draw(&mut writer, size, arrow, colours);
         }
-        let Writer { mut marks, words, .. } = writer;
+        let Writer { mut marks, curves, words, .. } = writer;
         let mut under = Vec::new();
         let panels = panels
             .iter()
             .zip(&frame.runs)
             .map(|(&viewport, run)| Draft::new(self, viewport, run, &framing, scale).panel(&mut under, &mut marks))
             .collect();
-        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, curves, words }
     }
 
     /// What the camera of all panels looks at.
