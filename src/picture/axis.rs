@@ -58,6 +58,8 @@ impl Axis {
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
         let plain = division.decimals <= 4 && largest / factor < 99_999.5;
         let text = |value: f64| match plain {
+            // Numbers beside each other need no decimals in common.
+            _ if value == 0.0 && kind == Kind::Time => "0".to_owned(),
             true => with_minus(format!("{value:.*}", division.decimals)),
             false if value == 0.0 => "0".to_owned(),
             false => with_minus(format!("{:e}", rounded(value, digits))),

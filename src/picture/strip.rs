@@ -20,7 +20,7 @@ const NUMBERS: f64 = 14.0;
 /// From the top of the strip to the baseline of its name and to its chart, and from the chart to the strip's bottom (px
 /// in the reference picture).
 const NAME_BASELINE: f64 = 13.0;
-const ABOVE: f64 = 24.0;
+const ABOVE: f64 = 26.0;
 const BELOW: f64 = 20.0;
 /// The smallest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
@@ -29,7 +29,7 @@ const LEAST_HEIGHT: f64 = 14.0;
 /// above and beside each other (px in the reference picture).
 const GAP: f64 = 8.0;
 const TICK: f64 = 4.0;
-const ROWS_APART: f64 = 22.0;
+const ROWS_APART: f64 = 21.0;
 const COLUMNS_APART: f64 = 30.0;
 /// Ticks of values and of time, at most.
 const MOST_TICKS: usize = 4;
@@ -127,9 +127,15 @@ impl Strips {
         let kind = if self.is_count() { Kind::Count } else { Kind::Value };
         let rows = ((bottom - top) / (ROWS_APART * unit)) as usize + 1;
         let values = self.range.map(|range| Axis::new(kind, range, self.diagnostic.unit(), rows.min(MOST_TICKS)));
+        let own = self.lines.iter().find(|line| line.run == shown.run && !line.points.is_empty());
         let unit_text = values.as_ref().map_or("", |axis| &axis.unit);
-        self.name(writer, [left, top - (ABOVE - NAME_BASELINE) * unit, width], unit_text, unit);
-        let own = self.lines.iter().find(|line| line.run == shown.run);
+        let note = match (unit_text, own) {
+            ("", Some(_)) => String::new(),
+            ("", None) => ": none".to_owned(),
+            (unit_text, Some(_)) => format!(" ({unit_text})"),
+            (unit_text, None) => format!(" ({unit_text}): none"),
+        };
+        self.name(writer, [left, top - (ABOVE - NAME_BASELINE) * unit, width], &note, unit);
         let numbers = values.iter().flat_map(|axis| &axis.texts).map(|text| wide(text, unit)).fold(0.0, f64::max);
         let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
         let chart = Chart { left: (left + indent).round(), ..chart };
@@ -153,11 +159,7 @@ impl Strips {
         }
         let now = chart.x(&times, shown.snapshot.time);
         writer.curves.push(chart.moment(now, palette.text));
-        let Some((line, values)) = own.zip(values.as_ref()).filter(|(line, _)| !line.points.is_empty()) else {
-            let baseline = (chart.top + chart.bottom) / 2.0 + 5.0 * unit;
-            chart.write(writer, "none", palette.second_text, chart.left + GAP * unit, baseline);
-            return;
-        };
+        let Some((line, values)) = own.zip(values.as_ref()) else { return };
         let colour = palette.arrows[usize::from(line.has_springs)];
         self.line(writer, chart, [&times, values], line, Look::new(OWN, colour, line.has_springs, 1.0));
         let value = self.diagnostic.of(&shown.snapshot.diagnostics);
@@ -173,19 +175,15 @@ impl Strips {
         self.diagnostic == Diagnostic::TurnedOver
     }
 
-    /// The name with the unit behind it.
-    fn name(&self, writer: &mut Writer<'_>, [left, baseline, room]: [f64; 3], unit_text: &str, unit: f64) {
+    /// The name with a note behind it.
+    fn name(&self, writer: &mut Writer<'_>, [left, baseline, room]: [f64; 3], note: &str, unit: f64) {
         let size = NAME * unit;
         let name = shortened(self.diagnostic.name(), Weight::SemiBold, size, room);
-        let after = left + width(&name, Weight::SemiBold, size) + 5.0 * unit;
-        if !name.is_empty() {
-            writer.words.push(lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
-        }
-        let unit_text = if unit_text.is_empty() { String::new() } else { format!("({unit_text})") };
-        let unit_text = shortened(&unit_text, Weight::Regular, size, left + room - after);
-        if !unit_text.is_empty() {
-            let colour = writer.palette.second_text;
-            writer.words.push(lay_out(&unit_text, Weight::Regular, size, colour, after, baseline));
+        let after = left + width(&name, Weight::SemiBold, size);
+        writer.words.push(lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
+        if width(note, Weight::Regular, size) <= left + room - after {
+            // What is shortened would lose its space, so it is all or nothing.
+            writer.words.push(lay_out(note, Weight::Regular, size, writer.palette.second_text, after, baseline));
         }
     }
 
@@ -252,6 +250,16 @@ impl Chart {
         self.unit
     }
 
+    /// Thickness of hairlines, in whole pixels.
+    fn hairline(self) -> f64 {
+        self.unit.round().max(1.0)
+    }
+
+    /// The colour of a hairline: one that would be thinner than a pixel is fainter instead.
+    fn thinned(self, colour: Colour, ground: Colour) -> Colour {
+        mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
+    }
+
     fn outside(self) -> f64 {
         OUTSIDE * self.unit
     }
@@ -270,10 +278,10 @@ impl Chart {
     /// Hairlines at round values with their numbers, a stronger one at zero.
     fn rows(self, writer: &mut Writer<'_>, values: &Axis) {
         let palette = writer.palette;
-        let thickness = self.unit.round().max(1.0);
+        let thickness = self.hairline();
         for (&tick, text) in values.ticks.iter().zip(&values.texts) {
             let y = self.y(values, tick);
-            let colour = if tick == 0.0 { palette.axis } else { palette.hairline };
+            let colour = self.thinned(if tick == 0.0 { palette.axis } else { palette.hairline }, palette.background);
             let line = [self.left, (y - thickness / 2.0).round(), self.right - self.left, thickness];
             writer.marks.push(filled(line, colour));
             let left = self.left - GAP * self.unit - wide(text, self.unit);
@@ -284,16 +292,17 @@ impl Chart {
     /// Ticks at round times with their numbers, the last one with the unit; a line along them if there is no other.
     fn columns(self, writer: &mut Writer<'_>, times: &Axis, with_line: bool) {
         let palette = writer.palette;
-        let thickness = self.unit.round().max(1.0);
+        let thickness = self.hairline();
+        let [hairline, axis] = [palette.hairline, palette.axis].map(|colour| self.thinned(colour, palette.background));
         if with_line {
             let line = [self.left, (self.bottom - thickness / 2.0).round(), self.right - self.left, thickness];
-            writer.marks.push(filled(line, palette.hairline));
+            writer.marks.push(filled(line, hairline));
         }
         for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();
             let length = (TICK * self.unit).round().max(2.0);
-            writer.marks.push(filled([(x - thickness / 2.0).round(), top, thickness, length], palette.axis));
+            writer.marks.push(filled([(x - thickness / 2.0).round(), top, thickness, length], axis));
             let left = x - wide(text, self.unit) / 2.0;
             let is_last = at + 1 == times.ticks.len();
             let text = if is_last { format!("{text} {}", times.unit) } else { text.clone() };
@@ -304,9 +313,7 @@ impl Chart {
 
     /// What a count has covered, below its steps.
     fn area(self, writer: &mut Writer<'_>, times: &Axis, values: &Axis, line: &Line) {
-        let [colour, ground] = [writer.palette.alarm, writer.palette.background];
-        let mixed = |at: usize| f64::from(ground[at]) + AREA * (f64::from(colour[at]) - f64::from(ground[at]));
-        let colour = std::array::from_fn(|at| mixed(at).round() as u8);
+        let colour = mixed(writer.palette.background, writer.palette.alarm, AREA);
         let until = line.points.last().map(|&[time, _]| time);
         let ends = line.points.iter().skip(1).map(|&[time, _]| time).chain(until);
         let mut pieces: Vec<[f64; 3]> = Vec::new();
@@ -345,6 +352,14 @@ impl Chart {
 /// Width of a number (px).
 fn wide(text: &str, unit: f64) -> f64 {
     width(text, Weight::Regular, NUMBERS * unit)
+}
+
+/// A colour on the way from one to another.
+fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
+    std::array::from_fn(|at| {
+        let [from, to] = [from[at], to[at]].map(f64::from);
+        (from + share * (to - from)).round() as u8
+    })
 }
 
 fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
