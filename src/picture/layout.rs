@@ -1,5 +1,7 @@
 //! Where panels and words stand. Nothing here depends on the frame, so that nothing jumps.
 
+use crate::scene::Look;
+
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
 /// A panel narrower than this (px, at the reference height) gets smaller type.
@@ -33,24 +35,46 @@ pub(super) fn panels(size: [u32; 2], count: usize, columns: usize) -> Vec<Rectan
 pub(super) struct Scale {
     /// Pixels for one pixel of the reference picture.
     pub(super) unit: f64,
+    /// How many times larger than usual type is, with its rows.
+    type_factor: f64,
+    /// How many times thicker than usual lines are.
+    line_factor: f64,
 }
 
 impl Scale {
+    /// That of the reference picture.
+    pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0 };
+
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         let [width, height] = [panel[2], panel[3]].map(f64::from);
         let unit =
             (f64::from(size[1]) / REFERENCE_HEIGHT).min(width / REFERENCE_WIDTH).min(height / REFERENCE_PANEL_HEIGHT);
-        Self { unit }
+        Self { unit, ..Self::REFERENCE }
+    }
+
+    /// The same with type and lines as a scene asks for.
+    pub(super) fn with(self, look: &Look) -> Self {
+        Self { type_factor: look.text_scale, line_factor: look.line_scale, ..self }
+    }
+
+    /// Pixels for one pixel of type in the reference picture, and of what stands in its rows.
+    pub(super) fn type_unit(self) -> f64 {
+        self.of_type(self.unit)
+    }
+
+    /// A length as much longer as type is larger.
+    pub(super) fn of_type(self, length: f64) -> f64 {
+        length * self.type_factor
     }
 
     /// Names, clock and count (px).
     pub(super) fn title(self) -> f64 {
-        26.0 * self.unit
+        26.0 * self.type_unit()
     }
 
     /// Everything else (px).
     pub(super) fn caption(self) -> f64 {
-        16.0 * self.unit
+        16.0 * self.type_unit()
     }
 
     /// Free space around and inside each panel (px).
@@ -71,7 +95,7 @@ impl Scale {
     /// How thick lines are, in parts of their thickness in the reference picture. Thinner ones than at a third of
     /// that size would only be fainter.
     pub(super) fn line(self) -> f64 {
-        self.unit.max(0.35)
+        self.unit.max(0.35) * self.line_factor
     }
 }
 
@@ -86,10 +110,12 @@ pub(super) struct Baselines {
 impl Baselines {
     pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
         let height = f64::from(panel[3]);
+        // Inside the margin, rows are as high as their type.
+        let row = |inside: f64| (40.0 + inside * scale.type_factor) * scale.unit;
         Self {
-            title: 60.0 * scale.unit,
-            second: 86.0 * scale.unit,
-            count: height - 58.0 * scale.unit,
+            title: row(20.0),
+            second: row(46.0),
+            count: height - (38.0 + 20.0 * scale.type_factor) * scale.unit,
             caption: height - 38.0 * scale.unit,
         }
     }
@@ -109,6 +135,7 @@ pub(super) fn clear_of_words(panel: Rectangle, scale: Scale) -> Rectangle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Theme;
 
     #[test]
     fn panels_cover_the_picture_without_gaps() {
@@ -132,7 +159,7 @@ mod tests {
 
     #[test]
     fn the_ground_between_the_words_lies_inside_the_panel() {
-        assert_eq!(clear_of_words([640, 0, 640, 720], Scale { unit: 1.0 }), [680, 102, 560, 518]);
+        assert_eq!(clear_of_words([640, 0, 640, 720], Scale::REFERENCE), [680, 102, 560, 518]);
         for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
             let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel));
             assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
@@ -147,5 +174,19 @@ mod tests {
         assert_eq!(unit([1920, 1080], 2, 2), 1.5);
         assert!(unit([1280, 720], 6, 3) < 0.8);
         assert!(unit([64, 64], 2, 2) < 0.1);
+    }
+
+    #[test]
+    fn type_and_lines_grow_by_themselves() {
+        let look = Look { text_scale: 2.0, line_scale: 3.0, ..Look::of(Theme::Light) };
+        let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&look));
+        assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));
+        assert_eq!((large.line(), large.margin()), (3.0 * usual.line(), usual.margin()));
+        // Each row has room for its type.
+        let panel = [0, 0, 640, 720];
+        let rows = Baselines::new(large, panel);
+        assert!(rows.second - rows.title > large.caption() && rows.caption - rows.count >= large.caption());
+        let [_, top, _, height] = clear_of_words(panel, large);
+        assert!(f64::from(top) > rows.second && f64::from(top + height) < rows.count - large.title());
     }
 }

@@ -69,8 +69,20 @@ pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
 }
 
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene.
+    /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
+    /// [`Self::on_ground`].
     pub fn new(scene: &'a Scene) -> Self {
+        Self::with(scene, scene.view.look.palette)
+    }
+
+    /// The same on a ground of one colour, into which the floor goes over without a border and what is far fades; all
+    /// else keeps its colours. Pictures on white and on black are what
+    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs.
+    pub fn on_ground(scene: &'a Scene, ground: Colour) -> Self {
+        Self::with(scene, scene.view.look.palette.on_ground(ground))
+    }
+
+    fn with(scene: &'a Scene, palette: Palette) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
@@ -83,10 +95,10 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: scene.view.look.palette,
+            palette,
             fonts: Fonts::new(&scene.view.look.font),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
@@ -110,7 +122,7 @@ impl<'a> Composer<'a> {
         let above_legend = [size[0], size[1] - legend.map_or(0, |legend| legend.height)];
         let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
         let framing = self.framing(frame);
-        let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
+        let scale = panels.first().map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel)).with(&view.look);
         let mut writer =
             Writer { palette: &self.palette, fonts: &self.fonts, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&panels);
@@ -164,7 +176,7 @@ impl<'a> Composer<'a> {
             return None;
         }
         let panels = layout::panels(size, runs, view.columns);
-        Legend::new(size, Scale::new(size, *panels.first()?), parts)
+        Legend::new(size, Scale::new(size, *panels.first()?).with(&view.look), parts)
     }
 
     /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
