@@ -61,7 +61,7 @@ impl Shades {
 }
 
 /// Where a value stands between two others.
-fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
+pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
     if value.is_nan() {
         return NOWHERE;
     }

@@ -25,6 +25,13 @@ const POINTS: [[f64; 3]; 9] = [
     [0.3850, -0.0087, -0.1247],
 ];
 
+/// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong, of
+/// hues that are told apart by all eyes; the middle is grey, and nearer to the ground than they are.
+const DIVERGING: [[[f64; 3]; 3]; 2] = [
+    [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
+    [[0.7200, 0.0900, -0.1300], [0.4600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
+];
+
 /// Lightness of the two ends of the scale of greys: those of the usual one, for the same reasons.
 const GREYS: [f64; 2] = [0.9550, 0.3850];
 
@@ -41,6 +48,7 @@ pub(super) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
         ColourMap::Viridis => published(colorous::VIRIDIS),
         ColourMap::Cividis => published(colorous::CIVIDIS),
         ColourMap::Magma => published(colorous::MAGMA),
+        ColourMap::VioletGreen => (0..SHADES).map(|at| from_oklab(diverging(share(at), theme))).collect(),
         ColourMap::PurpleGreen => published(colorous::PURPLE_GREEN),
     }
 }
@@ -60,6 +68,13 @@ fn point(share: f64) -> Oklab {
         let [from, to] = [POINTS[cell][axis], POINTS[cell + 1][axis]];
         from + (to - from) * (at - cell as f64)
     }))
+}
+
+/// A place on the diverging scale.
+fn diverging(share: f64, theme: Theme) -> Oklab {
+    let [low, middle, high] = DIVERGING[usize::from(theme == Theme::Dark)];
+    let (end, strength) = if share < 0.5 { (low, 1.0 - 2.0 * share) } else { (high, 2.0 * share - 1.0) };
+    Oklab(std::array::from_fn(|axis| middle[axis] + (end[axis] - middle[axis]) * strength))
 }
 
 /// A place on the scale of greys.

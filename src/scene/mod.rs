@@ -35,7 +35,8 @@ pub use palette::Palette;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, Theme, View, Visible,
+    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
+    Visible,
 };
 
 use crate::sim::body::{Body, State};

@@ -47,8 +47,8 @@ pub struct View {
     pub opacity: f64,
     /// How far elements are drawn apart, in parts of their distance from the body's middle; 0 leaves them together.
     pub explode: f64,
-    /// The strains at the ends of the scale that colours springs, if it does.
-    pub spring_strain: Option<[f64; 2]>,
+    /// The colours of the strain of springs, if it is shown.
+    pub spring_strain: Option<StrainScale>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -193,6 +193,8 @@ pub enum ColourMap {
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.
     Greys,
+    /// From violet through grey to green, made for lines: values near the middle recede, yet are seen on any ground.
+    VioletGreen,
     /// From purple through white to green (ColorBrewer PRGn), in either theme: for values on both sides of a middle.
     PurpleGreen,
 }
@@ -245,6 +247,15 @@ impl fmt::Debug for FontFiles {
         let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
         f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
     }
+}
+
+/// The colours of the strain of springs, the change of their length over their length at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainScale {
+    /// The strains at the two ends of the scale.
+    pub range: [f64; 2],
+    /// Its colours.
+    pub map: ColourMap,
 }
 
 /// The colours of a picture.

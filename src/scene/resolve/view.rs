@@ -1,15 +1,17 @@
 //! How the scene is looked at.
 
 use super::body::ResolvedBody;
+use super::camera::{eye, is_inside};
 use super::{look, reach, vector};
 use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, View, Visible};
+use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, StrainScale, View, Visible};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
 use crate::sim::grip::Grip;
+use crate::sim::words::rounded;
 use crate::sim::world::cycle;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -74,6 +76,12 @@ pub(super) fn resolve(
     if typed.camera.target.is_none() && typed.camera.distance.is_none() {
         show_reach(&mut chosen, start, standing, scene);
     }
+    if dimension == Dimension::Space && is_inside(eye(&chosen), &body.body, start) {
+        let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
+        let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
+        let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
+        report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
+    }
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
         (None, Some(ArrangementFile::Row)) => runs,
@@ -110,7 +118,8 @@ pub(super) fn resolve(
         }
         Some(springs) => {
             let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
-            Some(rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?)
+            let range = rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?;
+            Some(StrainScale { range, map: springs.map })
         }
         None => None,
     };
@@ -155,7 +164,7 @@ fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
 }
 
 /// The strains at the ends of the scale that colours springs.
-const SPRING_STRAIN: [f64; 2] = [-0.5, 0.5];
+const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
