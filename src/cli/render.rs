@@ -5,6 +5,7 @@ use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
 use crate::gpu::{AdapterChoice, Gpu};
+use crate::history::History;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Timings};
 use crate::picture::Composer;
 use crate::render::{RenderError, Renderer};
@@ -126,6 +127,15 @@ impl Pictures for Drawing<'_> {
         summary.frames.size = Some(self.scene.view.size);
         summary.frames.samples = Some(self.samples);
         summary.frames.written = Some(0);
+    }
+
+    fn need_history(&self) -> bool {
+        self.scene.view.strip.is_some()
+    }
+
+    fn take_history(&mut self, history: &History) {
+        let composers = std::iter::once(&mut self.composer).chain(&mut self.on_black);
+        composers.for_each(|composer| composer.set_history(history));
     }
 
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {

@@ -5,7 +5,7 @@ use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
-use super::{Mark, MarkShape, number};
+use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Snapshot, Status};
 
@@ -35,6 +35,7 @@ pub(super) struct Writer<'a> {
     pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,
     pub(super) marks: Vec<Mark>,
+    pub(super) curves: Vec<Curve>,
     pub(super) words: Vec<TextRun>,
 }
 

@@ -7,7 +7,7 @@
 //! 4. `ground`: the floor, its grid and its shadows, into the picture.
 //! 5. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
 //! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
-//! 7. `overlay`: marks and words.
+//! 7. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
 //!
 //! A picture without a background is drawn twice, and `alpha` finds its opacities.
 //!
@@ -17,6 +17,7 @@
 
 mod alpha;
 mod composite;
+mod curve;
 mod glyphs;
 mod ground;
 mod line;
@@ -95,6 +96,8 @@ pub struct Renderer {
     strokes: Option<stroke::Strokes>,
     tint: Option<tint::Tint>,
     overlay: overlay::Overlay,
+    /// Made when first needed.
+    curves: Option<curve::Curves>,
     canvas: Canvas,
     bodies: Option<Bodies>,
     read_back: ReadBack,
@@ -127,6 +130,7 @@ impl Renderer {
             strokes: None,
             tint: None,
             overlay: overlay::Overlay::new(gpu),
+            curves: None,
             canvas: Canvas::new(gpu, size),
             bodies: None,
             read_back: ReadBack::new(gpu, width, height),
@@ -196,6 +200,10 @@ impl Renderer {
         self.lines.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
+        if !picture.curves.is_empty() {
+            self.curves.get_or_insert_with(|| curve::Curves::new(&gpu, self.size)).write(&gpu, picture);
+        }
+        let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
         if with_solids {
             self.lines.prepare_among(&gpu, &self.panels, &bodies);
@@ -264,7 +272,11 @@ impl Renderer {
         }
         {
             let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
-            self.overlay.draw(&mut pass);
+            self.overlay.draw_marks(&mut pass);
+            if let Some(curves) = curves {
+                curves.draw(&mut pass);
+            }
+            self.overlay.draw_words(&mut pass);
         }
         self.bodies = Some(bodies);
         Ok(self.read_back.submit(&gpu, commands, &self.canvas.texture))
