@@ -91,13 +91,13 @@ impl Writer<'_> {
         let room = width - 2.0 * around.margin();
         let title = self.fonts.shortened(title, Weight::SemiBold, TITLE * around.title(), room);
         let size = TITLE * around.title();
-        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), TITLE_BASELINE * around.unit);
+        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), around.row(TITLE_BASELINE));
     }
 
     /// The caption below all panels, with its first baseline at a height (px).
     pub(super) fn caption(&mut self, around: Scale, lines: &[String], baseline: f64) {
         for (at, line) in lines.iter().enumerate() {
-            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.unit;
+            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.type_unit();
             let colour = self.palette.second_text;
             self.left(line, Weight::Regular, around.caption(), colour, around.margin(), baseline);
         }

@@ -117,7 +117,7 @@ impl Strips {
 
     /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, rectangle: Rectangle, shown: &RunFrame) {
-        let unit = writer.scale.unit.max(LEAST_UNIT);
+        let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_UNIT));
         let [left, top, width, height] = rectangle.map(f64::from);
         let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
         let chart = Chart { left, right: left + width, top, bottom, unit };

@@ -9,10 +9,13 @@
 //! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
 //! 7. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
 //!
+//! A picture without a background is drawn twice, and `alpha` finds its opacities.
+//!
 //! With a scalar field, `tint` takes the place of `surface`.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
+mod alpha;
 mod composite;
 mod curve;
 mod glyphs;
@@ -31,7 +34,7 @@ mod tint;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
-use image::RgbImage;
+use image::{RgbImage, RgbaImage};
 use obstacle::{Slabs, Solids};
 use panel::Panels;
 use target::{Bodies, Canvas};
@@ -148,6 +151,25 @@ impl Renderer {
         let [width, height] = self.size;
         // The read-back gives exactly three bytes for each pixel.
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
+    }
+
+    /// Draws a picture without a background: each pixel gets its opacity, 0 where nothing is and 255 where nothing of the
+    /// ground is seen. Takes the picture composed on white and on black ground, see
+    /// [`Composer::on_ground`](crate::picture::Composer::on_ground), and draws it twice.
+    ///
+    /// Laid on white, a picture of the light theme looks as it does on white ground, and one of the dark theme laid on
+    /// black as on black, to within rounding. The other way round, so do words, marks and all that is grey; borders of
+    /// coloured things, which blend light where pages blend bytes, are a little off.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn draw_transparent(&mut self, on_white: &Picture, on_black: &Picture) -> Result<RgbaImage, RenderError> {
+        let white = self.draw(on_white)?;
+        let black = self.draw(on_black)?;
+        let made_for_light = on_white.palette.is_made_for_light();
+        let with_solids = on_white.panels.iter().filter(|panel| !panel.obstacles.solids.is_empty());
+        let solid: Vec<_> = with_solids.map(|panel| panel.region).collect();
+        Ok(alpha::recover(&white, &black, made_for_light, &solid))
     }
 
     /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted, for

@@ -4,6 +4,7 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod look;
 mod obstacles;
 mod pictures;
 mod shown;

@@ -85,11 +85,23 @@ pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
 }
 
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene.
+    /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
+    /// [`Self::on_ground`].
     ///
     /// A scene with strips ([`crate::scene::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
     /// places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
+        Self::with(scene, scene.view.look.palette)
+    }
+
+    /// The same on a ground of one colour, into which the floor goes over without a border and what is far fades; all
+    /// else keeps its colours. Pictures on white and on black are what
+    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs.
+    pub fn on_ground(scene: &'a Scene, ground: Colour) -> Self {
+        Self::with(scene, scene.view.look.palette.on_ground(ground))
+    }
+
+    fn with(scene: &'a Scene, palette: Palette) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
@@ -102,14 +114,14 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
             spring_ramp: scene
                 .view
                 .spring_strain
-                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: scene.view.look.palette,
+            palette,
             fonts: Fonts::new(&scene.view.look.font),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
