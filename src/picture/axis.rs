@@ -127,8 +127,9 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     });
     let mut all: Vec<_> = divisions.collect();
     let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
-    // The first of equals.
-    let best = best.rev().max_by_key(|&at| (all[at].worth, all[at].ticks.len()));
+    // Of equals rather three ticks than two, then rather those at the ends: 0, 5, 10 and not 0, 3, 6, 9.
+    let rank = |&at: &usize| (all[at].worth, all[at].ticks.len().min(3), all[at].worth - all[at].ticks.len());
+    let best = best.rev().max_by_key(rank);
     // Some ranges have too many ticks or too few, whatever the step: then every second of too many.
     let crowded = || (0..all.len()).filter(|&at| all[at].ticks.len() > most).min_by_key(|&at| all[at].ticks.len());
     let best = best.or_else(crowded).unwrap_or(0);
