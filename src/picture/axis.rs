@@ -146,7 +146,8 @@ mod tests {
 
     #[test]
     fn ticks_are_few_and_round() {
-        let expected: [(Kind, [f64; 2], &str, usize, &[&str], &str); 14] = [
+        type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
+        let expected: [Case; 14] = [
             (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
             (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
             (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),

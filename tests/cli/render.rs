@@ -162,7 +162,7 @@ fn interrupted_while_simulating_ahead() {
         return;
     }
     let place = Place::new();
-    place.write("long.toml", &with_strip(&lasting("1e6")));
+    place.write("long.toml", &with_strip(&lasting("100000")));
     let child = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
     crate::interrupt::signal(&child, "INT");
     let output = child.wait_with_output().unwrap();
