@@ -4,7 +4,7 @@
 //! dark theme.
 
 use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::Composer;
+use localshape::picture::compose;
 use localshape::render::Renderer;
 use localshape::scene::{Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(&scene, &runs).frame(frame.parse()?);
-    let picture = Composer::new(&scene).compose(&frame);
+    let picture = compose(&scene, &frame);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
     Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture)?.save(out)?;
     Ok(())

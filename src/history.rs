@@ -235,7 +235,7 @@ mod tests {
         let steps = moments(&short, 1);
         assert_eq!(steps, (0..=short.frame_step(1, 1)).collect::<Vec<_>>());
         // A scene of one frame.
-        assert_eq!(moments(&scene("0.001", "10", "T/70"), 0), [0]);
+        assert_eq!(moments(&scene("0.1", "1", "T/70"), 0), [0]);
     }
 
     #[test]

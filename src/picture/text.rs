@@ -57,7 +57,8 @@ impl TextRun {
     /// Whether it lies over a part of the picture (px).
     pub(super) fn touches(&self, [x, y, width, height]: super::Rectangle) -> bool {
         let [left, top, right, bottom] = self.bounds();
-        let [x, y, x2, y2] = [x, y, x + width, y + height].map(|at| at as f32);
+        let [x, y, x2, y2] = [x, y, x + width, y + height].map(f64::from);
+        let [left, top, right, bottom] = [left, top, right, bottom].map(f64::from);
         width > 0 && height > 0 && left < x2 && right > x && top < y2 && bottom > y
     }
 }

@@ -150,6 +150,51 @@ fn some_frames_of_one_run_in_another_size() {
     assert!(std::fs::read(path).unwrap() == std::fs::read(place.path("alone/frame_00004.png")).unwrap());
 }
 
+/// The small scene with a strip, which needs more height.
+fn with_strip(text: &str) -> String {
+    text.replace("size = [96, 64]", "size = [320, 180]\nstrip = \"shape_error\"")
+}
+
+#[test]
+fn strips_are_the_same_whichever_frames_are_drawn() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.write("strip.toml", &with_strip(SMALL));
+    place.run("render strip.toml --samples 1").good();
+    place.run("render strip.toml --samples 1 --frames 3 -o alone --threads 1").good();
+    let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
+    assert!(bytes("output/strip/frame_00003.png") == bytes("alone/frame_00003.png"));
+    place.run("render small.toml --samples 1 --frames 3 --size 320x180 -o without").good();
+    let [with, without] = ["alone", "without"].map(|folder| pixels(&place.path(folder).join("frame_00003.png")).1);
+    assert!(with != without);
+    // A strip changes no number.
+    place.run("simulate strip.toml -o numbers").good();
+    assert_eq!(place.read("output/strip/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
+
+    place.run("render strip.toml --samples 1 --only Mass-spring -o one").good();
+    place.run("render strip.toml --samples 1 --only Mass-spring --frames 3 -o other").good();
+    assert!(bytes("one/frame_00003.png") == bytes("other/frame_00003.png"));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_while_simulating_ahead() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("long.toml", &with_strip(&lasting("100000")));
+    let child = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
+    crate::interrupt::signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
+    let run = place.json("output/long/run.json");
+    assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));
+}
+
 #[test]
 fn samples_and_adapters() {
     if !can_draw() {

@@ -11,7 +11,7 @@
 use image::RgbImage;
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::output::{Tags, encode, read_tags};
-use localshape::picture::Composer;
+use localshape::picture::compose;
 use localshape::render::Renderer;
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
@@ -74,7 +74,7 @@ fn draw(gpu: &Gpu, scene: &Scene) -> (RgbImage, Tags) {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(scene, &runs).frame(scene.last_frame());
     let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a renderer");
-    let image = renderer.draw(&Composer::new(scene).compose(&frame)).expect("a picture");
+    let image = renderer.draw(&compose(scene, &frame)).expect("a picture");
     (image, Tags::new(scene, &frame, &gpu.description().to_string()))
 }
 

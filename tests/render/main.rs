@@ -8,6 +8,7 @@ mod look;
 mod obstacles;
 mod pictures;
 mod shown;
+mod strips;
 mod words;
 
 use localshape::gpu::{AdapterChoice, Gpu};
