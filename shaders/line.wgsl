@@ -7,6 +7,7 @@ struct Segment {
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) depths: vec2<f32>,
     @location(2) @interpolate(flat) kind: u32,
+    @location(3) @interpolate(flat) strength: f32,
 }
 
 const EDGE = 0u;
@@ -16,8 +17,6 @@ const ALARM_CONTOUR = 3u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
-// Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
-const REACH = 1.25;
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
@@ -35,18 +34,19 @@ fn segment(
     @location(0) start: vec3<f32>,
     @location(1) end: vec3<f32>,
     @location(2) kind: u32,
+    @location(3) strength: f32,
 ) -> Segment {
     let ends = ends_of(start, end);
     if !ends.seen {
-        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind);
+        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength);
     }
     let size = panel.region.zw;
     let from_pixel = pixel_of(ends.a, size);
     let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
     let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    let place = strip_corner(corner, from_pixel, to_pixel, REACH * panel.line_scale + 1.0, size);
-    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
+    let place = strip_corner(corner, from_pixel, to_pixel, 0.5 * max(widest(kind), 1.0) + 0.5, size);
+    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind, strength);
 }
 
 fn distance_of(depth: f32) -> f32 {
@@ -60,6 +60,89 @@ fn covered(distance: f32, width: f32) -> f32 {
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
 }
 
+// The widest line of a kind (px).
+fn widest(kind: u32) -> f32 {
+    if panel.flatness > 0.5 {
+        return panel.line_scale * select(1.5, 2.5, kind == CONTOUR || kind == ALARM_CONTOUR);
+    }
+    switch kind {
+        case EDGE, OBSTACLE_EDGE: { return 1.15 * panel.line_scale; }
+        case ALARM_EDGE: { return 1.5 * panel.line_scale; }
+        default: { return 2.2 * panel.line_scale; }
+    }
+}
+
+// What one sample a pixel knows of a line: see below.
+struct Sight {
+    // The point of the line nearest to the pixel, and a vector across the line of length one.
+    middle: vec2<f32>,
+    across: vec2<f32>,
+    // Its depth there, and that by which it is compared with surfaces.
+    depth: f32,
+    before: f32,
+    kind: u32,
+}
+
+// How much is seen of an edge, how much shows through sound elements, and how much through turned-over ones.
+fn edge_shares(sight: Sight, sample: u32) -> vec3<f32> {
+    let seen = visible_share(sight.before, sample_depth(sight.middle, sample));
+    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
+    if sight.kind == OBSTACLE_EDGE || (seen < 1.0 && is_obstacle(sight.middle, sample)) {
+        return vec3(seen, 0.0, 0.0);
+    }
+    if sight.kind == EDGE {
+        return vec3(seen, 1.0 - seen, 0.0);
+    }
+    let texel = texel_of(sight.middle + sample_place(sample) - 0.5);
+    let behind_sound = visible_share(sight.before, textureLoad(alarm_depth, texel, 0));
+    return vec3(seen, (1.0 - seen) * behind_sound, (1.0 - seen) * (1.0 - behind_sound));
+}
+
+// How much of a contour is part of the outline, how much is a step of depth, and how much only shows through.
+fn contour_shares(sight: Sight, sample: u32) -> vec3<f32> {
+    let here = sample_depth(sight.middle, sample);
+    let across = sight.across * (0.9 + 1.3 * panel.line_scale);
+    let sides = vec2(sample_depth(sight.middle + across, sample), sample_depth(sight.middle - across, sample));
+    let nearer = max(sides.x, sides.y);
+    let farther = min(sides.x, sides.y);
+    let step = STEP * panel.soft;
+    let distance = distance_of(sight.depth);
+    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    let covered_by = distance - distance_of(max(farther, min(here, nearer)));
+    var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
+    let obstacles = vec2(
+        is_obstacle(sight.middle + across, sample),
+        is_obstacle(sight.middle - across, sample),
+    );
+    if sight.kind == OBSTACLE_CONTOUR {
+        // Round ones come nearer still: only what is not of their kind hides them at once.
+        let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
+        let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
+        let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
+        shown = select(0.0, free.x * free.y, any(obstacles));
+    }
+    // Nothing is seen through an obstacle.
+    var clear = 1.0;
+    if sight.kind != OBSTACLE_CONTOUR && is_obstacle(sight.middle, sample) {
+        clear = visible_share(sight.before, here);
+    }
+    var outline = 0.0;
+    if farther <= 0.0 {
+        // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
+        let close = sight.across * 0.9;
+        let open = sample_depth(sight.middle + close, sample) <= 0.0
+            || sample_depth(sight.middle - close, sample) <= 0.0;
+        outline = select(shown, 1.0, open);
+    }
+    // Where one thing ends before another, a contour is drawn however close they are.
+    let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
+    let meets = obstacles.x != obstacles.y;
+    let stepped = (1.0 - outline) * shown * select(deep, 1.0, meets);
+    return clear * vec3(outline, stepped, 1.0 - outline - stepped);
+}
+
+// Each sample of the pixel around the nearest point of the line answers for itself, so that lines end and change as
+// smoothly as surfaces do.
 @fragment
 fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let start = segment.ends.xy;
@@ -68,67 +151,55 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
     let middle = start + share * difference;
     let distance = length(pixel - middle);
-    let depth = mix(segment.depths.x, segment.depths.y, share);
-    let before = depth * (1.0 + OFFSET);
-    let here = depth_at(middle);
-    let visible = before >= here || panel.flatness > 0.5;
+    let kind = segment.kind;
     let scale = panel.line_scale;
-    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
-    let of_obstacle = segment.kind == OBSTACLE_EDGE || segment.kind == OBSTACLE_CONTOUR;
-    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(texel_of(middle))) {
+    if covered(distance, widest(kind)) <= 0.0 {
         return vec4(0.0);
     }
-    if segment.kind == OBSTACLE_EDGE {
-        return vec4(0.80 * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
-    }
     let strength = min(1.0, panel.element / SMALL_ELEMENT);
-    if segment.kind == EDGE && panel.flatness > 0.5 {
-        return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
-    }
-    if segment.kind == EDGE {
-        let seen = 0.80 * strength * covered(distance, 1.15 * scale);
-        let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
-        return vec4(select(hidden, seen, visible), 0.0, 0.0, 0.0);
-    }
-    if segment.kind == ALARM_EDGE {
-        let behind_alarm = textureLoad(alarm_depth, vec2<i32>(middle), 0) > before;
-        let hidden = select(0.62, 0.15, behind_alarm);
-        let alpha = select(hidden, 0.95, visible) * strength;
-        return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
-    }
     if panel.flatness > 0.5 {
-        let outline = covered(distance, 2.5 * scale);
-        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
+        switch kind {
+            case CONTOUR: { return vec4(0.0, 0.0, covered(distance, 2.5 * scale), 0.0); }
+            case ALARM_CONTOUR: { return vec4(0.0, covered(distance, 2.5 * scale), 0.0, 0.0); }
+            case ALARM_EDGE: { return vec4(0.0, 0.95 * strength * covered(distance, 1.5 * scale), 0.0, 0.0); }
+            default: { return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0); }
+        }
     }
-    // A contour: what lies on its two sides decides.
+    let depth = mix(segment.depths.x, segment.depths.y, share);
     let along = difference / max(length(difference), 1e-6);
-    let normal = vec2(-along.y, along.x);
-    let across = normal * (0.9 + 1.3 * scale);
-    let sides = vec2(depth_at(middle + across), depth_at(middle - across));
-    let nearer = max(sides.x, sides.y);
-    let farther = min(sides.x, sides.y);
-    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
-    var shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
-    let obstacles = vec2(is_obstacle(texel_of(middle + across)), is_obstacle(texel_of(middle - across)));
-    if segment.kind == OBSTACLE_CONTOUR {
-        // Round ones come nearer still: only what is not of their kind hides them at once.
-        let before_it = vec2(distance_of(depth)) - vec2(distance_of(sides.x), distance_of(sides.y));
-        shown = any(obstacles) && all(before_it < panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles));
+    let sight = Sight(middle, vec2(-along.y, along.x), depth, depth * (1.0 + OFFSET), kind);
+    let is_edge = kind == EDGE || kind == ALARM_EDGE || kind == OBSTACLE_EDGE;
+    var shares = vec3(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        if is_edge {
+            shares += edge_shares(sight, sample) / f32(SAMPLES);
+        } else {
+            shares += contour_shares(sight, sample) / f32(SAMPLES);
+        }
     }
-    // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
-    let close = normal * 0.9;
-    let open = min(depth_at(middle + close), depth_at(middle - close)) <= 0.0;
-    if farther <= 0.0 && (shown || open) {
-        return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
+    switch kind {
+        case OBSTACLE_EDGE: {
+            return vec4(0.80 * shares.x * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
+        }
+        case EDGE: {
+            let seen = 0.80 * strength * covered(distance, 1.15 * scale);
+            let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
+            return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
+        }
+        case ALARM_EDGE: {
+            let alpha = strength * dot(shares, vec3(0.95, 0.62, 0.15));
+            return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
+        }
+        case ALARM_CONTOUR: {
+            shares *= segment.strength;
+            let through = 0.80 * shares.z * covered(distance, 1.7 * scale);
+            let step = 0.85 * shares.y * covered(distance, 1.5 * scale);
+            return vec4(0.0, step + through, shares.x * covered(distance, 2.2 * scale), 0.0);
+        }
+        default: {
+            shares *= segment.strength;
+            let step = 0.85 * shares.y * covered(distance, 1.5 * scale);
+            return vec4(0.0, 0.0, shares.x * covered(distance, 2.2 * scale), step);
+        }
     }
-    // Where one thing ends before another, a contour is drawn however close they are.
-    let meets = obstacles.x != obstacles.y;
-    if shown && (meets || distance_of(farther) - distance_of(nearer) > STEP * panel.soft) {
-        let step = 0.85 * covered(distance, 1.5 * scale);
-        return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
-    }
-    if segment.kind == ALARM_CONTOUR {
-        return vec4(0.0, 0.80 * covered(distance, 1.7 * scale), 0.0, 0.0);
-    }
-    return vec4(0.0);
 }

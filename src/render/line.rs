@@ -21,9 +21,11 @@ struct Segment {
     from: [f32; 3],
     to: [f32; 3],
     kind: u32,
+    strength: f32,
 }
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32, 3 => Float32];
 
 /// A pipeline and what it reads.
 #[derive(Debug)]
@@ -75,6 +77,7 @@ impl Lines {
                 from: line.from,
                 to: line.to,
                 kind: line.kind as u32,
+                strength: line.strength,
             }));
             self.ranges.push(start..segments.len() as u32);
         }
@@ -109,7 +112,8 @@ impl Way {
     fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
         let reading = super::reading_shader(samples);
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading, obstacles, ALARM_SHADER, SHADER];
+        let places = super::samples_shader(samples);
+        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, places, reading, obstacles, ALARM_SHADER, SHADER];
         let module = shader(gpu, "line", &parts);
         let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
         if among {
