@@ -72,49 +72,32 @@ fn widest(kind: u32) -> f32 {
     }
 }
 
-// What one sample a pixel knows of a line: see below.
-struct Sight {
-    // The point of the line nearest to the pixel, and a vector across the line of length one.
-    middle: vec2<f32>,
-    across: vec2<f32>,
-    // Its depth there, and that by which it is compared with surfaces.
-    depth: f32,
-    before: f32,
-    kind: u32,
-}
-
-// How much is seen of an edge, how much shows through sound elements, and how much through turned-over ones.
-fn edge_shares(sight: Sight, sample: u32) -> vec3<f32> {
-    let seen = visible_share(sight.before, sample_depth(sight.middle, sample));
+// How much is seen of an edge, and how much of it lies behind a body.
+fn edge_shares(at: Beside, kind: u32, sample: u32) -> vec2<f32> {
+    let seen = visible_share(at.depth * (1.0 + OFFSET), sample_depth(at.middle, sample));
     // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
-    if sight.kind == OBSTACLE_EDGE || (seen < 1.0 && is_obstacle(sight.middle, sample)) {
-        return vec3(seen, 0.0, 0.0);
-    }
-    if sight.kind == EDGE {
-        return vec3(seen, 1.0 - seen, 0.0);
-    }
-    let texel = texel_of(sight.middle + sample_place(sample) - 0.5);
-    let behind_sound = visible_share(sight.before, textureLoad(alarm_depth, texel, 0));
-    return vec3(seen, (1.0 - seen) * behind_sound, (1.0 - seen) * (1.0 - behind_sound));
+    let through = kind != OBSTACLE_EDGE && !(seen < 1.0 && is_obstacle(at.middle, sample));
+    return vec2(seen, select(0.0, 1.0 - seen, through));
 }
 
 // How much of a contour is part of the outline, how much is a step of depth, and how much only shows through.
-fn contour_shares(sight: Sight, sample: u32) -> vec3<f32> {
-    let here = sample_depth(sight.middle, sample);
-    let across = sight.across * (0.9 + 1.3 * panel.line_scale);
-    let sides = vec2(sample_depth(sight.middle + across, sample), sample_depth(sight.middle - across, sample));
+fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
+    let here = sample_depth(at.middle, sample);
+    let normal = vec2(-at.along.y, at.along.x);
+    let across = normal * (0.9 + 1.3 * panel.line_scale);
+    let sides = vec2(sample_depth(at.middle + across, sample), sample_depth(at.middle - across, sample));
     let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
     let step = STEP * panel.soft;
-    let distance = distance_of(sight.depth);
+    let distance = distance_of(at.depth);
     // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
     let covered_by = distance - distance_of(max(farther, min(here, nearer)));
     var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
     let obstacles = vec2(
-        is_obstacle(sight.middle + across, sample),
-        is_obstacle(sight.middle - across, sample),
+        is_obstacle(at.middle + across, sample),
+        is_obstacle(at.middle - across, sample),
     );
-    if sight.kind == OBSTACLE_CONTOUR {
+    if kind == OBSTACLE_CONTOUR {
         // Round ones come nearer still: only what is not of their kind hides them at once.
         let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
         let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
@@ -123,15 +106,15 @@ fn contour_shares(sight: Sight, sample: u32) -> vec3<f32> {
     }
     // Nothing is seen through an obstacle.
     var clear = 1.0;
-    if sight.kind != OBSTACLE_CONTOUR && is_obstacle(sight.middle, sample) {
-        clear = visible_share(sight.before, here);
+    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, sample) {
+        clear = visible_share(at.depth * (1.0 + OFFSET), here);
     }
     var outline = 0.0;
     if farther <= 0.0 {
         // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
-        let close = sight.across * 0.9;
-        let open = sample_depth(sight.middle + close, sample) <= 0.0
-            || sample_depth(sight.middle - close, sample) <= 0.0;
+        let close = normal * 0.9;
+        let open = sample_depth(at.middle + close, sample) <= 0.0
+            || sample_depth(at.middle - close, sample) <= 0.0;
         outline = select(shown, 1.0, open);
     }
     // Where one thing ends before another, a contour is drawn however close they are.
@@ -141,65 +124,68 @@ fn contour_shares(sight: Sight, sample: u32) -> vec3<f32> {
     return clear * vec3(outline, stepped, 1.0 - outline - stepped);
 }
 
-// Each sample of the pixel around the nearest point of the line answers for itself, so that lines end and change as
-// smoothly as surfaces do.
-@fragment
-fn opacity(segment: Segment) -> @location(0) vec4<f32> {
+// Where a pixel is beside a line.
+struct Beside {
+    // The nearest point of the line, and the line's direction.
+    middle: vec2<f32>,
+    along: vec2<f32>,
+    distance: f32,
+    depth: f32,
+}
+
+fn beside(segment: Segment) -> Beside {
     let start = segment.ends.xy;
     let difference = segment.ends.zw - start;
     let pixel = segment.place.xy;
     let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
     let middle = start + share * difference;
-    let distance = length(pixel - middle);
+    let along = difference / max(length(difference), 1e-6);
+    return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
+}
+
+// Each sample of the pixel around the nearest point of the line answers for itself, so that lines end and change as
+// smoothly as surfaces do. Edges and contours have pipelines of their own: contours ask for much more.
+@fragment
+fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
     let kind = segment.kind;
     let scale = panel.line_scale;
-    if covered(distance, widest(kind)) <= 0.0 {
-        return vec4(0.0);
-    }
     let strength = min(1.0, panel.element / SMALL_ELEMENT);
-    if panel.flatness > 0.5 {
-        switch kind {
-            case CONTOUR: { return vec4(0.0, 0.0, covered(distance, 2.5 * scale), 0.0); }
-            case ALARM_CONTOUR: { return vec4(0.0, covered(distance, 2.5 * scale), 0.0, 0.0); }
-            case ALARM_EDGE: { return vec4(0.0, 0.95 * strength * covered(distance, 1.5 * scale), 0.0, 0.0); }
-            default: { return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0); }
-        }
+    var shares = vec2(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        shares += edge_shares(at, kind, sample) / f32(SAMPLES);
     }
-    let depth = mix(segment.depths.x, segment.depths.y, share);
-    let along = difference / max(length(difference), 1e-6);
-    let sight = Sight(middle, vec2(-along.y, along.x), depth, depth * (1.0 + OFFSET), kind);
-    let is_edge = kind == EDGE || kind == ALARM_EDGE || kind == OBSTACLE_EDGE;
+    if kind == ALARM_EDGE {
+        // Turned-over elements hide more of it than sound ones.
+        let alarm = textureLoad(alarm_depth, texel_of(at.middle), 0);
+        let behind = mix(0.15, 0.62, visible_share(at.depth * (1.0 + OFFSET), alarm));
+        let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
+        return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
+    }
+    if panel.flatness > 0.5 {
+        return vec4(0.75 * strength * covered(at.distance, 1.5 * scale), 0.0, 0.0, 0.0);
+    }
+    let seen = 0.80 * select(strength, 1.0, kind == OBSTACLE_EDGE) * covered(at.distance, 1.15 * scale);
+    let hidden = 0.16 * strength * strength * covered(at.distance, 0.9 * scale);
+    return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
+}
+
+@fragment
+fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
+    let of_alarm = segment.kind == ALARM_CONTOUR;
+    let scale = panel.line_scale;
+    if panel.flatness > 0.5 {
+        let outline = covered(at.distance, 2.5 * scale);
+        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), of_alarm);
+    }
     var shares = vec3(0.0);
     for (var sample = 0u; sample < SAMPLES; sample++) {
-        if is_edge {
-            shares += edge_shares(sight, sample) / f32(SAMPLES);
-        } else {
-            shares += contour_shares(sight, sample) / f32(SAMPLES);
-        }
+        shares += contour_shares(at, segment.kind, sample) / f32(SAMPLES);
     }
-    switch kind {
-        case OBSTACLE_EDGE: {
-            return vec4(0.80 * shares.x * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
-        }
-        case EDGE: {
-            let seen = 0.80 * strength * covered(distance, 1.15 * scale);
-            let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
-            return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
-        }
-        case ALARM_EDGE: {
-            let alpha = strength * dot(shares, vec3(0.95, 0.62, 0.15));
-            return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
-        }
-        case ALARM_CONTOUR: {
-            shares *= segment.strength;
-            let through = 0.80 * shares.z * covered(distance, 1.7 * scale);
-            let step = 0.85 * shares.y * covered(distance, 1.5 * scale);
-            return vec4(0.0, step + through, shares.x * covered(distance, 2.2 * scale), 0.0);
-        }
-        default: {
-            shares *= segment.strength;
-            let step = 0.85 * shares.y * covered(distance, 1.5 * scale);
-            return vec4(0.0, 0.0, shares.x * covered(distance, 2.2 * scale), step);
-        }
-    }
+    shares *= segment.strength;
+    let outline = shares.x * covered(at.distance, 2.2 * scale);
+    let step = 0.85 * shares.y * covered(at.distance, 1.5 * scale);
+    let through = 0.80 * shares.z * covered(at.distance, 1.7 * scale);
+    return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);
 }

@@ -215,13 +215,7 @@ impl Surroundings<'_> {
     }
 
     /// Notes how the triangles along the sides of a face are turned.
-    fn note_borders(
-        &self,
-        face: &[u32],
-        cut: usize,
-        facing: &[f64],
-        borders: &mut HashMap<(u32, u32, usize), Facing>,
-    ) {
+    fn note_borders(&self, face: &[u32], cut: usize, facing: &[f64], borders: &mut HashMap<(u32, u32, usize), Facing>) {
         let ears = self.ears.of(face);
         for (side, [a, b]) in around(face).enumerate() {
             let two = [side as u32, ((side + 1) % face.len()) as u32];

@@ -81,7 +81,11 @@ impl Solids {
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
         // The light is that on bodies.
-        let module = shader(gpu, "obstacle", &[super::PANEL_SHADER, super::samples_shader(samples), super::surface::SHADER, SHADER]);
+        let module = shader(
+            gpu,
+            "obstacle",
+            &[super::PANEL_SHADER, super::samples_shader(samples), super::surface::SHADER, SHADER],
+        );
         let recipe = Recipe {
             label: "obstacle",
             shader: &module,

@@ -4,8 +4,8 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite, ground, line, obstacle, overlay, stroke,
-    surface, tint,
+    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite,
+    ground, line, obstacle, overlay, stroke, surface, tint,
 };
 use std::mem::offset_of;
 
