@@ -144,7 +144,7 @@ fn lines_and_bodies_in_space_are_smooth() {
     });
     let image = draw(gpu, &picture, 4);
     let y = crossing(&image, 160, 62..84);
-    assert_smooth(&image, 152..168, y, "stroke");
+    assert_smooth(&image, 140..180, y, "stroke");
 }
 
 /// The largest change of a pixel between two pictures, in linear light.
