@@ -7,6 +7,7 @@ struct Segment {
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) depths: vec2<f32>,
     @location(2) @interpolate(flat) kind: u32,
+    @location(3) @interpolate(flat) strength: f32,
 }
 
 const EDGE = 0u;
@@ -16,8 +17,6 @@ const ALARM_CONTOUR = 3u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
-// Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
-const REACH = 1.25;
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
@@ -35,18 +34,19 @@ fn segment(
     @location(0) start: vec3<f32>,
     @location(1) end: vec3<f32>,
     @location(2) kind: u32,
+    @location(3) strength: f32,
 ) -> Segment {
     let ends = ends_of(start, end);
     if !ends.seen {
-        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind);
+        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength);
     }
     let size = panel.region.zw;
     let from_pixel = pixel_of(ends.a, size);
     let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
     let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    let place = strip_corner(corner, from_pixel, to_pixel, REACH * panel.line_scale + 1.0, size);
-    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind);
+    let place = strip_corner(corner, from_pixel, to_pixel, 0.5 * max(widest(kind), 1.0) + 0.5, size);
+    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind, strength);
 }
 
 fn distance_of(depth: f32) -> f32 {
@@ -60,75 +60,132 @@ fn covered(distance: f32, width: f32) -> f32 {
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
 }
 
-@fragment
-fn opacity(segment: Segment) -> @location(0) vec4<f32> {
+// The widest line of a kind (px).
+fn widest(kind: u32) -> f32 {
+    if panel.flatness > 0.5 {
+        return panel.line_scale * select(1.5, 2.5, kind == CONTOUR || kind == ALARM_CONTOUR);
+    }
+    switch kind {
+        case EDGE, OBSTACLE_EDGE: { return 1.15 * panel.line_scale; }
+        case ALARM_EDGE: { return 1.5 * panel.line_scale; }
+        default: { return 2.2 * panel.line_scale; }
+    }
+}
+
+// How much is seen of an edge, and how much of it lies behind a body.
+fn edge_shares(at: Beside, kind: u32, sample: u32) -> vec2<f32> {
+    let seen = visible_share(at.depth * (1.0 + OFFSET), sample_depth(at.middle, sample));
+    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
+    let through = kind != OBSTACLE_EDGE && !(seen < 1.0 && is_obstacle(at.middle, sample));
+    return vec2(seen, select(0.0, 1.0 - seen, through));
+}
+
+// How much of a contour is part of the outline, how much is a step of depth, and how much only shows through.
+fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
+    let here = sample_depth(at.middle, sample);
+    let normal = vec2(-at.along.y, at.along.x);
+    let across = normal * (0.9 + 1.3 * panel.line_scale);
+    let sides = vec2(sample_depth(at.middle + across, sample), sample_depth(at.middle - across, sample));
+    let nearer = max(sides.x, sides.y);
+    let farther = min(sides.x, sides.y);
+    let step = STEP * panel.soft;
+    let distance = distance_of(at.depth);
+    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    let covered_by = distance - distance_of(max(farther, min(here, nearer)));
+    var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
+    let obstacles = vec2(
+        is_obstacle(at.middle + across, sample),
+        is_obstacle(at.middle - across, sample),
+    );
+    if kind == OBSTACLE_CONTOUR {
+        // Round ones come nearer still: only what is not of their kind hides them at once.
+        let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
+        let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
+        let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
+        shown = select(0.0, free.x * free.y, any(obstacles));
+    }
+    // Nothing is seen through an obstacle.
+    var clear = 1.0;
+    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, sample) {
+        clear = visible_share(at.depth * (1.0 + OFFSET), here);
+    }
+    var outline = 0.0;
+    if farther <= 0.0 {
+        // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
+        let close = normal * 0.9;
+        let open = sample_depth(at.middle + close, sample) <= 0.0
+            || sample_depth(at.middle - close, sample) <= 0.0;
+        outline = select(shown, 1.0, open);
+    }
+    // Where one thing ends before another, a contour is drawn however close they are.
+    let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
+    let meets = obstacles.x != obstacles.y;
+    let stepped = (1.0 - outline) * shown * select(deep, 1.0, meets);
+    return clear * vec3(outline, stepped, 1.0 - outline - stepped);
+}
+
+// Where a pixel is beside a line.
+struct Beside {
+    // The nearest point of the line, and the line's direction.
+    middle: vec2<f32>,
+    along: vec2<f32>,
+    distance: f32,
+    depth: f32,
+}
+
+fn beside(segment: Segment) -> Beside {
     let start = segment.ends.xy;
     let difference = segment.ends.zw - start;
     let pixel = segment.place.xy;
     let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
     let middle = start + share * difference;
-    let distance = length(pixel - middle);
-    let depth = mix(segment.depths.x, segment.depths.y, share);
-    let before = depth * (1.0 + OFFSET);
-    let here = depth_at(middle);
-    let visible = before >= here || panel.flatness > 0.5;
+    let along = difference / max(length(difference), 1e-6);
+    return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
+}
+
+// Each sample of the pixel around the nearest point of the line answers for itself, so that lines end and change as
+// smoothly as surfaces do. Edges and contours have pipelines of their own: contours ask for much more.
+@fragment
+fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
+    let kind = segment.kind;
     let scale = panel.line_scale;
-    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
-    let of_obstacle = segment.kind == OBSTACLE_EDGE || segment.kind == OBSTACLE_CONTOUR;
-    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(texel_of(middle))) {
-        return vec4(0.0);
-    }
-    if segment.kind == OBSTACLE_EDGE {
-        return vec4(0.80 * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
-    }
     let strength = min(1.0, panel.element / SMALL_ELEMENT);
-    if segment.kind == EDGE && panel.flatness > 0.5 {
-        return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
+    var shares = vec2(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        shares += edge_shares(at, kind, sample) / f32(SAMPLES);
     }
-    if segment.kind == EDGE {
-        let seen = 0.80 * strength * covered(distance, 1.15 * scale);
-        let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
-        return vec4(select(hidden, seen, visible), 0.0, 0.0, 0.0);
-    }
-    if segment.kind == ALARM_EDGE {
-        let behind_alarm = textureLoad(alarm_depth, vec2<i32>(middle), 0) > before;
-        let hidden = select(0.62, 0.15, behind_alarm);
-        let alpha = select(hidden, 0.95, visible) * strength;
-        return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
+    if kind == ALARM_EDGE {
+        // Turned-over elements hide more of it than sound ones.
+        let alarm = textureLoad(alarm_depth, texel_of(at.middle), 0);
+        let behind = mix(0.15, 0.62, visible_share(at.depth * (1.0 + OFFSET), alarm));
+        let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
+        return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
     }
     if panel.flatness > 0.5 {
-        let outline = covered(distance, 2.5 * scale);
-        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
+        return vec4(0.75 * strength * covered(at.distance, 1.5 * scale), 0.0, 0.0, 0.0);
     }
-    // A contour: what lies on its two sides decides.
-    let along = difference / max(length(difference), 1e-6);
-    let normal = vec2(-along.y, along.x);
-    let across = normal * (0.9 + 1.3 * scale);
-    let sides = vec2(depth_at(middle + across), depth_at(middle - across));
-    let nearer = max(sides.x, sides.y);
-    let farther = min(sides.x, sides.y);
-    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
-    var shown = distance_of(depth) - distance_of(max(farther, min(here, nearer))) < 0.5 * STEP * panel.soft;
-    let obstacles = vec2(is_obstacle(texel_of(middle + across)), is_obstacle(texel_of(middle - across)));
-    if segment.kind == OBSTACLE_CONTOUR {
-        // Round ones come nearer still: only what is not of their kind hides them at once.
-        let before_it = vec2(distance_of(depth)) - vec2(distance_of(sides.x), distance_of(sides.y));
-        shown = any(obstacles) && all(before_it < panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles));
+    let seen = 0.80 * select(strength, 1.0, kind == OBSTACLE_EDGE) * covered(at.distance, 1.15 * scale);
+    let hidden = 0.16 * strength * strength * covered(at.distance, 0.9 * scale);
+    return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
+}
+
+@fragment
+fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
+    let of_alarm = segment.kind == ALARM_CONTOUR;
+    let scale = panel.line_scale;
+    if panel.flatness > 0.5 {
+        let outline = covered(at.distance, 2.5 * scale);
+        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), of_alarm);
     }
-    // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
-    let close = normal * 0.9;
-    let open = min(depth_at(middle + close), depth_at(middle - close)) <= 0.0;
-    if farther <= 0.0 && (shown || open) {
-        return vec4(0.0, 0.0, covered(distance, 2.2 * scale), 0.0);
+    var shares = vec3(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        shares += contour_shares(at, segment.kind, sample) / f32(SAMPLES);
     }
-    // Where one thing ends before another, a contour is drawn however close they are.
-    let meets = obstacles.x != obstacles.y;
-    if shown && (meets || distance_of(farther) - distance_of(nearer) > STEP * panel.soft) {
-        let step = 0.85 * covered(distance, 1.5 * scale);
-        return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
-    }
-    if segment.kind == ALARM_CONTOUR {
-        return vec4(0.0, 0.80 * covered(distance, 1.7 * scale), 0.0, 0.0);
-    }
-    return vec4(0.0);
+    shares *= segment.strength;
+    let outline = shares.x * covered(at.distance, 2.2 * scale);
+    let step = 0.85 * shares.y * covered(at.distance, 1.5 * scale);
+    let through = 0.80 * shares.z * covered(at.distance, 1.7 * scale);
+    return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);
 }

@@ -1,5 +1,5 @@
 // Where there are no solid obstacles.
 
-fn is_obstacle(at: vec2<i32>) -> bool {
+fn is_obstacle(place: vec2<f32>, sample: u32) -> bool {
     return false;
 }

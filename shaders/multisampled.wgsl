@@ -3,6 +3,14 @@
 @group(1) @binding(0) var body_colour: texture_multisampled_2d<f32>;
 @group(1) @binding(1) var body_depth: texture_depth_multisampled_2d;
 
+fn load_sample_depth(at: vec2<i32>, sample: u32) -> f32 {
+    return textureLoad(body_depth, at, sample);
+}
+
+fn load_sample_opacity(at: vec2<i32>, sample: u32) -> f32 {
+    return textureLoad(body_colour, at, sample).a;
+}
+
 fn load_depth(at: vec2<i32>) -> f32 {
     return textureLoad(body_depth, at, 0);
 }

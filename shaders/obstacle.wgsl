@@ -1,11 +1,24 @@
-// Solid obstacles, among the bodies: the same light on another material, nothing below the floor.
+// Solid obstacles, among the bodies: the same light on another material, nothing below the floor. In the plane they have
+// a rim and a smooth border of their own.
 
 struct SolidCorner {
     @builtin(position) place: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) @interpolate(flat) colour: vec3<f32>,
+    @location(3) @interpolate(flat) rim: vec3<f32>,
+    // How far inside the outline (px).
+    @location(4) inward: f32,
+    @location(5) above: f32,
 }
+
+struct SolidPixel {
+    @location(0) colour: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Width of the rim (px in the reference picture).
+const RIM_WIDTH = 2.0;
 
 // What is stored as opacity where an obstacle is seen: the passes that follow know it by that, and no eye does.
 const OBSTACLE = 254.0 / 255.0;
@@ -15,16 +28,25 @@ fn solid_corner(
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) colour: vec3<f32>,
+    @location(3) rim: vec3<f32>,
+    @location(4) inward: f32,
 ) -> SolidCorner {
-    return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour);
+    let above = dot(position, panel.up) - panel.floor;
+    return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above);
 }
 
 @fragment
-fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
-    if dot(corner.position, panel.up) < panel.floor {
-        discard;
+fn solid_surface(corner: SolidCorner) -> SolidPixel {
+    // Where it meets the floor, each sample decides for itself.
+    let rise = vec2(dpdx(corner.above), dpdy(corner.above));
+    var samples = 0u;
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        let above = corner.above + dot(rise, sample_place(sample) - 0.5);
+        samples |= select(0u, 1u << sample, above >= 0.0);
     }
     let light = light(corner.position, corner.normal);
-    let colour = corner.colour * light.diffuse + light.gloss;
-    return vec4(sqrt(saturate(colour)), OBSTACLE);
+    let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
+    let colour = material * light.diffuse + light.gloss;
+    let inside = saturate(corner.inward + 0.5);
+    return SolidPixel(vec4(sqrt(saturate(colour) * inside), OBSTACLE * inside), samples);
 }

@@ -5,7 +5,7 @@ struct Mark {
     @location(0) rectangle: vec4<f32>,
     // Unit vector along its width.
     @location(1) along: vec2<f32>,
-    // sRGB.
+    // sRGB; in alpha how much of the mark is seen.
     @location(2) colour: vec4<f32>,
     @location(3) second: vec4<f32>,
     // Left and top in the atlas of glyphs.
@@ -44,12 +44,9 @@ const ARROW = 9u;
 const BLEND = 10u;
 const POINT = 11u;
 const PIN = 12u;
-const HIDDEN_PIN = 13u;
-const HAND = 14u;
-const HIDDEN_HAND = 15u;
+const HAND = 13u;
 
-// What is hidden is so faint, and a halo so opaque.
-const HIDDEN = 0.38;
+// The opacity of a halo.
 const HALO = 0.75;
 
 // The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
@@ -78,11 +75,11 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
 }
 
 // A mark with a halo: how far a pixel is outside of it (px).
-fn with_halo(colour: vec3<f32>, halo: vec3<f32>, outside: f32, width: f32, strength: f32) -> vec4<f32> {
+fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> vec4<f32> {
     let inner = saturate(0.5 - outside);
     let outer = HALO * saturate(0.5 + width - outside);
     let alpha = inner + outer * (1.0 - inner);
-    return vec4((colour * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha * strength);
+    return vec4((colour.rgb * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha * colour.a);
 }
 
 // A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and the
@@ -117,16 +114,31 @@ fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
         min(off_segment(p, vec2(0.0), vec2(0.0, half_shaft)), off_segment(p, vec2(0.0, half_shaft), joint)),
         min(off_segment(p, joint, barb), off_segment(p, barb, point)),
     );
-    let in_shaft = p.x >= 0.0 && p.x <= joint.x && p.y <= half_shaft;
+    let in_shaft = p.x >= 0.0 && p.x <= back + notch && p.y <= half_shaft;
     let side = (p.x - barb.x) * (point.y - barb.y) - (p.y - barb.y) * (point.x - barb.x);
     let rear = p.x >= back + notch * (1.0 - p.y / max(half_head, 1e-6));
     let inside = in_shaft || (rear && side > 0.0 && p.y <= half_head);
     return vec2(select(off, -off, inside), max(pad * max(part, 0.5) - 0.5, 0.0));
 }
 
+// How much of a pixel lies between the upper corners of a rectangle and below its upper side.
+fn within(at: vec2<f32>, size: vec2<f32>) -> f32 {
+    return saturate(at.x + 0.5) * saturate(size.x - at.x + 0.5) * saturate(at.y + 0.5);
+}
+
+// How far a mark reaches beyond its rectangle (px): by its smooth border, and ring arrows by their heads.
+fn room_around(mark: Mark) -> f32 {
+    switch mark.shape {
+        case NODE, PIN, HAND, FADING, SHADOW: { return 1.0; }
+        case COUNTER_CLOCKWISE, CLOCKWISE: { return 0.5 * (RING + HEAD.y - 1.0) * mark.rectangle.z + 1.0; }
+        default: { return 0.0; }
+    }
+}
+
 @vertex
 fn corner(@builtin(vertex_index) index: u32, mark: Mark) -> Corner {
-    let corner = mark.rectangle.zw * vec2(f32(index & 1u), f32(index >> 1u));
+    let side = vec2(f32(index & 1u), f32(index >> 1u));
+    let corner = mark.rectangle.zw * side + room_around(mark) * (2.0 * side - 1.0);
     let at = mark.rectangle.xy + corner.x * mark.along + corner.y * vec2(-mark.along.y, mark.along.x);
     let place = vec4(at / canvas.size * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.5, 1.0);
     return Corner(place, mark.rectangle, mark.colour, mark.second, mark.glyph, mark.shape, mark.along);
@@ -152,7 +164,8 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case NODE: {
             let inward = (1.0 - length(middle)) / pixel;
             let rim = 0.16 * corner.rectangle.z;
-            return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), saturate(inward));
+            let alpha = saturate(inward + 0.5);
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), alpha);
         }
         case COUNTER_CLOCKWISE: {
             return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel));
@@ -161,26 +174,24 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             return vec4(corner.colour.rgb, ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel));
         }
         case FADING: {
-            let left = 1.0 - at.y / corner.rectangle.w;
-            return vec4(corner.colour.rgb, 0.75 * left * left);
+            let left = saturate(1.0 - at.y / corner.rectangle.w);
+            return vec4(corner.colour.rgb, 0.75 * left * left * within(at, corner.rectangle.zw));
         }
         case SHADOW: {
-            let down = at.y / corner.rectangle.w;
+            let left = saturate(1.0 - at.y / corner.rectangle.w);
             let across = smoothstep(1.0, 0.55, abs(middle.x));
-            return vec4(corner.colour.rgb, 0.42 * across * (1.0 - down) * (1.0 - down));
+            return vec4(corner.colour.rgb, 0.42 * across * left * left * within(at, corner.rectangle.zw));
         }
-        case PIN, HIDDEN_PIN: {
+        case PIN: {
             let radius = 0.5 * corner.rectangle.z;
             let outside = (radius * (abs(middle.x) + abs(middle.y)) - 0.74 * radius) * 0.70710678;
-            let strength = select(1.0, HIDDEN, corner.shape == HIDDEN_PIN);
-            return with_halo(corner.colour.rgb, corner.second.rgb, outside, 0.17 * radius, strength);
+            return with_halo(corner.colour, corner.second.rgb, outside, 0.17 * radius);
         }
-        case HAND, HIDDEN_HAND: {
+        case HAND: {
             let radius = 0.5 * corner.rectangle.z;
             let from_middle = radius * length(middle);
             let outside = min(from_middle - 0.36 * radius, abs(from_middle - 0.76 * radius) - 0.11 * radius);
-            let strength = select(1.0, HIDDEN, corner.shape == HIDDEN_HAND);
-            return with_halo(corner.colour.rgb, corner.second.rgb, outside, 0.12 * radius, strength);
+            return with_halo(corner.colour, corner.second.rgb, outside, 0.12 * radius);
         }
         case SMOOTH: {
             let inside = min(at, corner.rectangle.zw - at);
@@ -190,7 +201,8 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             let arrow = off_arrow(at, corner.rectangle.zw);
             let inside = saturate(0.5 - arrow.x);
             let around = saturate(0.5 + arrow.y - arrow.x);
-            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), max(inside, 0.92 * around));
+            let alpha = max(inside, 0.92 * around) * corner.colour.a;
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), alpha);
         }
         case BLEND: {
             return vec4(mix(corner.colour.rgb, corner.second.rgb, at.x / corner.rectangle.z), 1.0);

@@ -29,7 +29,8 @@ struct Panel {
     soft: f32,
     // Left, top, width and height of the body's region in the textures that hold bodies (px).
     region: vec4<f32>,
-    // Its left and top in the picture (px), less its left and top in those textures.
+    // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
+    // picture (px).
     place: vec4<f32>,
 }
 

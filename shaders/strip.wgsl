@@ -48,6 +48,21 @@ fn texel_of(place: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(clamp(floor(place), low, high));
 }
 
-fn depth_at(pixel: vec2<f32>) -> f32 {
-    return load_depth(texel_of(pixel));
+// The texel of which a sample lies nearest to a point (px). All samples together stand for the pixel around that point.
+fn texel_around(place: vec2<f32>, sample: u32) -> vec2<i32> {
+    return texel_of(place - sample_place(sample) + 0.5);
+}
+
+// The depth of the bodies at the sample nearest to a point.
+fn sample_depth(place: vec2<f32>, sample: u32) -> f32 {
+    return load_sample_depth(texel_around(place, sample), sample);
+}
+
+// Lines fade over this range of depths before and behind the surface, as a part of the distance: none of them
+// disappears at once.
+const FADED_DEPTH = 0.0008;
+
+// How much is seen of a line at one depth of a surface at another.
+fn visible_share(line: f32, surface: f32) -> f32 {
+    return saturate(0.5 + 0.5 * (line - surface) / (FADED_DEPTH * max(surface, 1e-9)));
 }

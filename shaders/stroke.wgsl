@@ -59,6 +59,25 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
 }
 
+// How much is seen of a disc, for one sample of the pixel around its middle and one of the pixel that is drawn.
+fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, front: f32, sample: u32) -> f32 {
+    // At an outline, the next pixel may be the background's.
+    let beside = min(
+        min(sample_depth(middle + vec2(1.5, 0.0), sample), sample_depth(middle - vec2(1.5, 0.0), sample)),
+        min(sample_depth(middle + vec2(0.0, 1.5), sample), sample_depth(middle - vec2(0.0, 1.5), sample)),
+    );
+    let seen = visible_share(before, min(sample_depth(middle, sample), beside));
+    return seen * visible_share(front, sample_depth(pixel, sample));
+}
+
+// How much is seen of a line, and how much of it runs over a surface and not along an outline, where it stands out
+// against the ground.
+fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, sample: u32) -> vec2<f32> {
+    let here = sample_depth(middle, sample);
+    let inside = here > 0.0 && min(sample_depth(middle + across, sample), sample_depth(middle - across, sample)) > 0.0;
+    return vec2(visible_share(before, here), select(0.0, 1.0, inside));
+}
+
 @fragment
 fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let start = stroke.ends.xy;
@@ -69,23 +88,30 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let middle = start + share * difference;
     let distance = length(pixel - middle);
     let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
-    let here = depth_at(middle);
     if stroke.kind == DISC {
-        // At an outline, the next pixel may be the background's.
-        let beside = min(
-            min(depth_at(middle + vec2(1.5, 0.0)), depth_at(middle - vec2(1.5, 0.0))),
-            min(depth_at(middle + vec2(0.0, 1.5)), depth_at(middle - vec2(0.0, 1.5))),
-        );
         let front = before / (1.0 - min(0.5, FRONT * stroke.size / panel.focal));
-        let shown = panel.flatness > 0.5 || (before >= min(here, beside) && front >= depth_at(pixel));
         let inward = stroke.size - distance;
+        var shown = 0.0;
+        for (var sample = 0u; sample < SAMPLES; sample++) {
+            shown += disc_share(middle, pixel, before, front, sample) / f32(SAMPLES);
+        }
+        shown = max(shown, panel.flatness);
         let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - RIM * stroke.size + 0.5));
-        return vec4(decoded(colour), select(0.0, saturate(inward), shown));
+        return vec4(decoded(colour), saturate(inward + 0.5) * shown);
     }
-    let visible = before >= here || panel.flatness > 0.5;
     // Lines thinner than a pixel are fainter instead.
     let drawn = max(stroke.size, 1.0);
     var covered = saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
+    if covered <= 0.0 {
+        return vec4(0.0);
+    }
+    let along = difference / max(length(difference), 1e-6);
+    let across = 2.0 * vec2(-along.y, along.x);
+    var shares = vec2(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        shares += line_shares(middle, across, before, sample) / f32(SAMPLES);
+    }
+    shares.x = max(shares.x, panel.flatness);
     var own = mix(stroke.first.rgb, stroke.second.rgb, share);
     if stroke.kind == CASED_LINE {
         let casing = max(CASING * stroke.size, LEAST_CASING);
@@ -93,12 +119,8 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
         // Pieces of one line fit together only with straight ends.
         covered *= saturate(0.5 + min(unbounded, 1.0 - unbounded) * length(difference));
     }
-    // Along an outline a line is seen before the ground.
-    let along = difference / max(length(difference), 1e-6);
-    let across = 2.0 * vec2(-along.y, along.x);
-    let inside = here > 0.0 && min(depth_at(middle + across), depth_at(middle - across)) > 0.0;
-    let colour = select(own, stroke.other.rgb, stroke.kind == LINE_ON_BODY && inside);
+    let colour = mix(own, stroke.other.rgb, select(0.0, shares.y, stroke.kind == LINE_ON_BODY));
     // Where many faint lines meet, their round ends would add up to a dot.
     let hidden = select(0.0, stroke.other.a, unbounded == share);
-    return vec4(decoded(colour), covered * select(hidden, 1.0, visible));
+    return vec4(decoded(colour), covered * mix(hidden, 1.0, shares.x));
 }

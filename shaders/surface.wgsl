@@ -25,7 +25,7 @@ const NEARER = 0.02;
 // The share of a stripe's period that is dark, and how dark it is.
 const STRIPE = 0.2;
 const STRIPE_ALPHA = 0.62;
-// A flat body's hatch has this period (px in the reference picture) and this share of it is dark.
+// A flat body's hatch goes along with the body, has this period (px in the reference picture) and this share of it is dark.
 const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
@@ -77,7 +77,8 @@ fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
 
 // How much of a pixel the stripes of the hatch cover.
 fn stripes(hatch: f32, place: vec2<f32>) -> f32 {
-    let flat_hatch = (place.x + place.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);
+    let from_body = place + panel.place.xy - panel.place.zw;
+    let flat_hatch = (from_body.x + from_body.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);
     let at = select(hatch, flat_hatch, panel.flatness > 0.5);
     let share = select(STRIPE, FLAT_STRIPE, panel.flatness > 0.5);
     // Periods a pixel; the width of the filter.

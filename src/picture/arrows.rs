@@ -20,6 +20,8 @@ const SMALLEST: f64 = 0.36;
 const FAINTEST: f64 = 0.33;
 /// Arrows shorter than this are left out (parts of the size, and px): they would be specks on the nodes.
 const SHORTEST: [f64; 2] = [9.0, 2.5];
+/// They fade over this part of that length above it.
+const FADING: f64 = 0.35;
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 
@@ -71,31 +73,35 @@ pub(super) struct Arrows<'a> {
 }
 
 impl Arrows<'_> {
-    /// Adds an arrow for each of the nodes, the farthest first.
+    /// Adds an arrow for each of the nodes, as opaque as it says, the farthest first.
     pub(super) fn draw(
         &self,
-        nodes: &[u32],
+        nodes: &[(u32, f64)],
         rest: &[DVec3],
         position: &[DVec3],
         placement: &Placement,
         marks: &mut Vec<Mark>,
     ) {
-        let ends = nodes.iter().filter_map(|&node| {
+        let ends = nodes.iter().filter_map(|&(node, opacity)| {
             let start = placement.place(rest[node as usize]);
             let end = start + self.times * (position[node as usize] - start);
             let (from, _) = self.lens.project(start)?;
             let (to, depth) = self.lens.project(end)?;
-            Some((depth, [from, to].map(DVec2::from)))
+            Some((depth, opacity, [from, to].map(DVec2::from)))
         });
         let mut ends: Vec<_> = ends.collect();
         ends.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let arrows = ends.into_iter().filter_map(|(_, ends)| self.inside(ends));
-        marks.extend(arrows.map(|ends| arrow(ends, self.size, self.colour, self.halo)));
+        let arrows = ends.into_iter().filter_map(|(_, opacity, ends)| {
+            let (ends, part) = self.inside(ends)?;
+            let whole = arrow(ends, self.size, self.colour, self.halo);
+            Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })
+        });
+        marks.extend(arrows);
     }
 
-    /// The part of an arrow that lies where arrows may be. The largest reach beyond that first, and without them the
+    /// The part of an arrow that lies where arrows may be, and how opaque it is: the shortest fade. The largest reach beyond that first, and without them the
     /// small ones would tell a wrong tale.
-    fn inside(&self, [from, to]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
         let [left, top, width, height] = self.room.map(f64::from);
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
         let (mut begin, mut end) = (0.0, 1.0);
@@ -108,8 +114,8 @@ impl Arrows<'_> {
             }
         }
         let ends = [begin, end].map(|share| from.lerp(to, share));
-        // NaN is longer than nothing.
-        (begin < end && ends[0].distance(ends[1]) >= shortest).then_some(ends)
+        let longer = ends[0].distance(ends[1]) / shortest - 1.0;
+        (begin < end && longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
     }
 }
 

@@ -160,6 +160,13 @@ impl Lens {
         (ahead && pixel.iter().all(|at| at.is_finite())).then_some((pixel, distance))
     }
 
+    /// The cosine of the angle between an outward `normal` at `point` and the direction to the viewer; 0 without a normal.
+    pub fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
+        let view = if self.orthographic { self.forward } else { point - self.eye };
+        let cosine = -normal.dot(view) / (normal.length() * view.length());
+        if cosine.is_finite() { cosine } else { 0.0 }
+    }
+
     /// Whether a plane through `point` with an outward `normal` shows its outside.
     pub fn sees(&self, point: DVec3, normal: DVec3) -> bool {
         let view = if self.orthographic { self.forward } else { point - self.eye };

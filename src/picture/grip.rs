@@ -19,6 +19,8 @@ const FEW: usize = 4;
 /// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
 const SHARE: f64 = 0.45;
 const NARROWEST: f64 = 3.0;
+/// The opacity of the mark of a node that is hidden.
+const HIDDEN: f64 = 0.38;
 
 /// What is needed to mark the nodes of one panel.
 pub(super) struct Hands<'a> {
@@ -51,7 +53,8 @@ impl Hands<'_> {
             let dragged = grip.motion != Motion::Still;
             for &node in nodes() {
                 let ringed = dragged && grip.nodes.len() <= FEW;
-                self.mark(self.position[node as usize], visible[node as usize], ringed, marks);
+                let opacity = HIDDEN + (1.0 - HIDDEN) * visible[node as usize];
+                self.mark(self.position[node as usize], opacity, ringed, marks);
             }
             if dragged {
                 let points: Vec<_> = nodes().map(|&node| self.position[node as usize]).collect();
@@ -70,7 +73,7 @@ impl Hands<'_> {
         Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }
     }
 
-    fn mark(&self, point: DVec3, visible: bool, ringed: bool, marks: &mut Vec<Mark>) {
+    fn mark(&self, point: DVec3, opacity: f64, ringed: bool, marks: &mut Vec<Mark>) {
         let sizes = if ringed { HAND } else { PIN };
         let flat = self.pointers.lens.orthographic;
         let radius = (sizes[usize::from(flat)] * self.scale.line()).min(SHARE * self.element);
@@ -80,17 +83,13 @@ impl Hands<'_> {
         if !inside(pixel[0], left, width) || !inside(pixel[1], top, height) {
             return;
         }
-        marks.push(Mark {
+        let shape = if ringed { MarkShape::Hand } else { MarkShape::Pin };
+        marks.extend(shape.faint(opacity).map(|shape| Mark {
             rectangle: [pixel[0] - radius, pixel[1] - radius, 2.0 * radius, 2.0 * radius].map(narrow),
             along: Mark::UPRIGHT,
             colour: self.palette.pointer,
             second: self.palette.halo,
-            shape: match (ringed, visible) {
-                (false, true) => MarkShape::Pin,
-                (false, false) => MarkShape::HiddenPin,
-                (true, true) => MarkShape::Hand,
-                (true, false) => MarkShape::HiddenHand,
-            },
-        });
+            shape,
+        }));
     }
 }

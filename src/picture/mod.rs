@@ -115,6 +115,9 @@ pub struct Solid {
     pub mesh: Mesh,
     /// Its colour, before light falls on it.
     pub colour: Colour,
+    /// The colour of its rim, in the plane. There `hatch` says how far inside its outline a corner is (px), and corners
+    /// reach beyond it by more than half a pixel.
+    pub rim: Option<Colour>,
 }
 
 /// Something transparent.
@@ -170,6 +173,8 @@ pub struct Sight {
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
+    /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
+    pub middle: [f32; 2],
     /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.
     pub soft: f32,
 }
@@ -234,6 +239,8 @@ pub struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
+    /// How much of a contour is drawn, from 0 to 1: one comes and goes gently as a face turns towards the viewer.
+    pub strength: f32,
 }
 
 /// What a line is, which decides how it is drawn.
@@ -356,10 +363,27 @@ pub enum MarkShape {
     Point,
     /// A diamond with a halo of the second colour.
     Pin,
-    /// The same, faint: of something hidden.
-    HiddenPin,
     /// A disc in a ring, both with a halo of the second colour.
     Hand,
-    /// The same, faint: of something hidden.
-    HiddenHand,
+    /// An [`Self::Arrow`] of an opacity (of 255).
+    FaintArrow(u8),
+    /// A [`Self::Pin`] of an opacity (of 255).
+    FaintPin(u8),
+    /// A [`Self::Hand`] of an opacity (of 255).
+    FaintHand(u8),
+}
+
+impl MarkShape {
+    /// The same shape with a part of its opacity; `None` if nothing is left of it.
+    fn faint(self, part: f64) -> Option<Self> {
+        let opacity = (255.0 * part.clamp(0.0, 1.0)).round() as u8;
+        match self {
+            _ if opacity == 0 => None,
+            _ if opacity == 255 => Some(self),
+            Self::Arrow => Some(Self::FaintArrow(opacity)),
+            Self::Pin => Some(Self::FaintPin(opacity)),
+            Self::Hand => Some(Self::FaintHand(opacity)),
+            _ => Some(self),
+        }
+    }
 }

@@ -44,6 +44,8 @@ pub(super) struct Flat<'a> {
     pub(super) position: &'a [DVec3],
     pub(super) turned_over: &'a [bool],
     pub(super) lens: &'a Lens,
+    /// The camera before it follows anything.
+    pub(super) still: &'a Lens,
     pub(super) viewport: Rectangle,
     /// The part of the viewport that words leave free.
     pub(super) clear: Rectangle,
@@ -58,7 +60,11 @@ impl Flat<'_> {
     pub(super) fn floors(&self, obstacles: &[Obstacle], time: f64, marks: &mut Vec<Mark>) {
         for obstacle in obstacles {
             let Some((normal, height)) = half_space(obstacle, time) else { continue };
-            if normal.y > LEVEL { self.level(height, marks) } else { self.slope(normal, height, marks) }
+            if normal.y > LEVEL {
+                self.level(height, self.alignment(obstacle), marks);
+            } else {
+                self.slope(normal, height, marks);
+            }
         }
     }
 
@@ -108,11 +114,19 @@ impl Flat<'_> {
         mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
     }
 
+    /// How far a level floor is drawn below its place (px), so that it is sharp as long as neither it nor the camera
+    /// moves. Always as far: what moves shall move evenly.
+    fn alignment(&self, obstacle: &Obstacle) -> f64 {
+        let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL);
+        let pixel = start.and_then(|(_, level)| self.still.project(DVec3::new(self.still.eye.x, level, 0.0)));
+        pixel.map_or(0.0, |([_, y], _)| y.round() - y)
+    }
+
     /// A level floor.
-    fn level(&self, level: f64, marks: &mut Vec<Mark>) {
+    fn level(&self, level: f64, alignment: f64, marks: &mut Vec<Mark>) {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
-        let (y, margin, unit) = (pixel[1].round(), self.scale.margin(), self.scale.unit);
+        let (y, margin, unit) = (pixel[1] + alignment, self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
         // Below the captions it would underline them.
         let [_, clear, _, room] = self.clear.map(f64::from);
@@ -149,7 +163,8 @@ impl Flat<'_> {
             return;
         }
         let thickness = (1.6 * unit).round().max(1.0);
-        marks.push(mark([left + margin, y, length, thickness], self.palette.axis, MarkShape::Filled));
+        let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
+        marks.push(mark(line, self.palette.axis, MarkShape::Smooth));
     }
 
     /// Arrows that say which way round elements are, above the body.

@@ -10,6 +10,8 @@ use glam::{DVec2, DVec3};
 /// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).
 const LENGTH: f64 = 74.0;
 const SHORTEST: f64 = 11.0;
+/// It fades over this part of its length above the shortest.
+const FADING: f64 = 0.35;
 /// The part of the greatest speed from which on the arrow has its full length.
 const FAST: f64 = 0.25;
 /// Height of the mark that holds an arrow: its head with room for a halo (px in the reference picture).
@@ -50,22 +52,23 @@ impl Pointers<'_> {
         let unit = self.scale.line();
         // What comes straight at the viewer has a short arrow.
         let length = LENGTH * unit * share.sqrt() * step.length().min(1.0);
-        let Some(along) = step.try_normalize().filter(|_| length >= SHORTEST * unit) else { return };
+        let Some(along) = step.try_normalize() else { return };
+        let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
         let tail = if arriving { -gap * unit - length } else { gap * unit };
-        self.mark(DVec2::from(from) + tail * along, along, length, marks);
+        self.mark(DVec2::from(from) + tail * along, length * along, grown, marks);
     }
 
-    fn mark(&self, tail: DVec2, along: DVec2, length: f64, marks: &mut Vec<Mark>) {
+    /// An arrow, as opaque as it has grown. It fades before it reaches the sides of the panel.
+    fn mark(&self, tail: DVec2, way: DVec2, grown: f64, marks: &mut Vec<Mark>) {
         let height = HEIGHT * self.scale.line();
         let [left, top, width, depth] = self.viewport.map(f64::from);
         let inside = |at: DVec2| {
-            let room = height / 2.0;
-            (left + room..=left + width - room).contains(&at.x) && (top + room..=top + depth - room).contains(&at.y)
+            let sides = [at.x - left, left + width - at.x, at.y - top, top + depth - at.y];
+            sides.into_iter().fold(f64::INFINITY, f64::min) / (height / 2.0) - 1.0
         };
-        if !inside(tail) || !inside(tail + length * along) {
-            return;
-        }
-        let ends = [tail, tail + length * along];
-        marks.push(arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo));
+        let ends = [tail, tail + way];
+        let opacity = grown.min(inside(ends[0])).min(inside(ends[1]));
+        let whole = arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo);
+        marks.extend(whole.shape.faint(opacity).map(|shape| Mark { shape, ..whole }));
     }
 }

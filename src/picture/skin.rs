@@ -6,6 +6,9 @@ use crate::sim::body::Body;
 use glam::DVec3;
 use std::collections::HashMap;
 
+/// What belongs to faces fades as they turn from the viewer at this cosine to being seen from the side.
+const GRAZING: f64 = 0.08;
+
 /// The surface of a body, whichever elements have turned over.
 #[derive(Debug)]
 pub(super) struct Skin {
@@ -37,18 +40,18 @@ impl Skin {
         Self { nodes, triangles }
     }
 
-    /// Whether each node of the body is on a side of the skin that is turned towards the viewer; in the plane all are.
-    pub(super) fn visible(&self, position: &[DVec3], lens: &Lens) -> Vec<bool> {
+    /// How much of each node of the body is seen, from 0 to 1: all of those on a side of the skin that is turned towards
+    /// the viewer, and less of it the more it is seen from the side. In the plane all are seen.
+    pub(super) fn visible(&self, position: &[DVec3], lens: &Lens) -> Vec<f64> {
         if lens.orthographic {
-            return vec![true; position.len()];
+            return vec![1.0; position.len()];
         }
-        let mut visible = vec![false; position.len()];
+        let mut visible = vec![0.0_f64; position.len()];
         for triangle in &self.triangles {
             let nodes = triangle.map(|at| self.nodes[at as usize] as usize);
             let [a, b, c] = nodes.map(|node| position[node]);
-            if lens.sees(a, (b - a).cross(c - a)) {
-                nodes.iter().for_each(|&node| visible[node] = true);
-            }
+            let share = (lens.facing(a, (b - a).cross(c - a)) / GRAZING).clamp(0.0, 1.0);
+            nodes.iter().for_each(|&node| visible[node] = visible[node].max(share));
         }
         visible
     }

@@ -14,6 +14,8 @@ use std::collections::HashMap;
 const HATCH_PERIOD: f64 = 0.30;
 /// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
 const FLATNESS: f64 = 0.35;
+/// Between faces that are seen at a smaller cosine than this and others contours come and go gently.
+const GRAZING: f64 = 0.02;
 /// The finest cut of a patch in each direction.
 const FINEST_CUT: usize = 6;
 
@@ -96,20 +98,21 @@ impl Surroundings<'_> {
         edges.sort_unstable();
         edges.dedup();
         for &[a, b] in &edges {
-            lines.push(self.line(self.at(a), self.at(b), kinds.edge));
+            lines.push(self.line(self.at(a), self.at(b), kinds.edge, 1.0));
             let (start, along) = (self.at(a), (self.at(b) - self.at(a)) / cut as f64);
             for piece in 0..cut {
-                if borders.get(&(a, b, piece)).is_some_and(|facing| facing.differs || facing.count == 1) {
+                let strength = borders.get(&(a, b, piece)).map_or(0.0, Facing::contour);
+                if strength > 0.0 {
                     let [from, to] = [piece, piece + 1].map(|at| start + at as f64 * along);
-                    lines.push(self.line(from, to, kinds.contour));
+                    lines.push(self.line(from, to, kinds.contour, strength));
                 }
             }
         }
     }
 
-    fn line(&self, from: DVec3, to: DVec3, kind: LineKind) -> Line {
+    fn line(&self, from: DVec3, to: DVec3, kind: LineKind, strength: f64) -> Line {
         let relative = |point: DVec3| narrow_point((point - self.origin) / self.side).to_array();
-        Line { from: relative(from), to: relative(to), kind }
+        Line { from: relative(from), to: relative(to), kind, strength: narrow(strength) }
     }
 
     /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
@@ -153,8 +156,8 @@ impl Surroundings<'_> {
         }
     }
 
-    /// Adds the triangles of a patch to a mesh and says of each whether it shows its outside.
-    fn emit(&self, side: &Side, patch: &Patch, mesh: &mut Mesh) -> Vec<bool> {
+    /// Adds the triangles of a patch to a mesh and says of each how much it shows its outside, from 0 to 1.
+    fn emit(&self, side: &Side, patch: &Patch, mesh: &mut Mesh) -> Vec<f64> {
         let face = &side.nodes[..];
         let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
         let corners: Vec<_> = face.iter().map(|&node| self.at(node)).collect();
@@ -186,38 +189,33 @@ impl Surroundings<'_> {
         let mut facing = Vec::with_capacity(patch.triangles.len());
         for triangle in &patch.triangles {
             let [a, b, c] = triangle.map(|at| patch.points[at as usize]);
-            facing.push(self.lens.sees(a, (b - a).cross(c - a)));
+            let cosine = self.lens.facing(a, (b - a).cross(c - a));
+            facing.push((0.5 + 0.5 * cosine / GRAZING).clamp(0.0, 1.0));
             mesh.triangles.push(triangle.map(|at| base + at));
         }
         facing
     }
 
     /// Contours between the triangles of one patch.
-    fn inner_contours(&self, patch: &Patch, facing: &[bool], kinds: Lines, lines: &mut Vec<Line>) {
+    fn inner_contours(&self, patch: &Patch, facing: &[f64], kinds: Lines, lines: &mut Vec<Line>) {
         if facing.windows(2).all(|two| two[0] == two[1]) {
             return;
         }
-        let mut sides: HashMap<[u32; 2], bool> = HashMap::new();
+        let mut sides: HashMap<[u32; 2], f64> = HashMap::new();
         for (triangle, &seen) in patch.triangles.iter().zip(facing) {
             for side in around(triangle) {
                 if let Some(other) = sides.insert(ordered(side), seen)
                     && other != seen
                 {
                     let [a, b] = side.map(|at| patch.points[at as usize]);
-                    lines.push(self.line(a, b, kinds.contour));
+                    lines.push(self.line(a, b, kinds.contour, contour(other, seen)));
                 }
             }
         }
     }
 
     /// Notes how the triangles along the sides of a face are turned.
-    fn note_borders(
-        &self,
-        face: &[u32],
-        cut: usize,
-        facing: &[bool],
-        borders: &mut HashMap<(u32, u32, usize), Facing>,
-    ) {
+    fn note_borders(&self, face: &[u32], cut: usize, facing: &[f64], borders: &mut HashMap<(u32, u32, usize), Facing>) {
         let ears = self.ears.of(face);
         for (side, [a, b]) in around(face).enumerate() {
             let two = [side as u32, ((side + 1) % face.len()) as u32];
@@ -225,7 +223,7 @@ impl Surroundings<'_> {
             let ear = ears.and_then(|ears| ears.iter().position(|ear| two.iter().all(|corner| ear.contains(corner))));
             for piece in 0..cut {
                 let seen = match face.len() {
-                    _ if ears.is_some() => ear.is_none_or(|at| facing[at]),
+                    _ if ears.is_some() => ear.map_or(1.0, |at| facing[at]),
                     4 => facing[border_triangle(side, piece, cut)],
                     3 => facing[0],
                     _ => facing[side],
@@ -239,20 +237,32 @@ impl Surroundings<'_> {
 
 /// How the triangles that share a line are turned.
 struct Facing {
-    first: bool,
-    differs: bool,
+    least: f64,
+    most: f64,
     count: u32,
 }
 
 impl Facing {
-    fn new(seen: bool) -> Self {
-        Self { first: seen, differs: false, count: 1 }
+    fn new(seen: f64) -> Self {
+        Self { least: seen, most: seen, count: 1 }
     }
 
-    fn meet(&mut self, seen: bool) {
-        self.differs |= seen != self.first;
+    fn meet(&mut self, seen: f64) {
+        self.least = self.least.min(seen);
+        self.most = self.most.max(seen);
         self.count += 1;
     }
+
+    /// How much of a contour the line is.
+    fn contour(&self) -> f64 {
+        if self.count == 1 { 1.0 } else { contour(self.least, self.most) }
+    }
+}
+
+/// How much of a contour lies between two triangles that show their outsides so much. Of the lines around one that is
+/// seen from the side, those on one side or those on the other are contours as a whole.
+fn contour(one: f64, other: f64) -> f64 {
+    (3.0 * (one - other).abs()).min(1.0)
 }
 
 /// A bilinear patch cut into `cut` × `cut` cells of two triangles.

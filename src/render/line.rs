@@ -4,7 +4,7 @@ use super::panel::{Panels, is_visible, limit};
 use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Picture, Rectangle};
+use crate::picture::{Line, LineKind, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
@@ -21,15 +21,18 @@ struct Segment {
     from: [f32; 3],
     to: [f32; 3],
     kind: u32,
+    strength: f32,
 }
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32, 3 => Float32];
 
 /// A pipeline and what it reads.
 #[derive(Debug)]
 struct Way {
     among: bool,
-    pipeline: wgpu::RenderPipeline,
+    /// For edges and for contours.
+    pipelines: [wgpu::RenderPipeline; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
@@ -42,7 +45,8 @@ pub(super) struct Lines {
     among: Option<Way>,
     samples: u32,
     segments: GrowingBuffer<Segment>,
-    ranges: Vec<Range<u32>>,
+    /// The edges and the contours of each panel.
+    ranges: Vec<[Range<u32>; 2]>,
 }
 
 impl Lines {
@@ -70,13 +74,22 @@ impl Lines {
         let mut segments = Vec::new();
         self.ranges.clear();
         for panel in &picture.panels {
-            let start = segments.len() as u32;
-            segments.extend(panel.lines.iter().map(|line| Segment {
-                from: line.from,
-                to: line.to,
-                kind: line.kind as u32,
-            }));
-            self.ranges.push(start..segments.len() as u32);
+            let contour = |line: &&Line| {
+                let kinds = [LineKind::Contour, LineKind::AlarmContour, LineKind::ObstacleContour];
+                kinds.contains(&line.kind)
+            };
+            let mut add = |lines: &mut dyn Iterator<Item = &Line>| {
+                let start = segments.len() as u32;
+                segments.extend(lines.map(|line| Segment {
+                    from: line.from,
+                    to: line.to,
+                    kind: line.kind as u32,
+                    strength: line.strength,
+                }));
+                start..segments.len() as u32
+            };
+            let edges = add(&mut panel.lines.iter().filter(|line| !contour(line)));
+            self.ranges.push([edges, add(&mut panel.lines.iter().filter(contour))]);
         }
         self.segments.write(gpu, &segments);
     }
@@ -92,14 +105,16 @@ impl Lines {
     /// Draws the lines of all panels, among solid obstacles if there are any.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle], among: bool) {
         let way = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
-        pass.set_pipeline(&way.pipeline);
         pass.set_bind_group(1, way.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
-        for (panel, (range, &place)) in self.ranges.iter().zip(places).enumerate() {
-            if is_visible(place) && !range.is_empty() {
-                limit(pass, place);
-                panels.bind_region(pass, panel);
-                pass.draw(0..4, range.clone());
+        for (at, pipeline) in way.pipelines.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {
+                if is_visible(place) && !ranges[at].is_empty() {
+                    limit(pass, place);
+                    panels.bind_region(pass, panel);
+                    pass.draw(0..4, ranges[at].clone());
+                }
             }
         }
     }
@@ -109,7 +124,8 @@ impl Way {
     fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
         let reading = super::reading_shader(samples);
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading, obstacles, ALARM_SHADER, SHADER];
+        let places = super::samples_shader(samples);
+        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, places, reading, obstacles, ALARM_SHADER, SHADER];
         let module = shader(gpu, "line", &parts);
         let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
         if among {
@@ -121,23 +137,27 @@ impl Way {
             dst_factor: wgpu::BlendFactor::One,
             operation: wgpu::BlendOperation::Max,
         };
-        let recipe = Recipe {
-            label: "line",
-            shader: &module,
-            entries: ["segment", "opacity"],
-            groups: &[&panels.layout, &layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Segment>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: LINE_FORMAT,
-            blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-            depth: false,
-            samples: 1,
+        let build = |label, fragment| {
+            let recipe = Recipe {
+                label,
+                shader: &module,
+                entries: ["segment", fragment],
+                groups: &[&panels.layout, &layout],
+                vertices: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<Segment>() as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &ATTRIBUTES,
+                })],
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                target: LINE_FORMAT,
+                blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
+                depth: false,
+                samples: 1,
+            };
+            recipe.build(gpu)
         };
-        Self { among, pipeline: recipe.build(gpu), layout, textures: None }
+        let pipelines = [build("edges", "edge_opacity"), build("contours", "contour_opacity")];
+        Self { among, pipelines, layout, textures: None }
     }
 
     fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {

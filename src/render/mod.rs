@@ -41,8 +41,15 @@ use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const STRIP_SHADER: &str = include_str!("../../shaders/strip.wgsl");
+const ONE_SAMPLE_SHADER: &str = include_str!("../../shaders/one_sample.wgsl");
+const FOUR_SAMPLES_SHADER: &str = include_str!("../../shaders/four_samples.wgsl");
 const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");
 const MULTISAMPLED_SHADER: &str = include_str!("../../shaders/multisampled.wgsl");
+
+/// The part of shaders that knows where samples lie.
+fn samples_shader(samples: u32) -> &'static str {
+    if samples > 1 { FOUR_SAMPLES_SHADER } else { ONE_SAMPLE_SHADER }
+}
 
 /// The part of shaders that reads what was drawn with a number of samples.
 fn reading_shader(samples: u32) -> &'static str {

@@ -18,9 +18,17 @@ struct SolidVertex {
     position: [f32; 3],
     normal: [f32; 3],
     colour: [f32; 3],
+    rim: [f32; 3],
+    /// How far inside the outline it is (px).
+    inward: f32,
 }
 
-const SOLID: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+const SOLID: [wgpu::VertexAttribute; 5] = wgpu::vertex_attr_array![
+    0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32
+];
+
+/// In space outlines are lines, and their solids have no rim.
+const DEEP_INSIDE: f32 = 1e6;
 
 /// A corner of a pane as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -73,7 +81,11 @@ impl Solids {
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
         // The light is that on bodies.
-        let module = shader(gpu, "obstacle", &[super::PANEL_SHADER, super::surface::SHADER, SHADER]);
+        let module = shader(
+            gpu,
+            "obstacle",
+            &[super::PANEL_SHADER, super::samples_shader(samples), super::surface::SHADER, SHADER],
+        );
         let recipe = Recipe {
             label: "obstacle",
             shader: &module,
@@ -102,8 +114,11 @@ impl Solids {
             let start = indices.len() as u32;
             for solid in &panel.obstacles.solids {
                 let (base, colour) = (vertices.len() as u32, linear(solid.colour).to_array());
-                let vertex =
-                    |&crate::picture::Vertex { position, normal, .. }| SolidVertex { position, normal, colour };
+                let rim = solid.rim.map_or(colour, |rim| linear(rim).to_array());
+                let vertex = |&crate::picture::Vertex { position, normal, hatch }| {
+                    let inward = if solid.rim.is_some() { hatch } else { DEEP_INSIDE };
+                    SolidVertex { position, normal, colour, rim, inward }
+                };
                 vertices.extend(solid.mesh.vertices.iter().map(vertex));
                 indices.extend(solid.mesh.triangles.iter().flatten().map(|at| base + at));
             }
@@ -149,7 +164,8 @@ impl Slabs {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, super::reading_shader(samples), PANE_SHADER];
+        let reading = [super::samples_shader(samples), super::reading_shader(samples)];
+        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading[0], reading[1], PANE_SHADER];
         let module = shader(gpu, "pane", &parts);
         let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
         let group = group_layout(gpu, "pane", &entries);

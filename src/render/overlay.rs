@@ -173,10 +173,15 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
 
 /// A mark that is no glyph, as the shader reads it.
 fn plain(mark: &picture::Mark) -> Mark {
+    let opacity = match mark.shape {
+        MarkShape::FaintArrow(opacity) | MarkShape::FaintPin(opacity) | MarkShape::FaintHand(opacity) => opacity,
+        _ => 255,
+    };
+    let [red, green, blue] = mark.colour;
     Mark {
         rectangle: mark.rectangle,
         along: mark.along,
-        colour: opaque(mark.colour),
+        colour: [red, green, blue, opacity],
         second: opaque(mark.second),
         glyph: [0; 2],
         shape: match mark.shape {
@@ -188,13 +193,11 @@ fn plain(mark: &picture::Mark) -> Mark {
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
-            MarkShape::Arrow => 9,
+            MarkShape::Arrow | MarkShape::FaintArrow(_) => 9,
             MarkShape::Blend => 10,
             MarkShape::Point => 11,
-            MarkShape::Pin => 12,
-            MarkShape::HiddenPin => 13,
-            MarkShape::Hand => 14,
-            MarkShape::HiddenHand => 15,
+            MarkShape::Pin | MarkShape::FaintPin(_) => 12,
+            MarkShape::Hand | MarkShape::FaintHand(_) => 13,
         },
     }
 }

@@ -100,7 +100,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         outline: linear(palette.outline),
         soft: sight.soft,
         region: Vec4::from_array(region.map(|length| length as f32)),
-        place: Vec4::new(left, top, 0.0, 0.0),
+        place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
     }
 }
 

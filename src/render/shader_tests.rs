@@ -4,8 +4,8 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite, curve, ground, line, obstacle, overlay,
-    stroke, surface, tint,
+    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite,
+    curve, ground, line, obstacle, overlay, stroke, surface, tint,
 };
 use std::mem::offset_of;
 
@@ -22,18 +22,18 @@ fn parse(parts: &[&str]) -> naga::Module {
 #[test]
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, surface::SHADER]);
-    parse(&[PANEL_SHADER, surface::SHADER, obstacle::SHADER]);
     parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
     parse(&[curve::SHADER]);
-    for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
+    for [places, reading] in [[ONE_SAMPLE_SHADER, SINGLE_SHADER], [FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER]] {
+        parse(&[PANEL_SHADER, places, surface::SHADER, obstacle::SHADER]);
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, STRIP_SHADER, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
+            parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
         }
-        parse(&[PANEL_SHADER, STRIP_SHADER, reading, obstacle::PANE_SHADER]);
+        parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
-        parse(&[PANEL_SHADER, STRIP_SHADER, reading, stroke::SHADER]);
+        parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, stroke::SHADER]);
     }
 }
 

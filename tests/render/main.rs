@@ -8,6 +8,7 @@ mod look;
 mod obstacles;
 mod pictures;
 mod shown;
+mod smooth;
 mod strips;
 mod words;
 

@@ -3,7 +3,7 @@
 use super::Composer;
 use super::ground::key_light;
 use crate::picture::arrows::{self, Arrows};
-use crate::picture::camera::Lens;
+use crate::picture::camera::{Lens, Middles, framing};
 use crate::picture::field::{NOWHERE, Shades};
 use crate::picture::grip::Hands;
 use crate::picture::layout::{self, Rectangle, Scale};
@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
 use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
-use crate::scene::{FloorStyle, Scene};
+use crate::scene::{Camera, FloorStyle, Follow, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{RunFrame, Status};
@@ -129,7 +129,22 @@ impl<'a> Draft<'a> {
             line_scale: narrow(self.scale.line()),
             soft: narrow(self.composer.soft),
             element: narrow(self.element),
+            middle: self.middle(),
         }
+    }
+
+    /// The pixel of the body's middle.
+    fn middle(&self) -> [f32; 2] {
+        let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
+        self.lens.project(middle).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow))
+    }
+
+    /// The camera of the panel before it follows anything.
+    fn still(&self) -> Lens {
+        let view = &self.scene.view;
+        let camera = Camera { follow: Follow::Nothing, ..view.camera.clone() };
+        let framing = framing(&camera, &Middles::new([], DVec3::ZERO), false);
+        Lens::new(view, &framing, self.body.dimension, self.viewport.map(f64::from), self.scale.unit)
     }
 
     /// Floors, nodes and ring arrows of the plane.
@@ -144,6 +159,7 @@ impl<'a> Draft<'a> {
             position: &self.position,
             turned_over: &self.run.snapshot.turned_over,
             lens: &self.lens,
+            still: &self.still(),
             viewport: self.viewport,
             clear: self.clear_of_words(),
             floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
@@ -236,16 +252,16 @@ impl<'a> Draft<'a> {
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
 
-    /// The nodes that get arrows, without those of which surfaces in space hide every face.
-    fn facing_bearers(&self) -> Vec<u32> {
+    /// The nodes that get arrows, and how much is seen of these: nothing where surfaces in space hide every face.
+    fn facing_bearers(&self) -> Vec<(u32, f64)> {
         let Composer { skin, bearers, .. } = self.composer;
         if !self.scene.view.visible.surfaces {
-            return bearers.clone();
+            return bearers.iter().map(|&node| (node, 1.0)).collect();
         }
-        let visible = skin.visible(&self.position, &self.lens);
-        let mut hidden = vec![false; self.position.len()];
-        skin.nodes.iter().for_each(|&node| hidden[node as usize] = !visible[node as usize]);
-        bearers.iter().copied().filter(|&node| !hidden[node as usize]).collect()
+        let on_skin = skin.visible(&self.position, &self.lens);
+        let mut visible = vec![1.0; self.position.len()];
+        skin.nodes.iter().for_each(|&node| visible[node as usize] = on_skin[node as usize]);
+        bearers.iter().map(|&node| (node, visible[node as usize])).collect()
     }
 
     /// The part of the panel that words leave free.

@@ -1,9 +1,9 @@
 //! Obstacles in the plane: discs, rods with round ends and rectangles, flat and behind the body. Plates are drawn as
 //! floors are.
 
-use super::half_space::{clipped_polygon, half_space};
+use super::half_space::{HalfSpace, clipped_polygon, half_space};
 use super::{Site, Staged};
-use crate::picture::palette::Colour;
+use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::{Mark, Mesh, Obstacles, Solid, Vertex};
 use crate::sim::contact::{Motion, Obstacle, Shape};
@@ -14,8 +14,10 @@ use std::f64::consts::{PI, TAU};
 const FLATNESS: f64 = 0.1;
 /// Into how many segments something round is cut, at least and at most.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
-/// Thickness of outlines (px in the reference picture).
+/// Thickness of outlines (px in the reference picture). The shader knows it, too.
 const RIM: f64 = 2.0;
+/// Room for a smooth border on both sides of an outline (px).
+const BORDER: f64 = 0.75;
 
 /// What is needed to draw the obstacles of one panel in the plane.
 pub(in crate::picture) struct Flat<'a> {
@@ -44,34 +46,53 @@ impl Flat<'_> {
         let solid = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
         let solid: Vec<_> = solid.collect();
         let (mut solids, mut outermost) = (Vec::new(), Vec::new());
-        let rim = RIM * self.line_scale / self.site.lens.focal;
         for obstacle in self.site.obstacles {
             let Some(outline) = self.outline(obstacle, 0.0) else { continue };
-            let [fill, line] = self.site.palette.obstacle_flat;
-            // Where both are the first one stays: depth is everywhere the same.
-            let inside = self.outline(obstacle, rim).unwrap_or_default();
-            for (polygon, colour) in [(&inside, fill), (&outline, line)] {
-                solids.extend(self.filled(&clipped_polygon(polygon, &solid), colour));
-            }
+            solids.extend(self.solid(obstacle, &solid));
             outermost.extend(outline);
         }
         (Obstacles { solids, slabs: Vec::new() }, Staged { outermost, ..Staged::default() })
     }
 
+    /// An obstacle as far as it lies outside of half-spaces; `None` for these and where nothing is left.
+    fn solid(&self, obstacle: &Obstacle, half_spaces: &[HalfSpace]) -> Option<Solid> {
+        let pixels = self.site.lens.focal;
+        let inward = (RIM * self.line_scale + BORDER).min(0.999 * thinnest(&obstacle.shape) * pixels);
+        // The coordinate that the plane leaves free says how far inside the outline a point is (px).
+        let around = |inward: f64| {
+            let outline = self.outline(obstacle, inward / pixels)?;
+            Some(outline.into_iter().map(move |at| at.with_z(inward)).collect::<Vec<_>>())
+        };
+        let (outer, inner) = (around(-BORDER)?, around(inward)?);
+        let next = |at: usize| (at + 1) % outer.len();
+        let border = (0..outer.len()).map(|at| vec![outer[at], outer[next(at)], inner[next(at)], inner[at]]);
+        let mut mesh = Mesh::default();
+        for polygon in border.chain([inner.clone()]) {
+            let base = mesh.vertices.len() as u32;
+            let polygon = clipped_polygon(&polygon, half_spaces);
+            mesh.vertices.extend(polygon.iter().map(|at| Vertex {
+                position: self.site.relative(at.with_z(0.0)),
+                normal: [0.0, 0.0, 1.0],
+                hatch: narrow(at.z),
+            }));
+            mesh.triangles.extend((2..polygon.len() as u32).map(|at| [base, base + at - 1, base + at]));
+        }
+        let [colour, rim] = self.site.palette.obstacle_flat;
+        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim) })
+    }
+
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and where
-    /// nothing is left.
+    /// nothing is left. It has as many corners wherever it is moved.
     fn outline(&self, obstacle: &Obstacle, inwards: f64) -> Option<Vec<DVec3>> {
         let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.pivot);
         let place = |point: DVec3| pose.apply(pivot, point);
         match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => None,
             Shape::Sphere { centre, radius } => {
-                let radius = radius - inwards;
-                (radius > 0.0).then(|| self.round([place(centre); 2], radius))
+                (radius > inwards).then(|| self.round([place(centre); 2], radius, inwards))
             }
             Shape::Capsule { from, to, radius } => {
-                let radius = radius - inwards;
-                (radius > 0.0).then(|| self.round([place(from), place(to)], radius))
+                (radius > inwards).then(|| self.round([place(from), place(to)], radius, inwards))
             }
             Shape::Box { centre, half, turn } => {
                 let half = half - inwards;
@@ -82,8 +103,8 @@ impl Flat<'_> {
         }
     }
 
-    /// The outline of all points near a line.
-    fn round(&self, [from, to]: [DVec3; 2], radius: f64) -> Vec<DVec3> {
+    /// The outline of all points near a line, moved inwards by a length (m).
+    fn round(&self, [from, to]: [DVec3; 2], radius: f64, inwards: f64) -> Vec<DVec3> {
         let needed = PI / (2.0 * FLATNESS / (radius * self.site.lens.focal).max(1e-3)).sqrt();
         let segments = (needed.clamp(SEGMENTS[0], SEGMENTS[1]) as usize).next_multiple_of(2);
         let along = (to - from).try_normalize().unwrap_or(DVec3::X);
@@ -92,18 +113,18 @@ impl Flat<'_> {
         let around = |middle: DVec3, begin: usize| {
             (begin..=begin + half).map(move |at| {
                 let (sine, cosine) = libm::sincos(TAU * at as f64 / segments as f64);
-                middle + radius * (sine * along - cosine * across)
+                middle + (radius - inwards) * (sine * along - cosine * across)
             })
         };
         around(to, 0).chain(around(from, half)).collect()
     }
+}
 
-    /// A convex polygon of one colour; `None` where nothing is left of it.
-    fn filled(&self, polygon: &[DVec3], colour: Colour) -> Option<Solid> {
-        let vertex = |&at: &DVec3| Vertex { position: self.site.relative(at), normal: [0.0, 0.0, 1.0], hatch: 0.0 };
-        let triangles = (2..polygon.len() as u32).map(|at| [0, at - 1, at]);
-        let mesh =
-            Mesh { vertices: polygon.iter().map(vertex).collect(), triangles: triangles.collect(), shades: Vec::new() };
-        (polygon.len() > 2).then_some(Solid { mesh, colour })
+/// Half the thickness of a solid obstacle where it is thinnest (m).
+fn thinnest(shape: &Shape) -> f64 {
+    match *shape {
+        Shape::Floor { .. } | Shape::Plate { .. } => f64::INFINITY,
+        Shape::Sphere { radius, .. } | Shape::Capsule { radius, .. } => radius,
+        Shape::Box { half, .. } => half.x.min(half.y),
     }
 }

@@ -36,7 +36,7 @@ impl Staging<'_> {
         let mesh = self.turned(&lathe);
         self.outline(&lathe, lines);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -99,7 +99,7 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
     }
 
     /// The mesh of something round.
@@ -154,7 +154,7 @@ impl Staging<'_> {
     pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
         let ground = self.ground.as_slice();
         if let Some([from, to]) = clipped_line([from, to], ground) {
-            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind });
+            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind, strength: 1.0 });
         }
     }
 
@@ -173,7 +173,7 @@ impl Staging<'_> {
             .collect();
         if let [from, to] = through[..] {
             let kind = LineKind::ObstacleContour;
-            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind });
+            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind, strength: 1.0 });
         }
     }
 }

@@ -1,0 +1,196 @@
+//! Smooth borders, and nothing that flickers: what moves by a hair changes pixels by a hair.
+
+use super::gpu;
+use image::RgbImage;
+use localshape::gpu::Gpu;
+use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
+use localshape::render::Renderer;
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+use localshape::sim::snapshot::Frame;
+
+const WORLD: &str = "
+    gravity = [0, 0, 0]
+    time = { duration = 2, step = 0.0166666666667, frames_per_second = 60 }
+";
+const SPRINGS: &str = "
+    run = [{ name = 'one', model = { kind = 'mass-spring', stiffness = 1e-9, springs = 'edges+one-diagonal' } }]
+";
+/// Turns half a pixel in a frame at the farthest node.
+const TURNING: &str = "spin = { axis = [1, 3, 1.5], rate = 0.06 }\n";
+const PLANE: &str = "
+    gravity = [0, 0]
+    time = { duration = 1, step = 0.01 }
+    body = { polygon = { sides = 5, radius = 0.02 }, offset = [3, 0] }
+    run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1 } }]
+    view = { camera = { target = [0, 0], distance = 4 }, size = [320, 180] }
+";
+
+fn scene(parts: &[&str]) -> Scene {
+    let text = parts.concat();
+    Scene::parse(&text, "smooth.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn frames(scene: &Scene, indices: std::ops::Range<u64>) -> Vec<Frame> {
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let mut sequence = Sequence::new(scene, &runs);
+    indices.map(|index| sequence.frame(index)).collect()
+}
+
+fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {
+    let mut renderer = Renderer::new(gpu, picture.size, samples).expect("a size that can be drawn");
+    renderer.draw(picture).expect("the device works")
+}
+
+/// A picture of the plane without marks and words.
+fn empty_plane(obstacle: &str) -> Picture {
+    let scene = scene(&[PLANE, obstacle]);
+    let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
+    picture.marks.clear();
+    picture.words.clear();
+    picture
+}
+
+/// Light as it is, not as it is stored.
+fn linear(byte: u8) -> f64 {
+    let encoded = f64::from(byte) / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Along a border with a slight slope, a row of pixels goes from the ground to the darkest of it in many even steps.
+fn assert_smooth(image: &RgbImage, x: std::ops::Range<u32>, y: u32, name: &str) {
+    let mut row: Vec<u8> = x.map(|x| image.get_pixel(x, y)[1]).collect();
+    if row.first() < row.last() {
+        row.reverse();
+    }
+    let darkest = row.iter().enumerate().min_by_key(|(_, value)| **value).map_or(0, |(at, _)| at);
+    row.truncate(darkest + 1);
+    assert!(row.windows(2).all(|two| two[0] >= two[1]), "{name}: {row:?}");
+    row.dedup();
+    // Both sides and what lies between them.
+    assert!(row.len() >= 7, "{name}: {row:?}");
+}
+
+/// The row in the middle of a border that a column crosses once.
+fn crossing(image: &RgbImage, x: u32, y: std::ops::Range<u32>) -> u32 {
+    let at = |y: u32| i32::from(image.get_pixel(x, y)[1]);
+    let middle = (at(y.start) + at(y.end)) / 2;
+    let above = at(y.start) > middle;
+    y.into_iter().find(|&y| (at(y) > middle) != above).expect("a border")
+}
+
+#[test]
+fn borders_of_flat_marks_are_smooth() {
+    let Some(gpu) = gpu("borders_of_flat_marks_are_smooth") else { return };
+    let (sine, cosine) = (0.08_f32).sin_cos();
+    for shape in [MarkShape::Smooth, MarkShape::Arrow] {
+        let mut picture = empty_plane("");
+        picture.marks.push(Mark {
+            rectangle: [60.3, 60.2, 200.0, 80.0],
+            along: [cosine, sine],
+            colour: [0; 3],
+            second: [0; 3],
+            shape,
+        });
+        let image = draw(gpu, &picture, 4);
+        let y = crossing(&image, 110, 40..90);
+        assert_smooth(&image, 100..120, y, &format!("{shape:?}"));
+    }
+    // The upper end of a disc, to its middle.
+    let mut picture = empty_plane("");
+    picture.marks.push(Mark {
+        rectangle: [60.0, 40.3, 100.0, 100.0],
+        along: Mark::UPRIGHT,
+        colour: [0; 3],
+        second: [0; 3],
+        shape: MarkShape::Node,
+    });
+    let image = draw(gpu, &picture, 4);
+    assert_smooth(&image, 94..110, 40, "disc");
+}
+
+#[test]
+fn borders_of_obstacles_in_the_plane_are_smooth() {
+    let Some(gpu) = gpu("borders_of_obstacles_in_the_plane_are_smooth") else { return };
+    let turned = "box'\nsize = [0.8, 0.4]\ncentre = [0, 0]\nrotation = { angle = 0.08 }";
+    for (kind, x) in [(turned, 150..170), ("sphere'\nradius = 0.3\ncentre = [0, 0]", 144..160)] {
+        let image = draw(gpu, &empty_plane(&format!("[[obstacle]]\nkind = '{kind}\n")), 4);
+        let y = crossing(&image, (x.start + x.end) / 2, 20..95);
+        assert_smooth(&image, x, y, kind);
+    }
+}
+
+#[test]
+fn lines_and_bodies_in_space_are_smooth() {
+    let Some(gpu) = gpu("lines_and_bodies_in_space_are_smooth") else { return };
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 0.2 }\nrotation = { axis = [0, 0, 1], angle = 0.08 }\n";
+    let camera = "camera = { azimuth = 0, elevation = 0, target = [0, 0.1, 0], distance = 1.2 }\n";
+    let view = format!("[view]\nsize = [320, 180]\n{camera}");
+    let scene = scene(&[WORLD, SPRINGS, body, &view]);
+    let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
+    picture.words.clear();
+    picture.marks.clear();
+    let image = draw(gpu, &picture, 4);
+    let y = crossing(&image, 160, 30..96);
+    assert_smooth(&image, 150..170, y, "outline");
+    let panel = &mut picture.panels[0];
+    panel.lines.retain(|line| line.kind == LineKind::Edge);
+    panel.strokes.push(Stroke {
+        ends: [[-1.0, 0.05, 1.0], [1.0, 0.22, 1.0]],
+        colours: [[0; 3]; 2],
+        second: Second::None,
+        behind: 0,
+        width: 16.0,
+    });
+    let image = draw(gpu, &picture, 4);
+    let y = crossing(&image, 160, 62..84);
+    assert_smooth(&image, 140..180, y, "stroke");
+}
+
+/// The largest change of a pixel between two pictures, in linear light.
+fn change(one: &RgbImage, other: &RgbImage) -> f64 {
+    let pairs = one.as_raw().iter().zip(other.as_raw());
+    pairs.map(|(&a, &b)| (linear(a) - linear(b)).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn what_turns_slowly_changes_slowly() {
+    let Some(gpu) = gpu("what_turns_slowly_changes_slowly") else { return };
+    let bodies = [
+        "[body]\nlattice = { cells = [2, 2, 2], side = 0.1 }\n",
+        "[body]\nlattice = { cells = [2, 2, 2], side = 0.1, irregular = 0.35, seed = 3 }\n",
+        "[body]\nlattice = { cells = [2, 1, 2], side = [0.1, 0.01, 0.1] }\n",
+    ];
+    let camera = "size = [320, 180]\ncamera = { target = [0, 0.05, 0], distance = 1.6 }\n";
+    let shows = ["[view]\n", "[view]\nshow = ['surfaces', 'nodes', 'springs', 'displacements']\n"];
+    for body in bodies {
+        for show in shows {
+            let scene = scene(&[WORLD, SPRINGS, body, TURNING, show, camera]);
+            let composer = Composer::new(&scene);
+            let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+            let images: Vec<_> = frames(&scene, 0..12)
+                .iter()
+                .map(|frame| {
+                    let mut picture = composer.compose(frame);
+                    picture.words.clear();
+                    renderer.draw(&picture).expect("the device works")
+                })
+                .collect();
+            let largest = images.windows(2).map(|two| change(&two[0], &two[1])).fold(0.0, f64::max);
+            // A quarter of the way from black to white is one sample of four.
+            assert!((1e-3..0.2).contains(&largest), "{body}{show}: {largest}");
+        }
+    }
+}
+
+#[test]
+fn obstacles_are_drawn_alike_every_time() {
+    let Some(gpu) = gpu("obstacles_are_drawn_alike_every_time") else { return };
+    let text = include_str!("../golden/obstacles.toml");
+    let scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("the scene is sound");
+    let frame = &frames(&scene, 6..7)[0];
+    for samples in [1, 4] {
+        let [one, other] = [(), ()].map(|()| draw(gpu, &compose(&scene, frame), samples));
+        assert_eq!(one, other);
+    }
+}
