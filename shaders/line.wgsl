@@ -28,6 +28,10 @@ const STEP = 0.22;
 const ROUND_STEP = 0.8;
 // Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
 const SMALL_ELEMENT = 26.0;
+// Towards this size (px) edges fade out: so close together they would only flicker.
+const SMALLEST_ELEMENT = vec2<f32>(1.5, 4.0);
+// Folds inside the turned-over set of elements smaller than this (px) are fainter.
+const SMALL_FOLDED = 8.0;
 
 @vertex
 fn segment(
@@ -81,7 +85,8 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     if segment.kind == OBSTACLE_EDGE {
         return vec4(0.80 * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
     }
-    let strength = min(1.0, panel.element / SMALL_ELEMENT);
+    let strength = min(1.0, panel.element / SMALL_ELEMENT)
+        * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
     if segment.kind == EDGE && panel.flatness > 0.5 {
         return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
     }
@@ -128,7 +133,12 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
         return select(vec4(0.0, 0.0, 0.0, step), vec4(0.0, step, 0.0, 0.0), segment.kind == ALARM_CONTOUR);
     }
     if segment.kind == ALARM_CONTOUR {
-        return vec4(0.0, 0.80 * covered(distance, 1.7 * scale), 0.0, 0.0);
+        // Where the set ends, its outline is drawn at full strength.
+        let ends = textureLoad(alarm_depth, texel_of(middle + across), 0) <= 0.0
+            || textureLoad(alarm_depth, texel_of(middle - across), 0) <= 0.0;
+        let smallness = min(1.0, panel.element / SMALL_FOLDED);
+        let fold = select(smallness * smallness, 1.0, ends);
+        return vec4(0.0, 0.80 * fold * covered(distance, 1.7 * scale), 0.0, 0.0);
     }
     return vec4(0.0);
 }

@@ -25,6 +25,7 @@ mod plane;
 mod pointer;
 mod ramp;
 mod shadow;
+mod shell;
 mod skin;
 mod surface;
 mod tally;

@@ -3,7 +3,7 @@
 use super::panel::Draft;
 use crate::picture::narrow::narrow_point;
 use crate::picture::plane::node_radius;
-use crate::picture::surface::{Lines, Surroundings, boundary};
+use crate::picture::surface::{Lines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use glam::DVec3;
@@ -23,13 +23,15 @@ impl Draft<'_> {
             origin: self.origin,
             side: self.side,
             soft: self.composer.soft * self.side,
+            element: self.element,
             shades: self.shades.as_ref(),
         };
-        let over = &self.run.snapshot.turned_over;
+        let sets = self.composer.shell.boundaries(self.body, &self.run.snapshot.turned_over);
+        let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
-        surroundings.add(&boundary(self.body, over, false), kinds, &mut sound, lines);
+        surroundings.add(&sets[0], total, kinds, &mut sound, lines);
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
-        surroundings.add(&boundary(self.body, over, true), kinds, &mut turned_over, lines);
+        surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
         // What a field colours has strokes instead.
         if self.shades.is_none() {
             self.bare_lines(lines);

@@ -14,6 +14,7 @@ use super::legend::{self, Legend};
 use super::palette::Palette;
 use super::plane::LEVEL;
 use super::ramp;
+use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
 use super::wire::Edges;
@@ -39,6 +40,8 @@ pub struct Composer<'a> {
     descriptions: Vec<String>,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
+    /// Which faces lie on its outside, and which between elements.
+    shell: Shell,
     /// The surface of the body.
     skin: Skin,
     /// How faces that are not convex are cut into triangles.
@@ -88,6 +91,7 @@ impl<'a> Composer<'a> {
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
+            shell: if visible.surfaces { Shell::new(body) } else { Shell::default() },
             skin,
             ears,
             bare,
