@@ -41,6 +41,7 @@
 //! (on by default) the crate simulates and needs no graphics library.
 
 pub mod cli;
+pub mod colour;
 #[cfg(feature = "render")]
 pub mod gpu;
 pub mod output;

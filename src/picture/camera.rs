@@ -1,13 +1,11 @@
 //! From where a panel is seen: pure numbers, in double precision.
 
+use super::layout;
 use super::narrow::narrow_row;
 use crate::scene::{Camera, Follow, View};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
-/// Room for titles and for captions, which bodies do not share (px at type of the reference size).
-const TITLES: f64 = 95.0;
-const CAPTIONS: f64 = 85.0;
 /// How far below the middle of the room between them the point looked at stands, in parts of that room's height:
 /// bodies rise.
 const LOWERED: f64 = 0.037;
@@ -126,10 +124,11 @@ impl Lens {
     /// the reference size.
     pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
         let camera = &view.camera;
-        let room = (panel[3] - (TITLES + CAPTIONS) * unit).max(0.1 * panel[3]);
+        let [above, below] = layout::rooms(&view.labels, view.scale_bar);
+        let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
         let height = panel[3].min(panel[2] / FULL_ASPECT).min(room / REFERENCE_ROOM);
         let slope = height / 2.0 / libm::tan(camera.field_of_view / 2.0);
-        let middle = (panel[3] + (TITLES - CAPTIONS) * unit) / 2.0 + LOWERED * room;
+        let middle = (panel[3] + (above - below) * unit) / 2.0 + LOWERED * room;
         let centre = [panel[0] + panel[2] / 2.0, panel[1] + middle];
         let (azimuth, elevation) = match dimension {
             Dimension::Space => (camera.azimuth, camera.elevation),

@@ -1,6 +1,6 @@
 //! The words of a picture: names, clock, counts and numbers, and the lines between panels.
 
-use super::layout::{Baselines, Rectangle, Scale};
+use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
@@ -13,6 +13,21 @@ use crate::sim::snapshot::{Snapshot, Status};
 const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
+
+/// Size of the title above all panels, in parts of that of names, and its baseline (px in the reference picture).
+const TITLE: f64 = 1.16;
+const TITLE_BASELINE: f64 = 62.0;
+/// Between a panel's letter and its name, and the height of small letters, in parts of the type's size.
+const LETTER_GAP: f64 = 0.42;
+const X_HEIGHT: f64 = 0.55;
+/// Between a name and the sample of its line; the sample's length and thickness, its dashes and the gaps between them (px
+/// in the reference picture).
+const SAMPLE_GAP: f64 = 14.0;
+const SAMPLE: [f64; 2] = [40.0, 2.6];
+const DASHES: [f64; 2] = [7.0, 4.0];
+/// How far the scale bar lies above the baseline of counts, and the length of its ticks (px in the reference picture).
+const BAR_HEIGHT: f64 = 7.0;
+const BAR_TICK: f64 = 9.0;
 
 /// Writes one panel after the other.
 pub(super) struct Writer<'a> {
@@ -43,16 +58,91 @@ impl Room {
     }
 }
 
+/// What stands before and beside the name of a run.
+pub(super) struct Heading<'a> {
+    /// A letter to speak of the panel by; empty for none.
+    pub(super) letter: String,
+    /// The run's name.
+    pub(super) name: &'a str,
+    /// The line or arrow that stands for it elsewhere in the picture: its colour, and whether it is dashed.
+    pub(super) sample: Option<(Colour, bool)>,
+    /// The line below.
+    pub(super) second: &'a str,
+}
+
+/// A number in a panel.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Number {
+    /// The number with its unit.
+    value: String,
+    /// The widest value of its kind: its room is kept free, so that nothing comes and goes.
+    widest: String,
+    /// What it is, in words and in fewer words.
+    wordings: [String; 2],
+    /// Whether it is said as loudly as possible.
+    is_loud: bool,
+}
+
 impl Writer<'_> {
-    /// Name and second line, upper left, with `taken` (px) kept free at the right of each.
-    pub(super) fn heading(&mut self, panel: Rectangle, name: &str, second: &str, taken: [f64; 2]) {
+    /// The title above all panels.
+    pub(super) fn title(&mut self, around: Scale, width: f64, title: &str) {
+        let room = width - 2.0 * around.margin();
+        let title = shortened(title, Weight::SemiBold, TITLE * around.title(), room);
+        let size = TITLE * around.title();
+        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), TITLE_BASELINE * around.unit);
+    }
+
+    /// The caption below all panels, with its first baseline at a height (px).
+    pub(super) fn caption(&mut self, around: Scale, lines: &[String], baseline: f64) {
+        for (at, line) in lines.iter().enumerate() {
+            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.unit;
+            let colour = self.palette.second_text;
+            self.left(line, Weight::Regular, around.caption(), colour, around.margin(), baseline);
+        }
+    }
+
+    /// Letter, name and second line, upper left, with `taken` (px) kept free at the right of each.
+    pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: [f64; 2]) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let free = taken.map(|taken| room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 });
-        let name = shortened(name, Weight::SemiBold, title, free[0]);
-        self.left(&name, Weight::SemiBold, title, self.palette.text, room.left, room.top + lines.title);
-        let second = shortened(second, Weight::Regular, caption, free[1]);
+        let baseline = room.top + lines.title;
+        let mut left = room.left;
+        if !heading.letter.is_empty() {
+            self.left(&heading.letter, Weight::SemiBold, title, self.palette.second_text, left, baseline);
+            left += width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
+        }
+        let sample = heading.sample.filter(|_| !heading.name.is_empty());
+        let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
+        let name = shortened(heading.name, Weight::SemiBold, title, free[0] - (left - room.left) - reserved);
+        self.left(&name, Weight::SemiBold, title, self.palette.text, left, baseline);
+        if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
+            let left = left + width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
+            self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
+        }
+        let second = shortened(heading.second, Weight::Regular, caption, free[1]);
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+    }
+
+    /// A piece of the line that stands for a model elsewhere, from a place on (px).
+    fn sample(&mut self, [left, middle]: [f64; 2], (colour, is_dashed): (Colour, bool)) {
+        let unit = self.scale.unit;
+        let [length, thickness] = SAMPLE.map(|length| length * unit);
+        let mut piece = |from: f64, to: f64| {
+            let thickness = thickness.round().max(1.0);
+            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness].map(narrow);
+            let shape = MarkShape::Filled;
+            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+        };
+        if !is_dashed {
+            return piece(0.0, length.round());
+        }
+        let [dash, gap] = DASHES.map(|length| (length * unit).round().max(1.0));
+        let mut from = 0.0;
+        while from + dash <= length + gap {
+            piece(from, from + dash);
+            from += dash + gap;
+        }
     }
 
     /// How much room the clock and its label take (px), at any time.
@@ -77,64 +167,98 @@ impl Writer<'_> {
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
     }
 
-    /// Tally and count, lower left, and one number, lower right.
-    pub(super) fn count(&mut self, panel: Rectangle, tally: &Tally, snapshot: &Snapshot, numbers: &[String]) {
+    /// Tally and count, lower left. Says where they end at the widest (px).
+    pub(super) fn count(&mut self, panel: Rectangle, tally: &Tally, snapshot: &Snapshot) -> f64 {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let baseline = room.top + lines.caption;
-        let mut right_of_count = room.left;
-        if Scale::legible(caption) && !snapshot.turned_over.is_empty() {
-            let over = snapshot.turned_over.iter().filter(|&&over| over).count();
-            let (colour, second) = match over {
-                0 => (self.palette.text, self.palette.second_text),
-                _ => (self.palette.alarm_text, self.palette.alarm_text),
-            };
-            let bottom = room.bottom - self.scale.margin();
-            let taken = tally.draw(
-                &snapshot.turned_over,
-                self.palette,
-                self.scale,
-                0.42 * room.width(),
-                [room.left, bottom],
-                &mut self.marks,
-            );
-            let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
-            let all = snapshot.turned_over.len();
-            let free = room.right - left;
-            let count = shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
-            self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-            let explained = shortened("turned over", Weight::Regular, caption, free);
-            self.left(&explained, Weight::Regular, caption, second, left, baseline);
-            // The widest count, so that the number beside it does not come and go.
-            right_of_count =
-                left + width(&format!("{all} of {all}"), Weight::SemiBold, title).max(width(
-                    &explained,
-                    Weight::Regular,
-                    caption,
-                )) + self.scale.gap();
+        if !Scale::legible(caption) || snapshot.turned_over.is_empty() {
+            return room.left;
         }
-        // That a run blew up is said as loudly as there is room for.
-        let (weight, colour, sizes) = match snapshot.status {
-            Status::Diverged(_) => (Weight::SemiBold, self.palette.text, [title, caption]),
-            Status::Ok => (Weight::Regular, self.palette.second_text, [caption; 2]),
+        let over = snapshot.turned_over.iter().filter(|&&over| over).count();
+        let (colour, second) = match over {
+            0 => (self.palette.text, self.palette.second_text),
+            _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
-        let wordings = numbers.iter().flat_map(|text| sizes.map(|size| (text, size)));
-        let free = room.right - right_of_count;
-        // By the room of the widest number, or the words beside it would come and go.
-        if let Some((text, size)) = { wordings }.find(|&(text, size)| width(&widest(text), weight, size) <= free) {
-            self.right(text, weight, size, colour, room.right, baseline);
+        let bottom = room.bottom - self.scale.margin();
+        let taken = tally.draw(
+            &snapshot.turned_over,
+            self.palette,
+            self.scale,
+            0.42 * room.width(),
+            [room.left, bottom],
+            &mut self.marks,
+        );
+        let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
+        let all = snapshot.turned_over.len();
+        let free = room.right - left;
+        let count = shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
+        self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
+        let explained = shortened("turned over", Weight::Regular, caption, free);
+        self.left(&explained, Weight::Regular, caption, second, left, room.top + lines.caption);
+        // The widest count, so that what stands beside it does not come and go.
+        let widest = width(&format!("{all} of {all}"), Weight::SemiBold, title);
+        left + widest.max(width(&explained, Weight::Regular, caption))
+    }
+
+    /// A number with what it is, lower right, if there is room for it right of `taken` (px). Says where it begins at the
+    /// widest (px).
+    pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) -> f64 {
+        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let [title, caption] = [self.scale.title(), self.scale.caption()];
+        let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
+        let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
+        let value = width(&number.widest, weight, title).max(width(&number.value, weight, title));
+        let wide = |text: &str| width(text, Weight::Regular, caption);
+        let Some(wording) = number.wordings.iter().find(|text| wide(text).max(value) <= free) else {
+            return room.right;
+        };
+        self.right(&number.value, weight, title, self.palette.text, room.right, room.top + lines.count);
+        let colour = self.palette.second_text;
+        self.right(wording, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
+        room.right - wide(wording).max(value)
+    }
+
+    /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
+    /// room. `usual` is its length (px) where no camera moves: its place and its words follow from that alone.
+    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, [pixels, usual]: [f64; 2]) {
+        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (unit, caption) = (self.scale.unit, self.scale.caption());
+        let text = number::plain_metres(metres);
+        let wide = width(&text, Weight::Regular, caption);
+        let free = between[1] - between[0] - 2.0 * self.scale.gap();
+        if !Scale::legible(caption) || usual.max(wide) > free {
+            return;
         }
+        let middle = between[0].midpoint(between[1]);
+        let [length, thickness] = [pixels.min(free), 2.0 * unit].map(|length| length.round().max(1.0));
+        let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - BAR_HEIGHT * unit).round());
+        let tick = (BAR_TICK * unit).round().max(thickness);
+        let [first, last] = [left, left + length - thickness];
+        for [x, y, width, height] in [
+            [left, top, length, thickness],
+            [first, top - 0.5 * (tick - thickness), thickness, tick],
+            [last, top - 0.5 * (tick - thickness), thickness, tick],
+        ] {
+            let rectangle = [x, y.round(), width, height].map(narrow);
+            let (colour, shape) = (self.palette.second_text, MarkShape::Filled);
+            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+        }
+        let colour = self.palette.second_text;
+        let baseline = room.top + lines.caption;
+        self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, baseline);
     }
 
     /// Hairlines between panels that stand beside or above each other.
-    pub(super) fn hairlines(&mut self, panels: &[Rectangle]) {
+    pub(super) fn hairlines(&mut self, layout: &Layout) {
         let inset = self.scale.margin();
         // A hairline of one pixel that lies between two pixels fills half of both.
         let thickness = (2.0 * self.scale.unit).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
-        for &[left, top, width, height] in panels {
-            let [left, top, width, height] = [left, top, width, height].map(f64::from);
+        let first = f64::from(layout.ground[1]);
+        for place in &layout.panels {
+            let [left, top, width, height] = place.viewport.map(f64::from);
+            let height = height + place.strip.map_or(0.0, |strip| f64::from(strip[1] + strip[3]) - top - height);
             let mut line = |rectangle: [f64; 4]| {
                 self.marks.push(Mark {
                     rectangle: rectangle.map(narrow),
@@ -152,7 +276,7 @@ impl Writer<'_> {
                     (height - 2.0 * inset).round(),
                 ]);
             }
-            if top > 0.0 && width > 2.0 * inset {
+            if top > first && width > 2.0 * inset {
                 line([left + inset.round(), top - (thickness / 2.0).floor(), (width - 2.0 * inset).round(), thickness]);
             }
         }
@@ -170,30 +294,66 @@ impl Writer<'_> {
     }
 }
 
-/// A wording with the widest number that may stand in the place of its own.
-fn widest(text: &str) -> String {
-    const WIDEST: &str = "−0.00";
-    let is_part = |c: char| c.is_ascii_digit() || c == '−' || c == '.';
-    match (text.find(is_part), text.rfind(is_part)) {
-        (Some(first), Some(last))
-            if text[first..].chars().take_while(|&c| is_part(c)).count() < WIDEST.chars().count() =>
-        {
-            let after = text[last..].chars().next().map_or(last, |c| last + c.len_utf8());
-            format!("{}{WIDEST}{}", &text[..first], &text[after..])
+/// Lines of a text that are at most `room` wide (px) at a size; longer words stand on lines of their own.
+pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+            if line.is_empty() || width(&longer, Weight::Regular, size) <= room {
+                line = longer;
+            } else {
+                lines.push(std::mem::replace(&mut line, word.to_owned()));
+            }
         }
-        _ => text.to_owned(),
+        lines.push(line);
     }
+    lines
 }
 
-/// The number at the lower right, from its longest wording to its shortest.
-pub(super) fn numbers(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Vec<String> {
+/// The letter of a panel: a to z, then aa, ab and so on.
+pub(super) fn letter(at: usize) -> String {
+    let last = char::from(b'a' + (at % 26) as u8);
+    if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
+}
+
+/// The number at the lower right.
+pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
+    let words = |long: &str, short: &str| [long.to_owned(), short.to_owned()];
     if let Status::Diverged(divergence) = snapshot.status {
-        return vec![format!("diverged at {}", number::time(divergence.time)), "diverged".to_owned()];
+        let at = format!("at {}", number::time(divergence.time));
+        let value = "diverged".to_owned();
+        return Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true };
     }
     if let Some(ratio) = area_ratio {
-        let ratio = number::ratio(ratio);
-        return vec![format!("smallest area ratio {ratio}"), format!("area ratio {ratio}")];
+        let widest = "−0.00".to_owned();
+        let wordings = words("smallest area ratio", "area ratio");
+        return Number { value: number::ratio(ratio), widest, wordings, is_loud: false };
     }
-    let error = number::length(snapshot.diagnostics.shape_error, scene.body.extent());
-    vec![format!("shape error {error}"), format!("error {error}"), error]
+    let extent = scene.body.extent();
+    let value = number::length(snapshot.diagnostics.shape_error, extent);
+    let widest = number::length(0.888 * extent, extent);
+    Number { value, widest, wordings: words("shape error", "error"), is_loud: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_go_on_after_the_last() {
+        assert_eq!([0, 25, 26, 51, 52, 701, 702].map(letter), ["a", "z", "aa", "az", "ba", "zz", "aaa"]);
+    }
+
+    #[test]
+    fn captions_are_cut_between_words() {
+        let text = "One two three four five.\nA new line, anunusuallylongwordthatfitsnowhere end";
+        let lines = wrapped(text, 16.0, 120.0);
+        assert_eq!(lines.join(" "), text.replace('\n', " "));
+        assert!(lines.len() > 4 && lines.iter().any(|line| line.starts_with("A new")));
+        let fits = |line: &&String| width(line, Weight::Regular, 16.0) > 120.0;
+        assert_eq!(lines.iter().filter(fits).count(), 1, "{lines:?}");
+        assert!(wrapped("", 16.0, 120.0).is_empty());
+    }
 }

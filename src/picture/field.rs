@@ -62,7 +62,7 @@ impl Shades {
 }
 
 /// Where a value stands between two others.
-fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
+pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
     if value.is_nan() {
         return NOWHERE;
     }
@@ -74,6 +74,7 @@ fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::ColourMap;
     use crate::sim::body::Solids;
     use crate::sim::body::{Dimension, IndexLists};
     use crate::sim::field::Field;
@@ -97,7 +98,7 @@ mod tests {
     #[test]
     fn nodes_and_elements_have_their_own_numbers() {
         let body = body();
-        let scale = |field| ColourScale { field, range: [0.0, 4.0] };
+        let scale = |field| ColourScale { field, range: [0.0, 4.0], map: ColourMap::default() };
         let speed = Shades::new(&body, &scale(Field::Speed), &[0.0, 1.0, 2.0, f64::NAN]);
         assert_eq!(speed.corners(&[0, 1, 2], Some(0)), [0.0, 0.25, 0.5]);
         assert_eq!(speed.corners(&[1, 3, 2], Some(1)), [-1.0; 3]);

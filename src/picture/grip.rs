@@ -84,7 +84,7 @@ impl Hands<'_> {
             rectangle: [pixel[0] - radius, pixel[1] - radius, 2.0 * radius, 2.0 * radius].map(narrow),
             along: Mark::UPRIGHT,
             colour: self.palette.pointer,
-            second: self.palette.background,
+            second: self.palette.halo,
             shape: match (ringed, visible) {
                 (false, true) => MarkShape::Pin,
                 (false, false) => MarkShape::HiddenPin,

@@ -1,4 +1,18 @@
 //! Where panels and words stand. Nothing here depends on the frame, so that nothing jumps.
+//!
+//! ```text
+//! title
+//! ┌ panel ──────────┬ panel ──────────┐
+//! │ name            │ name      clock │
+//! │      body       │      body       │
+//! │ count    number │ count    number │
+//! │ strip           │ strip           │
+//! └─────────────────┴─────────────────┘
+//! keys of colours and arrows
+//! caption
+//! ```
+
+use crate::scene::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
@@ -9,8 +23,115 @@ const REFERENCE_PANEL_HEIGHT: f64 = 460.0;
 /// Type smaller than this cannot be read and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
+/// Height of the ground of the title, and of a strip with the room around it (px in the reference picture).
+const TITLE: f64 = 48.0;
+const STRIP: f64 = 128.0;
+/// Free below a strip (px in the reference picture).
+const BELOW_STRIP: f64 = 22.0;
+/// Distance of the caption's lines, free above the first baseline and below the last (px in the reference picture).
+pub(super) const CAPTION_LINE: f64 = 22.0;
+const ABOVE_CAPTION: f64 = 8.0;
+const BELOW_CAPTION: f64 = 30.0;
+/// A strip takes at most this part of its panel.
+const STRIP_SHARE: f64 = 0.34;
+
+/// Room above and below the body in a panel with and without words there (px in the reference picture).
+const WORDS_ABOVE: f64 = 95.0;
+const NAME_ABOVE: f64 = 70.0;
+const WORDS_BELOW: f64 = 85.0;
+const NO_WORDS: f64 = 28.0;
+
 /// A rectangle: left, top, width, height (px).
 pub type Rectangle = [u32; 4];
+
+/// Where a run is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// Where its body and its words stand.
+    pub(super) viewport: Rectangle,
+    /// Where its strip stands, below that.
+    pub(super) strip: Option<Rectangle>,
+}
+
+/// Where everything stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Layout {
+    /// Sizes of type and lines in panels.
+    pub(super) scale: Scale,
+    /// Sizes of type and lines around panels.
+    pub(super) around: Scale,
+    /// One for each run shown, row by row.
+    pub(super) panels: Vec<Place>,
+    /// The part of the picture that the panels cover.
+    pub(super) ground: Rectangle,
+    /// Where the keys of colours and arrows begin (px from the top).
+    pub(super) legend: u32,
+    /// Height of the caption's first baseline (px from the top).
+    pub(super) caption: f64,
+}
+
+impl Layout {
+    /// The layout of a view of a number of runs, with room for a key of a height (px) and for lines of a caption.
+    pub(super) fn new(view: &View, runs: usize, legend: u32, caption_lines: usize) -> Self {
+        let size = view.size.map(|length| length.max(1));
+        let around = Self::around(view, runs);
+        let unit = around.unit;
+        let rows = |length: f64| (length * unit).round() as u32;
+        let title = if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(TITLE) };
+        let caption = match caption_lines {
+            0 => 0,
+            lines => rows((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION + BELOW_CAPTION),
+        };
+        // Whatever stands around them, panels keep half of the picture.
+        let [title, legend, caption] = match title + legend + caption <= size[1] / 2 {
+            true => [title, legend, caption],
+            false => [0; 3],
+        };
+        let height = size[1] - title - legend - caption;
+        let panels = panels([size[0], height], runs, view.columns);
+        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel));
+        let strip = |panel: Rectangle| {
+            let [width, height] = [panel[2], panel[3]].map(f64::from);
+            let room = (STRIP * scale.unit).min(STRIP_SHARE * height).round();
+            let (side, below) = (scale.margin().min(width / 2.0), (BELOW_STRIP * scale.unit).min(room));
+            let top = f64::from(title + panel[1]) + height - room;
+            [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
+        };
+        let place = |mut panel: Rectangle| {
+            let strip = view.strip.map(|_| strip(panel));
+            panel[1] += title;
+            if let Some([_, top, ..]) = strip {
+                panel[3] = top - panel[1];
+            }
+            Place { viewport: panel, strip }
+        };
+        Self {
+            scale,
+            around,
+            panels: panels.into_iter().map(place).collect(),
+            ground: [0, title, size[0], height],
+            legend: title + height,
+            caption: f64::from(title + height + legend) + ABOVE_CAPTION * unit,
+        }
+    }
+
+    /// Sizes of type and lines around the panels of a view of a number of runs.
+    pub(super) fn around(view: &View, runs: usize) -> Scale {
+        let size = view.size.map(|length| length.max(1));
+        panels(size, runs, view.columns).first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel))
+    }
+}
+
+/// The room above and below the body in a panel that words need (px in the reference picture).
+pub(super) fn rooms(labels: &Labels, scale_bar: bool) -> [f64; 2] {
+    let Labels { letter, name, model, clock, count, number } = *labels;
+    let above = match (letter || name, model || clock) {
+        (_, true) => WORDS_ABOVE,
+        (true, false) => NAME_ABOVE,
+        (false, false) => NO_WORDS,
+    };
+    [above, if count || number || scale_bar { WORDS_BELOW } else { NO_WORDS }]
+}
 
 /// Divides a picture into panels, row by row; together they cover it without gaps. No panel is without a pixel as
 /// long as the picture has enough of them.
@@ -95,14 +216,13 @@ impl Baselines {
     }
 }
 
-/// The part of a panel between its lines of text, inside its margins.
-pub(super) fn clear_of_words(panel: Rectangle, scale: Scale) -> Rectangle {
+/// The part of a panel between its lines of text, which need rooms above and below, inside its margins.
+pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f64; 2]) -> Rectangle {
     let [left, top, width, height] = panel;
-    let lines = Baselines::new(scale, panel);
     let inside = |at: f64, length: u32| at.clamp(0.0, f64::from(length)) as u32;
     let side = inside(scale.margin(), width / 2);
-    let above = inside(lines.second + scale.gap(), height);
-    let below = inside(lines.count - scale.title() - scale.gap(), height).max(above);
+    let above = inside((above + 7.0) * scale.unit, height);
+    let below = inside(f64::from(height) - (below + 15.0) * scale.unit, height).max(above);
     [left + side, top + above, width - 2 * side, below - above]
 }
 
@@ -132,11 +252,35 @@ mod tests {
 
     #[test]
     fn the_ground_between_the_words_lies_inside_the_panel() {
-        assert_eq!(clear_of_words([640, 0, 640, 720], Scale { unit: 1.0 }), [680, 102, 560, 518]);
+        let rooms = [WORDS_ABOVE, WORDS_BELOW];
+        assert_eq!(clear_of_words([640, 0, 640, 720], Scale { unit: 1.0 }, rooms), [680, 102, 560, 518]);
         for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
-            let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel));
+            let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel), rooms);
             assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
             assert!(y >= panel[1] && y + height <= panel[1] + panel[3]);
+        }
+    }
+
+    #[test]
+    fn nothing_overlaps_and_all_is_used() {
+        for (size, runs) in [([1280, 720], 2), ([640, 360], 2), ([1000, 1400], 6), ([300, 200], 1), ([17, 16], 3)] {
+            let view = View {
+                size,
+                columns: 2,
+                title: "Title".to_owned(),
+                strip: Some(crate::sim::snapshot::Diagnostic::TurnedOver),
+                ..View::default()
+            };
+            let layout = Layout::new(&view, runs, 40 * size[1] / 720, 2);
+            let [_, top, width, height] = layout.ground;
+            assert!(width == size[0] && height >= size[1] / 2 && layout.legend == top + height);
+            assert!(layout.caption >= f64::from(layout.legend));
+            for Place { viewport, strip } in &layout.panels {
+                let strip = strip.unwrap();
+                assert!(viewport[1] >= top && viewport[1] + viewport[3] <= strip[1]);
+                assert!(strip[1] + strip[3] <= top + height, "{strip:?} in {:?}", layout.ground);
+                assert!(strip[0] >= viewport[0] && strip[0] + strip[2] <= viewport[0] + viewport[2]);
+            }
         }
     }
 

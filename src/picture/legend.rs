@@ -9,8 +9,6 @@ use super::number::{self, Ticks};
 use super::palette::Colour;
 use super::text::{Weight, lay_out, width};
 use super::{Mark, MarkShape};
-use crate::scene::ColourScale;
-use crate::sim::snapshot::Frame;
 use glam::DVec2;
 
 /// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
@@ -35,6 +33,31 @@ const APART: f64 = 44.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
 
+/// A scale of colours.
+pub(super) struct Bar<'a> {
+    name: &'static str,
+    unit: &'static str,
+    /// The values at its ends.
+    range: [f64; 2],
+    ramp: &'a [Colour],
+    /// Whether there are values below and above it.
+    beyond: [bool; 2],
+}
+
+impl<'a> Bar<'a> {
+    /// The scale of something with a name and a unit, over a range in which its values lie, or beyond which.
+    pub(super) fn new(
+        [name, unit]: [&'static str; 2],
+        range: [f64; 2],
+        ramp: &'a [Colour],
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        let [low, high] = range;
+        let beyond = values.fold([false; 2], |[below, above], value| [below || value < low, above || value > high]);
+        Self { name, unit, range, ramp, beyond }
+    }
+}
+
 /// Sizes of the key of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Legend {
@@ -45,37 +68,45 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale, with an arrow, a bar or both; `None` where it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, bar]: [bool; 2]) -> Option<Self> {
+    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow, and with a number of
+    /// bars; `None` where it could not be read.
+    pub(super) fn new(size: [u32; 2], scale: Scale, arrow: bool, bars: usize) -> Option<Self> {
         let [width, height] = size.map(f64::from);
-        let apart = if arrow && bar { APART } else { 0.0 };
-        let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + if bar { BAR_ROOM } else { 0.0 };
+        let parts = usize::from(arrow) + bars;
+        let apart = APART * parts.saturating_sub(1) as f64;
+        let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.unit.max(roomy).min((width - 2.0 * scale.margin()) / needed);
         let height = (HEIGHT * unit).round() as u32;
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
 
-    /// Draws the key over its ground, the lowest part of a picture of a size (px). `arrow` is the length that the arrow
+    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that the arrow
     /// stands for (m), its own (px), and how large it is beside those of the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
-        size: [u32; 2],
+        picture_width: f64,
+        ground: f64,
         arrow: Option<[f64; 3]>,
-        colours: Option<(&ColourScale, &[Colour], [bool; 2])>,
+        bars: &[Bar<'_>],
     ) {
         let unit = self.unit;
-        let [picture_width, picture_height] = size.map(f64::from);
         let margin = writer.scale.margin();
-        let top = (picture_height - f64::from(self.height) - ABOVE * writer.scale.unit).round();
+        let top = (ground - ABOVE * writer.scale.unit).round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some([metres, length, size]) = arrow {
             left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
         }
-        if let Some((scale, ramp, beyond)) = colours {
-            self.bar(writer, [left, picture_width - margin], top, scale, ramp, beyond);
+        // Bars share what is left evenly.
+        let right = picture_width - margin;
+        let share = (right - left - APART * unit * bars.len().saturating_sub(1) as f64) / bars.len().max(1) as f64;
+        for (at, bar) in bars.iter().enumerate() {
+            let left = left + at as f64 * (share + APART * unit);
+            // One bar alone stands in the middle of the picture.
+            let middle = if bars.len() == 1 { picture_width / 2.0 } else { left + share / 2.0 };
+            self.bar(writer, [left, left + share, middle], top, bar);
         }
     }
 
@@ -83,7 +114,7 @@ impl Legend {
     fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
-        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.background));
+        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
         // The words stand still when the camera moves.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(
@@ -97,24 +128,16 @@ impl Legend {
         )
     }
 
-    /// A bar of colours with its name before it and its numbers below; it stands in the middle of the picture if
-    /// it can.
-    fn bar(
-        self,
-        writer: &mut Writer<'_>,
-        [left, right]: [f64; 2],
-        top: f64,
-        scale: &ColourScale,
-        ramp: &[Colour],
-        beyond: [bool; 2],
-    ) {
+    /// A bar of colours between two places, with its name before it and its numbers below; it stands in the given middle
+    /// if it can.
+    fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
-        let mut ticks = Ticks::new(scale.range, scale.field.unit());
+        let &Bar { name, ramp, beyond, .. } = bar;
+        let mut ticks = Ticks::new(bar.range, bar.unit);
         let numbers = NUMBERS * unit;
         let wide = |text: &String| width(text, Weight::Regular, numbers);
         let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
-        let name = scale.field.name();
         let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
         let caption = 16.0 * unit;
         let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
@@ -127,7 +150,7 @@ impl Legend {
             ticks.halve();
         }
         let whole = named + gap + length;
-        let centred = (right + writer.scale.margin() - whole) / 2.0;
+        let centred = middle - whole / 2.0;
         let left = centred.max(left).min(right - whole - overhang);
         let height = (BAR * unit).round().max(2.0);
         let baseline = top + 0.5 * height + 5.5 * unit;
@@ -196,11 +219,4 @@ impl Legend {
     pub(super) fn arrow_metres(self, pixels: f64) -> f64 {
         number::round_below(ARROW * self.unit / pixels)
     }
-}
-
-/// Whether any value lies below or above a scale.
-pub(super) fn beyond(scale: &ColourScale, frame: &Frame) -> [bool; 2] {
-    let [low, high] = scale.range;
-    let values = || frame.runs.iter().flat_map(|run| &run.snapshot.field);
-    [values().any(|&value| value < low), values().any(|&value| value > high)]
 }

@@ -187,6 +187,10 @@ pub struct Floor {
     pub fade: [f32; 2],
     /// Over which height above the lower side of the viewport it fades out (px).
     pub fade_above: f32,
+    /// Whether it has a colour of its own, besides shadows and grid.
+    pub is_filled: bool,
+    /// Whether its grid is drawn.
+    pub has_grid: bool,
     /// The shadows of key light and sky on it.
     pub shades: [Shade; 2],
 }

@@ -83,6 +83,11 @@ pub(super) fn metres(length: f64) -> String {
     if plain { format!("{} {prefix}m", crate::sim::words::rounded(value, 3)) } else { format!("{value:.0e} {prefix}m") }
 }
 
+/// A round length in metres, without a prefix as long as that is short.
+pub(super) fn plain_metres(length: f64) -> String {
+    if (1e-3..1e4).contains(&length) { format!("{length} m") } else { metres(length) }
+}
+
 /// Round numbers along a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ticks {

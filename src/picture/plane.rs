@@ -3,7 +3,7 @@
 
 use super::camera::Lens;
 use super::ears::Ears;
-use super::layout::{self, Rectangle, Scale};
+use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;
 use super::palette::{Colour, Palette};
@@ -45,6 +45,10 @@ pub(super) struct Flat<'a> {
     pub(super) turned_over: &'a [bool],
     pub(super) lens: &'a Lens,
     pub(super) viewport: Rectangle,
+    /// The part of the viewport that words leave free.
+    pub(super) clear: Rectangle,
+    /// Whether floors, and the shadows on them, are drawn.
+    pub(super) floors: [bool; 2],
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
 }
@@ -66,7 +70,7 @@ impl Flat<'_> {
         let Some(start) = self.pixel(middle + (height - normal.dot(middle)) * normal) else { return };
         let along = DVec2::new(normal.y, normal.x);
         let [left, top, width, height] = self.viewport.map(f64::from);
-        let mut clear = layout::clear_of_words(self.viewport, self.scale).map(f64::from);
+        let mut clear = self.clear.map(f64::from);
         if normal.y.abs() < STEEP {
             // Beside the words there is room for walls, too.
             (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
@@ -85,16 +89,22 @@ impl Flat<'_> {
             let rectangle = [corner.x, corner.y, to - from, above + below].map(narrow);
             marks.push(Mark { rectangle, along: [along.x, along.y].map(narrow), colour, second: colour, shape });
         };
-        mark([from, to], [0.0, depth], self.palette.hairline, MarkShape::Fading);
+        let [has_floor, has_shadow] = self.floors;
+        if has_floor {
+            mark([from, to], [0.0, depth], self.palette.hairline, MarkShape::Fading);
+        }
         let room = 40.0 * unit;
         let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
         let near = pixels.filter(|&pixel| along.perp_dot(pixel - start) > -room).map(|pixel| along.dot(pixel - start));
         let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
         let (low, high) = ((low - room).max(from), (high + room).min(to));
-        if high > low {
+        if high > low && has_shadow {
             mark([low, high], [0.0, (SHADOW_DEPTH * unit).min(depth)], self.palette.shadow, MarkShape::Shadow);
         }
         let thickness = (1.6 * unit).round().max(1.0);
+        if !has_floor {
+            return;
+        }
         mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
     }
 
@@ -105,7 +115,7 @@ impl Flat<'_> {
         let (y, margin, unit) = (pixel[1].round(), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
         // Below the captions it would underline them.
-        let [_, clear, _, room] = layout::clear_of_words(self.viewport, self.scale).map(f64::from);
+        let [_, clear, _, room] = self.clear.map(f64::from);
         if y < top || y > clear + room || length <= 0.0 {
             return;
         }
@@ -117,11 +127,14 @@ impl Flat<'_> {
             second: colour,
             shape,
         };
-        marks.push(mark([left + margin, y, length, depth], self.palette.hairline, MarkShape::Fading));
+        let [has_floor, has_shadow] = self.floors;
+        if has_floor {
+            marks.push(mark([left + margin, y, length, depth], self.palette.hairline, MarkShape::Fading));
+        }
         let pixels = self.position.iter().filter_map(|&point| self.lens.project(point)).map(|(pixel, _)| pixel);
         let lowest = pixels.clone().map(|pixel| pixel[1]).fold(f64::NEG_INFINITY, f64::max);
         let room = 40.0 * unit;
-        if lowest > y - room {
+        if lowest > y - room && has_shadow {
             // The shadow of what is close to the floor.
             let near = pixels.filter(|pixel| pixel[1] > y - room).map(|pixel| pixel[0]);
             let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
@@ -131,6 +144,9 @@ impl Flat<'_> {
                 let depth = (SHADOW_DEPTH * unit).min(depth);
                 marks.push(mark([low, y, high - low, depth], self.palette.shadow, MarkShape::Shadow));
             }
+        }
+        if !has_floor {
+            return;
         }
         let thickness = (1.6 * unit).round().max(1.0);
         marks.push(mark([left + margin, y, length, thickness], self.palette.axis, MarkShape::Filled));
@@ -197,7 +213,7 @@ impl Flat<'_> {
         if room > 0.55 * disc {
             let white = [255; 3];
             self.round(middle, disc, white, white, MarkShape::Node, marks);
-            let colour = Palette::alarm_on_white();
+            let colour = self.palette.alarm_on_white;
             self.round(middle, ring, colour, colour, MarkShape::Clockwise, marks);
         }
     }

@@ -66,6 +66,6 @@ impl Pointers<'_> {
             return;
         }
         let ends = [tail, tail + length * along];
-        marks.push(arrow(ends, self.scale.line(), self.palette.pointer, self.palette.background));
+        marks.push(arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo));
     }
 }

@@ -1,12 +1,13 @@
-//! The colours of scalar fields.
+//! The colours of scalar fields: named scales.
 
-use super::palette::Colour;
-use crate::scene::Theme;
+use crate::colour::{Colour, Oklab, from_oklab};
+use crate::scene::{ColourMap, Theme};
+use colorous::Gradient;
 
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
 pub const SHADES: usize = 64;
 
-/// Points of the scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent colours of
+/// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent colours of
 /// Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
 ///
 /// Why these: lightness alone falls evenly over the scale, so that it reads in grey and by colour-blind eyes; hue turns
@@ -24,12 +25,32 @@ const POINTS: [[f64; 3]; 9] = [
     [0.3850, -0.0087, -0.1247],
 ];
 
-/// The colours of a scale, from its lowest to its highest value at equal steps. Large values stand out from the ground:
-/// they are dark in the light theme and light in the dark one.
-pub(super) fn ramp(theme: Theme) -> Vec<Colour> {
+/// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong, of
+/// hues that are told apart by all eyes; the middle is grey, and nearer to the ground than they are.
+const DIVERGING: [[[f64; 3]; 3]; 2] = [
+    [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
+    [[0.7200, 0.0900, -0.1300], [0.4600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
+];
+
+/// Lightness of the two ends of the scale of greys: those of the usual one, for the same reasons.
+const GREYS: [f64; 2] = [0.9550, 0.3850];
+
+/// The colours of a scale, from its lowest to its highest value at equal steps. On the scales that go with the theme
+/// large values stand out from the ground: they are dark in the light theme and light in the dark one.
+pub(super) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
     let share = |at: usize| at as f64 / (SHADES - 1) as f64;
-    let along = |at: usize| if theme == Theme::Light { share(at) } else { 1.0 - share(at) };
-    (0..SHADES).map(|at| encoded(point(along(at)))).collect()
+    let with_theme = |at: usize| if theme == Theme::Light { share(at) } else { 1.0 - share(at) };
+    let published =
+        |gradient: Gradient| (0..SHADES).map(|at| gradient.eval_rational(at, SHADES).into_array()).collect();
+    match map {
+        ColourMap::MintIndigo => (0..SHADES).map(|at| from_oklab(point(with_theme(at)))).collect(),
+        ColourMap::Greys => (0..SHADES).map(|at| from_oklab(grey(with_theme(at)))).collect(),
+        ColourMap::Viridis => published(colorous::VIRIDIS),
+        ColourMap::Cividis => published(colorous::CIVIDIS),
+        ColourMap::Magma => published(colorous::MAGMA),
+        ColourMap::VioletGreen => (0..SHADES).map(|at| from_oklab(diverging(share(at), theme))).collect(),
+        ColourMap::PurpleGreen => published(colorous::PURPLE_GREEN),
+    }
 }
 
 /// The colour of a place on a scale, from 0 to 1.
@@ -39,63 +60,49 @@ pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
     ramp.get(at).copied().unwrap_or_default()
 }
 
-/// A place on the scale, in Oklab.
-fn point(share: f64) -> [f64; 3] {
+/// A place on the usual scale.
+fn point(share: f64) -> Oklab {
     let at = share * (POINTS.len() - 1) as f64;
     let cell = (at as usize).min(POINTS.len() - 2);
-    std::array::from_fn(|axis| {
+    Oklab(std::array::from_fn(|axis| {
         let [from, to] = [POINTS[cell][axis], POINTS[cell + 1][axis]];
         from + (to - from) * (at - cell as f64)
-    })
+    }))
 }
 
-/// An Oklab colour as sRGB bytes.
-fn encoded([lightness, a, b]: [f64; 3]) -> Colour {
-    let cube = |x: f64| x * x * x;
-    let l = cube(lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b);
-    let m = cube(lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b);
-    let s = cube(lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b);
-    let linear = [
-        4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s,
-        -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
-        -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701_0 * s,
-    ];
-    linear.map(|light| {
-        let light = light.clamp(0.0, 1.0);
-        let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 };
-        (255.0 * encoded).round() as u8
-    })
+/// A place on the diverging scale.
+fn diverging(share: f64, theme: Theme) -> Oklab {
+    let [low, middle, high] = DIVERGING[usize::from(theme == Theme::Dark)];
+    let (end, strength) = if share < 0.5 { (low, 1.0 - 2.0 * share) } else { (high, 2.0 * share - 1.0) };
+    Oklab(std::array::from_fn(|axis| middle[axis] + (end[axis] - middle[axis]) * strength))
+}
+
+/// A place on the scale of greys.
+fn grey(share: f64) -> Oklab {
+    let [from, to] = GREYS;
+    Oklab([from + (to - from) * share, 0.0, 0.0])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colour::oklab;
+    use crate::scene::Palette;
 
-    /// An sRGB colour in Oklab.
-    fn oklab(colour: Colour) -> [f64; 3] {
-        let [r, g, b] = colour.map(|byte| {
-            let encoded = f64::from(byte) / 255.0;
-            if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
-        });
-        let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
-        let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
-        let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
-        [
-            0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
-            1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
-            0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
-        ]
-    }
+    const USUAL: ColourMap = ColourMap::MintIndigo;
 
     fn apart(one: Colour, other: Colour) -> f64 {
-        let (one, other) = (oklab(one), oklab(other));
-        (0..3).map(|axis| (one[axis] - other[axis]).powi(2)).sum::<f64>().sqrt()
+        oklab(one).distance(oklab(other))
+    }
+
+    fn lightness(colour: Colour) -> f64 {
+        oklab(colour).0[0]
     }
 
     #[test]
     fn equal_steps_look_equally_large() {
         for theme in [Theme::Light, Theme::Dark] {
-            let ramp = ramp(theme);
+            let ramp = ramp(USUAL, theme);
             assert_eq!(ramp.len(), SHADES);
             // Over eight steps at a time the rounding to bytes does not count.
             let steps: Vec<_> = ramp.windows(9).map(|part| apart(part[0], part[8])).collect();
@@ -107,8 +114,8 @@ mod tests {
     #[test]
     fn lightness_tells_the_order_and_nothing_is_vermilion() {
         for (theme, sign) in [(Theme::Light, -1.0), (Theme::Dark, 1.0)] {
-            let ramp = ramp(theme);
-            assert!(ramp.windows(3).all(|part| sign * (oklab(part[2])[0] - oklab(part[0])[0]) > 0.005));
+            let ramp = ramp(USUAL, theme);
+            assert!(ramp.windows(3).all(|part| sign * (lightness(part[2]) - lightness(part[0])) > 0.005));
             for &shade in &ramp {
                 let [red, green, blue] = shade;
                 assert!(red <= green.max(blue), "{shade:x?}");
@@ -121,10 +128,48 @@ mod tests {
 
     #[test]
     fn any_place_has_a_colour() {
-        let ramp = ramp(Theme::Light);
+        let ramp = ramp(USUAL, Theme::Light);
         assert_eq!(colour(&ramp, 0.0), ramp[0]);
         assert_eq!(colour(&ramp, 1.0), ramp[SHADES - 1]);
         assert_eq!([colour(&ramp, -3.0), colour(&ramp, 9.0)], [ramp[0], ramp[SHADES - 1]]);
         assert_eq!(colour(&[], 0.5), [0; 3]);
+    }
+    #[test]
+    fn published_scales_begin_and_end_as_published() {
+        for (map, low, high) in [
+            (ColourMap::Viridis, [0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]),
+            (ColourMap::Magma, [0x00, 0x00, 0x04], [0xfc, 0xfd, 0xbf]),
+            (ColourMap::Cividis, [0x00, 0x22, 0x4e], [0xfe, 0xe8, 0x38]),
+            (ColourMap::PurpleGreen, [0x40, 0x00, 0x4b], [0x00, 0x44, 0x1b]),
+        ] {
+            let ramp = ramp(map, Theme::Light);
+            assert_eq!((ramp.len(), &ramp), (SHADES, &super::ramp(map, Theme::Dark)));
+            // The polynomials of Cividis are a few bytes off its table.
+            assert!(apart(ramp[0], low) < 0.03 && apart(ramp[SHADES - 1], high) < 0.03, "{map:?}: {:x?}", ramp[0]);
+        }
+    }
+
+    #[test]
+    fn scales_of_one_direction_tell_the_order_in_grey_and_the_other_has_its_middle_in_the_middle() {
+        for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Magma, ColourMap::Greys] {
+            let ramp = ramp(map, Theme::Dark);
+            assert!(ramp.windows(3).all(|part| lightness(part[2]) > lightness(part[0])), "{map:?}");
+        }
+        let ramp = ramp(ColourMap::PurpleGreen, Theme::Light);
+        let lightest = (0..SHADES).max_by(|&a, &b| lightness(ramp[a]).total_cmp(&lightness(ramp[b])));
+        assert!(lightest.is_some_and(|at| at.abs_diff(SHADES / 2) <= 2), "{lightest:?}");
+        assert!(oklab(ramp[SHADES / 2]).chroma() < 0.02);
+    }
+
+    /// `magma` is the one exception, and its description says so.
+    #[test]
+    fn nothing_is_taken_for_turned_over() {
+        let maps = [USUAL, ColourMap::Viridis, ColourMap::Cividis, ColourMap::Greys, ColourMap::PurpleGreen];
+        for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
+            let alarm = Palette::of(theme).alarm;
+            for shade in ramp(map, theme) {
+                assert!(apart(shade, alarm) > 0.12, "{map:?}: {shade:x?} is {}", apart(shade, alarm));
+            }
+        }
     }
 }

@@ -39,7 +39,28 @@ pub struct TextRun {
     pub span: [f32; 2],
     /// Its glyphs from left to right.
     pub glyphs: Vec<Glyph>,
+    /// Whether it lies over something that it must stand out from.
+    pub has_halo: bool,
 }
+
+impl TextRun {
+    /// Left, top, right and bottom of the box that it may fill (px): from its ascenders to its descenders.
+    pub fn bounds(&self) -> [f32; 4] {
+        let [left, right] = self.span;
+        [left, self.baseline - ASCENT * self.size, right, self.baseline + DESCENT * self.size]
+    }
+
+    /// Whether it lies over a part of the picture (px).
+    pub(super) fn touches(&self, [x, y, width, height]: super::Rectangle) -> bool {
+        let [left, top, right, bottom] = self.bounds();
+        let [x, y, x2, y2] = [x, y, x + width, y + height].map(|at| at as f32);
+        width > 0 && height > 0 && left < x2 && right > x && top < y2 && bottom > y
+    }
+}
+
+/// How far letters reach above and below the baseline, in parts of the type's size.
+const ASCENT: f32 = 0.78;
+const DESCENT: f32 = 0.22;
 
 static REGULAR: LazyLock<FontRef<'static>> =
     LazyLock::new(|| load(include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf")));
@@ -130,6 +151,7 @@ pub(super) fn lay_out(
         colour,
         span: [narrow(left), narrow(pen)],
         glyphs,
+        has_halo: false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Lines in place of surfaces: the springs of a model, or the edges of the elements.
 
-use super::field::NOWHERE;
+use super::field::{self, NOWHERE};
 use super::narrow::{narrow, narrow_point};
 use super::palette::{Colour, Palette};
 use super::ramp;
@@ -75,18 +75,35 @@ impl Wire<'_> {
         Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
     }
 
-    /// Springs, the farthest first.
-    pub(super) fn springs(&self, springs: &[[u32; 2]]) -> Vec<Stroke> {
+    /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its
+    /// strain.
+    pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], [f64; 2])>) -> Vec<Stroke> {
         let haze = self.haze();
         let mut strokes = Vec::with_capacity(springs.len());
         for &ends in springs {
-            self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes);
+            match strain {
+                Some((ramp, range)) => strokes.push(self.strained(ends, ramp, range, &haze)),
+                None => self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes),
+            }
         }
-        if self.surfaces {
+        if self.surfaces && strain.is_none() {
             let second = Second::OnBody(self.palette.spring_on_body);
             strokes.iter_mut().for_each(|stroke| stroke.second = second);
         }
         self.sorted(strokes)
+    }
+
+    /// A spring in the colour of its strain.
+    fn strained(&self, ends: [u32; 2], ramp: &[Colour], range: [f64; 2], haze: &dyn Fn(DVec3) -> f64) -> Stroke {
+        let ends_now = ends.map(|node| self.position[node as usize]);
+        let place = field::place(spring_strain(self.body, self.position, ends), range);
+        let own = if place == NOWHERE { self.palette.spring } else { ramp::colour(ramp, place) };
+        let middle = ends_now[0].midpoint(ends_now[1]);
+        let faded = |colour| mixed(colour, self.palette.background, haze(middle));
+        let plain = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
+        // Beside surfaces, lines of all colours must stand out.
+        let second = if self.surfaces { Second::Casing(faded(self.palette.casing)) } else { Second::None };
+        Stroke { second, ..plain }
     }
 
     /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.
@@ -243,8 +260,15 @@ impl Wire<'_> {
     }
 }
 
+/// The change of the distance of two nodes over their distance at rest; NaN where that is zero.
+pub(super) fn spring_strain(body: &Body, position: &[DVec3], ends: [u32; 2]) -> f64 {
+    let length = |points: &[DVec3]| points[ends[0] as usize].distance(points[ends[1] as usize]);
+    let rest = length(&body.rest);
+    if rest > 0.0 { length(position) / rest - 1.0 } else { f64::NAN }
+}
+
 /// One colour on its way to another.
-fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
+pub(super) fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
     std::array::from_fn(|at| {
         let [from, to] = [one[at], other[at]].map(f64::from);
         (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8

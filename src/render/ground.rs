@@ -172,6 +172,8 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
         let strength = if shade.cells.is_empty() || !has_layer(at) { 0.0 } else { palette.shadow_strength[half] };
         Vec4::new(shade.corner[0], shade.corner[1], 1.0 / shade.length, strength)
     };
+    let filling = if floor.is_filled { palette.floor } else { palette.background };
+    let grid = if floor.has_grid { palette.grid } else { filling };
     GroundUniform {
         first: floor.axes[0].extend(floor.grid[0]),
         second: floor.axes[1].extend(floor.grid[1]),
@@ -180,8 +182,8 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
         key: shade(0),
         sky: shade(1),
         background: linear(palette.background).extend((2 * at) as f32),
-        floor: linear(palette.floor).extend((2 * at + 1) as f32),
-        grid: linear(palette.grid).extend(floor.cell),
+        floor: linear(filling).extend((2 * at + 1) as f32),
+        grid: linear(grid).extend(floor.cell),
         shadow: linear(palette.shadow).extend(floor.fade_above),
         viewport: Vec4::from_array(panel.viewport.map(|length| length as f32)),
     }

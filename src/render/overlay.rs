@@ -3,11 +3,23 @@
 use super::glyphs::Glyphs;
 use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{self, Colour, MarkShape, Picture};
+use crate::picture::{self, Colour, MarkShape, Picture, TextRun};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
+
+/// Around words over bodies, glyphs in the colour of the ground make a halo: the radii of rings, in parts of the type's
+/// size, and how many glyphs stand on each.
+const HALO: [(f32, u32); 2] = [(0.07, 8), (0.14, 16)];
+
+/// Whole pixels around a place, about evenly on a circle: what is read pixel by pixel is moved by pixels.
+fn ring(radius: f32, count: u32) -> impl Iterator<Item = [f32; 2]> {
+    (0..count).map(move |at| {
+        let (sine, cosine) = (at as f32 / count as f32 * std::f32::consts::TAU).sin_cos();
+        [(radius * cosine).round(), (radius * sine).round()]
+    })
+}
 
 /// One mark or glyph as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -83,25 +95,35 @@ impl Overlay {
         let mut marks: Vec<_> = picture.under.iter().chain(&picture.marks).map(plain).collect();
         self.under = picture.under.len() as u32;
         for run in &picture.words {
-            for glyph in &run.glyphs {
-                if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
-                    let [width, height] = raster.size.map(|length| length as f32);
-                    marks.push(Mark {
-                        rectangle: [x + raster.offset[0], y + raster.offset[1], width, height],
-                        along: picture::Mark::UPRIGHT,
-                        colour: opaque(run.colour),
-                        second: opaque(run.colour),
-                        glyph: raster.at,
-                        shape: 2,
-                    });
-                }
+            if run.has_halo {
+                let offsets = HALO.iter().flat_map(|&(radius, count)| ring(radius * run.size, count));
+                offsets.for_each(|offset| self.write_run(run, picture.palette.background, offset, &mut marks));
             }
+            self.write_run(run, run.colour, [0.0; 2], &mut marks);
         }
         self.marks.write(gpu, &marks);
         if self.glyphs.upload(gpu) || self.bind_group.is_none() {
             let size = picture.size.map(|length| length as f32);
             self.canvas.write(gpu, &[CanvasUniform { size, unused: [0.0; 2] }]);
             self.bind_group = Some(self.bind(gpu));
+        }
+    }
+
+    /// Adds the glyphs of a line of text in a colour, moved (px).
+    fn write_run(&mut self, run: &TextRun, colour: Colour, offset: [f32; 2], marks: &mut Vec<Mark>) {
+        for glyph in &run.glyphs {
+            if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
+                let [width, height] = raster.size.map(|length| length as f32);
+                let [left, top] = [x + raster.offset[0] + offset[0], y + raster.offset[1] + offset[1]];
+                marks.push(Mark {
+                    rectangle: [left, top, width, height],
+                    along: picture::Mark::UPRIGHT,
+                    colour: opaque(colour),
+                    second: opaque(colour),
+                    glyph: raster.at,
+                    shape: 2,
+                });
+            }
         }
     }
 

@@ -5,6 +5,17 @@ use super::schema::{SCHEMA, variants, without_nulls};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+/// Digests of what the files hold that a scene names.
+#[derive(Debug, Default)]
+pub(super) struct FileDigests {
+    /// The body's.
+    pub(super) body: Option<String>,
+    /// The font's.
+    pub(super) regular: Option<String>,
+    /// That of the font of names and counts.
+    pub(super) semi_bold: Option<String>,
+}
+
 /// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits.
 ///
 /// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
@@ -12,10 +23,13 @@ use sha2::{Digest, Sha256};
 /// `1e4` or `10000.0`, nor a default that the schema names. A default that only words describe, such as `passes = 2`,
 /// counts when it is typed. A key added to the format later changes no digest.
 ///
-/// Where the scene names a file, the digest of what is in it stands for the name: `body` for that of the body.
-pub(super) fn digest(mut scene: SceneFile, body: Option<String>) -> String {
-    if body.is_some() {
-        scene.body.file = body;
+/// Where the scene names a file, the digest of what is in it stands for the name.
+pub(super) fn digest(mut scene: SceneFile, files: FileDigests) -> String {
+    if files.body.is_some() {
+        scene.body.file = files.body;
+    }
+    if let (Some(font), Some(regular)) = (&mut scene.view.font, files.regular) {
+        (font.regular, font.semi_bold) = (regular, files.semi_bold);
     }
     // The types hold nothing that JSON cannot: finite numbers, text keys.
     let mut value = serde_json::to_value(&scene).unwrap_or_default();

@@ -31,7 +31,7 @@ impl Scene {
     }
 
     /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's
-    /// own file is looked for from the current directory on, for a text lies in no folder.
+    /// own file and fonts are looked for from the current directory on, for a text lies in no folder.
     ///
     /// # Errors
     /// A text that is empty, no TOML, or no scene, with all mistakes in it.
@@ -57,7 +57,7 @@ impl Scene {
         Self::read(text, name, Path::new(""), limits)
     }
 
-    /// Reads a scene from a text; a body's own file is looked for in `folder`.
+    /// Reads a scene from a text; a body's own file and fonts are looked for in `folder`.
     fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = || name.to_owned();
@@ -74,7 +74,7 @@ impl Scene {
         let parts = Parts::new(&checked, folder, limits, &mut report);
         let digest = match report.total() {
             0 => SceneFile::deserialize(Value::Object(checked.sound))
-                .map(|scene| digest::digest(scene, parts.digest_of_file()))
+                .map(|scene| digest::digest(scene, parts.digests_of_files()))
                 .unwrap_or_default(),
             _ => String::new(),
         };

@@ -6,15 +6,19 @@
 //!
 //! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
 //! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`. Bodies
-//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads.
+//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font` reads,
+//! lie beside it, too.
 
+mod beside;
 mod digest;
 mod error;
 mod file;
+mod font;
 mod generate;
 mod limits;
 mod load;
 mod npz;
+mod palette;
 mod report;
 mod resolve;
 mod schema;
@@ -27,9 +31,13 @@ mod words;
 
 pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
+pub use palette::Palette;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
-pub use view::{Camera, ColourScale, FloorStyle, Follow, Labels, Light, Theme, View, Visible};
+pub use view::{
+    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
+    Visible,
+};
 
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;

@@ -1,19 +1,24 @@
 //! How a scene is looked at, resolved.
 
+use super::palette::Palette;
 use crate::sim::body::Dimension;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
 
 /// How a scene is drawn. Plain data, kept also by builds that cannot draw, so that every scene can be checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// Its colours.
+    /// Its colours: those asked for, unless its text could not be read on the background.
     pub theme: Theme,
+    /// What it looks like.
+    pub look: Look,
     /// From where; the same for all panels.
     pub camera: Camera,
     /// What the clock counts from, shown under the time, such as `after first contact`.
@@ -44,8 +49,8 @@ pub struct View {
     pub opacity: f64,
     /// How far elements are drawn apart, in parts of their distance from the body's middle; 0 leaves them together.
     pub explode: f64,
-    /// The strains at the ends of the scale that colours springs, if it does.
-    pub spring_strain: Option<[f64; 2]>,
+    /// The colours of the strain of springs, if it is shown.
+    pub spring_strain: Option<StrainScale>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -62,6 +67,7 @@ impl Default for View {
         Self {
             size: [1280, 720],
             theme: Theme::default(),
+            look: Look::of(Theme::default()),
             camera: Camera {
                 azimuth: 0.0,
                 elevation: 0.0,
@@ -169,6 +175,87 @@ pub struct ColourScale {
     pub field: Field,
     /// The values at the two ends of the scale, in the field's unit.
     pub range: [f64; 2],
+    /// Its colours.
+    pub map: ColourMap,
+}
+
+/// Named scales of colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColourMap {
+    /// From pale mint through teal to indigo, made for these pictures: never near to vermilion, and edges show on all of
+    /// it. Large values are dark in the light theme and light in the dark one.
+    #[default]
+    MintIndigo,
+    /// From dark violet through teal to yellow (matplotlib), in either theme.
+    Viridis,
+    /// From dark blue to yellow, alike to all eyes (Nuñez, Anderton, Renslow 2018), in either theme.
+    Cividis,
+    /// From black through crimson to pale yellow (matplotlib), in either theme. On the way it is orange, near to the
+    /// colour of turned-over elements: give these another one, `colours.turned_over`, if both matter.
+    Magma,
+    /// From light to dark grey in the light theme, from dark to light in the dark one.
+    Greys,
+    /// From violet through grey to green, made for lines: values near the middle recede, yet are seen on any ground.
+    VioletGreen,
+    /// From purple through white to green (ColorBrewer PRGn), in either theme: for values on both sides of a middle.
+    PurpleGreen,
+}
+
+/// What a picture looks like besides what it shows: colours, type and lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// All colours.
+    pub palette: Palette,
+    /// Whether the background is left out, so that whatever a picture is laid on shows.
+    pub transparent: bool,
+    /// The font.
+    pub font: FontFiles,
+    /// How many times larger than usual type is.
+    pub text_scale: f64,
+    /// How many times thicker than usual lines are.
+    pub line_scale: f64,
+}
+
+impl Look {
+    /// What pictures of a theme look like where a scene says nothing else.
+    pub fn of(theme: Theme) -> Self {
+        Self {
+            palette: Palette::of(theme),
+            transparent: false,
+            font: FontFiles::default(),
+            text_scale: 1.0,
+            line_scale: 1.0,
+        }
+    }
+}
+
+/// The fonts that a scene brings with it, as the bytes of their files, which have been found to be fonts. Where there
+/// is none the built-in font serves.
+#[derive(Clone, Default, PartialEq, Eq)]
+pub struct FontFiles {
+    /// For everything that explains.
+    pub regular: Option<Arc<[u8]>>,
+    /// For names and counts; the regular one serves if there is no other.
+    pub semi_bold: Option<Arc<[u8]>>,
+}
+
+impl fmt::Debug for FontFiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Millions of bytes tell nobody anything.
+        let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
+        let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
+        f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
+    }
+}
+
+/// The colours of the strain of springs, the change of their length over their length at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainScale {
+    /// The strains at the two ends of the scale.
+    pub range: [f64; 2],
+    /// Its colours.
+    pub map: ColourMap,
 }
 
 /// The colours of a picture.

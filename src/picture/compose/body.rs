@@ -79,8 +79,9 @@ impl Draft<'_> {
         if !visible.surfaces && springs.is_empty() {
             strokes.extend(wire.edges(edges, over, false));
         }
+        let strain = self.scene.view.spring_strain.map(|scale| (&self.composer.spring_ramp[..], scale.range));
         if !springs.is_empty() {
-            strokes.extend(wire.without_surfaces().springs(springs));
+            strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
                 // Which elements have turned over is told in any case.
                 strokes.extend(wire.edges(edges, over, true));

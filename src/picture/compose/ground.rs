@@ -3,26 +3,24 @@
 use super::panel::Draft;
 use crate::picture::Floor;
 use crate::picture::camera::{Framing, Lens};
+use crate::picture::layout;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
 use crate::picture::shadow::{self, Plane, Shade};
+use crate::scene::{FloorStyle, Light};
 use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// The key light comes from this far to the left of the viewer (rad).
-const KEY_AZIMUTH: f64 = 62.0 * std::f64::consts::PI / 180.0;
-/// The slope at which it falls on a body near the floor: 50° up.
-const KEY_SLOPE: f64 = 1.191_753_592_594_21;
 /// How much steeper it falls for each distance of the camera that bodies have risen: the shadow stays in the panel.
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
 /// Distance of the camera above which the floor is drawn wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// Over this height above the panel's lower side the floor fades (px at type of the reference size): captions stand
-/// on clean ground.
-const FADE_ABOVE: f64 = 94.0;
+/// So far above the room for words below the body the floor begins to fade (px at type of the reference size): words
+/// stand on clean ground.
+const FADE_ABOVE: f64 = 9.0;
 /// The grid's lines are a side apart, or more if that were more cells than this beside a body.
 const MOST_CELLS: f64 = 10.0;
 /// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
@@ -36,6 +34,7 @@ impl Draft<'_> {
         }
         let (normal, height) = contact::ground(&self.scene.obstacles, self.run.snapshot.time)?;
         let (plane, anchor) = self.plane(normal, height);
+        let view = &self.scene.view;
         let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening());
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
@@ -49,7 +48,9 @@ impl Draft<'_> {
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
-            fade_above: narrow(FADE_ABOVE * self.scale.unit),
+            fade_above: narrow((layout::rooms(&view.labels, view.scale_bar)[1] + FADE_ABOVE) * self.scale.unit),
+            is_filled: view.floor != FloorStyle::None,
+            has_grid: view.floor == FloorStyle::Grid,
             shades: self.shadows(staged, &plane, middle, fade[1]),
         })
     }
@@ -74,7 +75,7 @@ impl Draft<'_> {
     /// The shadows of key light and sky, within `reach` of a point on the ground (sides).
     fn shadows(&self, staged: &Staged, plane: &Plane, middle: DVec2, reach: f64) -> [Shade; 2] {
         let (points, triangles) = self.casters(staged);
-        let mut shades = if self.key.dot(plane.normal) > 0.05 {
+        let mut shades = if self.scene.view.shadow && self.key.dot(plane.normal) > 0.05 {
             shadow::shades(&points, &triangles, plane, self.key, middle, reach, self.composer.soft)
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
@@ -116,11 +117,11 @@ impl Draft<'_> {
 }
 
 /// Unit vector towards the key light.
-pub(super) fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
+pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
     let towards_viewer = lens.right.cross(DVec3::Y);
-    let (left, towards) = libm::sincos(KEY_AZIMUTH);
+    let (left, towards) = libm::sincos(light.azimuth);
     let level = towards * towards_viewer - left * lens.right;
-    let slope = KEY_SLOPE + KEY_STEEPENING * framing.rise / framing.distance;
+    let slope = libm::tan(light.elevation) + KEY_STEEPENING * framing.rise / framing.distance;
     (level + slope * DVec3::Y).normalize()
 }
 

@@ -6,20 +6,20 @@ mod panel;
 mod region;
 
 use super::arrows;
-use super::camera::{Lens, Middles, framing};
-use super::caption::{Writer, numbers};
+use super::camera::{self, Lens, Middles};
+use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
-use super::layout::{self, Rectangle, Scale};
-use super::legend::{self, Legend};
+use super::layout::{Layout, Rectangle, Scale};
+use super::legend::{Bar, Legend};
 use super::palette::Palette;
 use super::plane::LEVEL;
 use super::ramp;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
-use super::wire::Edges;
-use super::{Colour, Framing, Picture};
-use crate::scene::{Camera, Follow, Scene};
+use super::wire::{Edges, spring_strain};
+use super::{Colour, Framing, Picture, number};
+use crate::scene::{Camera, Follow, Scene, StrainScale};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
@@ -28,6 +28,9 @@ use panel::Draft;
 
 /// Bodies of more elements than this along a side have softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
+
+/// The scale bar is at most this long (px in the reference picture).
+const SCALE_BAR: f64 = 120.0;
 
 /// Composes frames of one scene.
 #[derive(Debug)]
@@ -50,6 +53,8 @@ pub struct Composer<'a> {
     bare: Vec<usize>,
     /// The colours of a field, if one is shown.
     ramp: Vec<Colour>,
+    /// The colours of the strain of springs, if it is shown.
+    spring_ramp: Vec<Colour>,
     /// The edges of the elements, if surfaces are not shown.
     edges: Edges,
     /// The nodes that get arrows.
@@ -84,10 +89,14 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |_| ramp::ramp(scene.view.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+            spring_ramp: scene
+                .view
+                .spring_strain
+                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: Palette::of(scene.view.theme),
+            palette: scene.view.look.palette,
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
@@ -106,80 +115,154 @@ impl<'a> Composer<'a> {
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let legend = self.legend(size, frame.runs.len());
-        // The key stands below all panels.
-        let above_legend = [size[0], size[1] - legend.map_or(0, |legend| legend.height)];
-        let panels = layout::panels(above_legend, frame.runs.len(), view.columns);
-        let framing = self.framing(frame);
-        let scale = panels.first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel));
+        let legend = self.legend(frame.runs.len());
+        let caption = self.caption(frame.runs.len());
+        let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
+        let (scale, framing) = (layout.scale, self.framing(frame));
         let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
-        writer.hairlines(&panels);
-        self.write(frame, &panels, &mut writer);
-        if let Some((legend, &viewport)) = legend.zip(panels.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, viewport, &framing, scale));
-            let colours = view.colour.as_ref().map(|colour| (colour, &self.ramp[..], legend::beyond(colour, frame)));
-            legend.draw(&mut writer, size, arrow, colours);
+        writer.hairlines(&layout);
+        let hairlines = std::mem::take(&mut writer.marks);
+        self.write(frame, &layout, &framing, &mut writer);
+        writer.title(layout.around, f64::from(size[0]), &view.title);
+        writer.caption(layout.around, &caption, layout.caption);
+        if let Some((legend, place)) = legend.zip(layout.panels.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
+            let bars = self.bars(frame);
+            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &bars);
         }
-        let Writer { mut marks, words, .. } = writer;
-        let mut under = Vec::new();
-        let panels = panels
-            .iter()
-            .zip(&frame.runs)
-            .map(|(&viewport, run)| Draft::new(self, viewport, run, &framing, scale).panel(&mut under, &mut marks))
-            .collect();
+        let Writer { marks: above, mut words, .. } = writer;
+        let (mut under, mut marks) = (Vec::new(), hairlines);
+        let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
+        let viewports = layout.panels.iter().map(|place| place.viewport);
+        let panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
+        // Words and tallies lie above bodies, and stand out from them.
+        marks.extend(above);
+        for word in &mut words {
+            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
+        }
         Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+    }
+
+    /// The lines of the caption.
+    fn caption(&self, runs: usize) -> Vec<String> {
+        let view = &self.scene.view;
+        let around = Layout::around(view, runs);
+        if !Scale::legible(around.caption()) {
+            return Vec::new();
+        }
+        wrapped(&view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
     }
 
     /// What the camera of all panels looks at.
     fn framing(&self, frame: &Frame) -> Framing {
         let middles = Middles::new(frame.runs.iter().filter_map(|run| middle(&run.snapshot)), self.start);
         let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
-        framing(&self.scene.view.camera, &middles, !level)
+        camera::framing(&self.scene.view.camera, &middles, !level)
     }
 
     /// Writes the words of all panels.
-    fn write(&self, frame: &Frame, panels: &[Rectangle], writer: &mut Writer<'_>) {
+    fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, writer: &mut Writer<'_>) {
         let view = &self.scene.view;
+        let labels = view.labels;
         // One clock, upper right.
-        let clock = view.columns.clamp(1, panels.len().max(1)) - 1;
-        for (at, (&viewport, run)) in panels.iter().zip(&frame.runs).enumerate() {
-            let taken = if at == clock { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
-            let name = self.scene.runs.get(run.run).map_or("", |run| &run.name);
-            let second = self.descriptions.get(run.run).map_or("", String::as_str);
-            writer.heading(viewport, name, second, taken);
-            if at == clock {
+        let clock = view.columns.clamp(1, layout.panels.len().max(1)) - 1;
+        for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
+            let viewport = place.viewport;
+            let has_clock = labels.clock && at == clock;
+            let taken = if has_clock { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
+            let shown = |is_shown: bool, text| if is_shown { text } else { "" };
+            let heading = Heading {
+                letter: if labels.letter { caption::letter(at) } else { String::new() },
+                name: shown(labels.name, self.scene.runs.get(run.run).map_or("", |run| &run.name)),
+                sample: self.sample(run.run),
+                second: shown(labels.model, self.descriptions.get(run.run).map_or("", String::as_str)),
+            };
+            writer.heading(viewport, &heading, taken);
+            if has_clock {
                 writer.clock(viewport, frame.time, &view.clock);
             }
-            let numbers = numbers(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
-            writer.count(viewport, &self.tally, &run.snapshot, &numbers);
+            let margin = writer.scale.margin();
+            let mut from = f64::from(viewport[0]) + margin;
+            let mut to = f64::from(viewport[0] + viewport[2]) - margin;
+            if labels.count {
+                from = writer.count(viewport, &self.tally, &run.snapshot);
+            }
+            if labels.number || matches!(run.snapshot.status, Status::Diverged(_)) {
+                let area_ratio = self.smallest_area_ratio(&run.snapshot);
+                to = writer.number(viewport, from, &caption::number(self.scene, &run.snapshot, area_ratio));
+            }
+            // One camera for all panels, and so one bar.
+            if view.scale_bar && at == 0 {
+                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale);
+                writer.scale_bar(viewport, [from, to], metres, pixels);
+            }
         }
     }
 
-    /// The key of colours and arrows, if there are any.
-    fn legend(&self, size: [u32; 2], runs: usize) -> Option<Legend> {
+    /// The line that stands for a run in strips and among arrows, if there are any.
+    fn sample(&self, run: usize) -> Option<(Colour, bool)> {
         let view = &self.scene.view;
-        let parts = [view.visible.displacements, view.colour.is_some()];
-        if parts == [false; 2] {
+        let has_arrows = view.visible.displacements && view.colour.is_none();
+        let has_springs = !self.scene.runs.get(run)?.model.springs().is_empty();
+        let colour = self.palette.arrows[usize::from(has_springs)];
+        (view.legend && (view.strip.is_some() || has_arrows)).then_some((colour, has_springs && view.strip.is_some()))
+    }
+
+    /// What the scale bar stands for (m), and how long it is in this frame and without a moving camera (px).
+    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> (f64, [f64; 2]) {
+        let [now, usual] = self.pixels_a_metre(viewport, framing, scale);
+        let metres = number::round_below(SCALE_BAR * scale.unit / usual);
+        (metres, [now, usual].map(|pixels| metres * pixels))
+    }
+
+    /// The pixels of a metre at the point looked at, in this frame and without a moving camera.
+    fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> [f64; 2] {
+        let Self { scene, .. } = self;
+        let edges = viewport.map(f64::from);
+        let pixels = |framing: &Framing| {
+            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
+            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
+        };
+        let still = Camera { follow: Follow::Nothing, ..scene.view.camera.clone() };
+        [pixels(framing), pixels(&camera::framing(&still, &Middles::new([], DVec3::ZERO), false))]
+    }
+
+    /// The key of colours and arrows, if there are any.
+    fn legend(&self, runs: usize) -> Option<Legend> {
+        let view = &self.scene.view;
+        let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
+        if !view.legend || !view.visible.displacements && bars == 0 {
             return None;
         }
-        let panels = layout::panels(size, runs, view.columns);
-        Legend::new(size, Scale::new(size, *panels.first()?), parts)
+        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), view.visible.displacements, bars)
+    }
+
+    /// The scales of colours in a frame.
+    fn bars(&self, frame: &Frame) -> Vec<Bar<'_>> {
+        let view = &self.scene.view;
+        let of_field = view.colour.as_ref().map(|colour| {
+            let values = frame.runs.iter().flat_map(|run| &run.snapshot.field).copied();
+            Bar::new([colour.field.name(), colour.field.unit()], colour.range, &self.ramp, values)
+        });
+        let body = &*self.scene.body;
+        let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
+            let whole = frame.runs.iter().filter(|run| run.snapshot.position.len() == body.len());
+            let strains = whole.flat_map(|run| {
+                let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
+                springs.iter().map(|&ends| spring_strain(body, &run.snapshot.position, ends))
+            });
+            Bar::new(["spring strain", ""], range, &self.spring_ramp, strains)
+        });
+        of_field.into_iter().chain(of_springs).collect()
     }
 
     /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
     /// how large it is beside those of the reference picture.
     fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
-        let Self { scene, .. } = self;
-        let edges = viewport.map(f64::from);
-        let pixels = |framing: &Framing| {
-            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
-            // In space, the key holds at the point looked at.
-            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
-        };
-        let camera = Camera { follow: Follow::Nothing, ..scene.view.camera.clone() };
-        let times = scene.view.arrow_scale;
-        let metres = legend.arrow_metres(pixels(&framing(&camera, &Middles::new([], DVec3::ZERO), false)) * times);
-        [metres, metres * pixels(seen) * times, arrows::size(pixels(seen) * scene.view.side, scale.unit)]
+        let [now, usual] = self.pixels_a_metre(viewport, seen, scale);
+        let times = self.scene.view.arrow_scale;
+        let metres = legend.arrow_metres(usual * times);
+        [metres, metres * now * times, arrows::size(now * self.scene.view.side, scale.unit)]
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.

@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
 use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
-use crate::scene::Scene;
+use crate::scene::{FloorStyle, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::snapshot::{RunFrame, Status};
@@ -81,7 +81,7 @@ impl<'a> Draft<'a> {
             framing,
             viewport,
             scale,
-            key: key_light(&lens, framing),
+            key: key_light(&lens, framing, view.light),
             origin: framing.base,
             side: view.side,
             position,
@@ -145,6 +145,8 @@ impl<'a> Draft<'a> {
             turned_over: &self.run.snapshot.turned_over,
             lens: &self.lens,
             viewport: self.viewport,
+            clear: self.clear_of_words(),
+            floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
             scale: self.scale,
             palette: &self.composer.palette,
         };
@@ -220,12 +222,16 @@ impl<'a> Draft<'a> {
         let has_springs = self.scene.runs.get(self.run.run).is_some_and(|run| !run.model.springs().is_empty());
         let arrows = Arrows {
             lens: &self.lens,
-            room: layout::clear_of_words(self.viewport, self.scale),
+            room: self.clear_of_words(),
             size: arrows::size(self.element, self.scale.unit),
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
-            colour: self.composer.palette.arrows[usize::from(has_springs)],
-            halo: self.composer.palette.background,
+            colour: match view.colour {
+                // Among the colours of a field, an arrow of a model's colour would not stand out.
+                Some(_) => self.composer.palette.text,
+                None => self.composer.palette.arrows[usize::from(has_springs)],
+            },
+            halo: self.composer.palette.halo,
         };
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
@@ -240,6 +246,12 @@ impl<'a> Draft<'a> {
         let mut hidden = vec![false; self.position.len()];
         skin.nodes.iter().for_each(|&node| hidden[node as usize] = !visible[node as usize]);
         bearers.iter().copied().filter(|&node| !hidden[node as usize]).collect()
+    }
+
+    /// The part of the panel that words leave free.
+    pub(super) fn clear_of_words(&self) -> Rectangle {
+        let view = &self.scene.view;
+        layout::clear_of_words(self.viewport, self.scale, layout::rooms(&view.labels, view.scale_bar))
     }
 
     /// Draws the arrows of what moves.

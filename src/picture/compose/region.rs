@@ -2,7 +2,7 @@
 
 use super::panel::Draft;
 use crate::picture::camera::Lens;
-use crate::picture::layout::{self, Rectangle};
+use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};
 
 /// Bodies as wide as their panel and higher than this part of it are kept off the words.
@@ -22,7 +22,7 @@ impl Draft<'_> {
         let fills_panel = region[2] == self.viewport[2] && f64::from(region[3]) > FILLED * f64::from(self.viewport[3]);
         if self.diverged || fills_panel {
             // What blows up may lie across everything; the words that say so stay on clean ground.
-            return overlap(region, layout::clear_of_words(self.viewport, self.scale));
+            return overlap(region, self.clear_of_words());
         }
         region
     }

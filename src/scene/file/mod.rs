@@ -5,6 +5,7 @@
 //! coordinates in space and two in the plane.
 
 mod body;
+mod look;
 mod motion;
 mod obstacle;
 mod view;
@@ -12,6 +13,7 @@ mod view;
 pub(in crate::scene) use body::{
     BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile,
 };
+pub(in crate::scene) use look::{BackgroundFile, ColoursFile, FontFile, TypedColour};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
 pub(in crate::scene) use obstacle::ObstacleFile;
 pub(in crate::scene) use view::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};

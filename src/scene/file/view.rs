@@ -1,7 +1,8 @@
 //! The view as typed.
 
 use super::Coordinates;
-use crate::scene::view::{FloorStyle, Follow, Light, Theme};
+use super::look::{BackgroundFile, ColoursFile, FontFile};
+use crate::scene::view::{ColourMap, FloorStyle, Follow, Light, Theme};
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
@@ -17,6 +18,21 @@ pub(in crate::scene) struct ViewFile {
     pub(in crate::scene) size: [u32; 2],
     /// The colours.
     pub(in crate::scene) theme: Theme,
+    /// What is behind everything: a colour, or `"transparent"`. A colour on which the theme's text could not be read
+    /// makes the other theme take its place. Transparent pictures are PNG files with opacities, to be laid on any page;
+    /// they are drawn twice and have no floor but its lines and shadows. Default: the theme's.
+    pub(in crate::scene) background: Option<BackgroundFile>,
+    /// Colours that take the place of the theme's, each with what belongs to it. Default: the theme's.
+    pub(in crate::scene) colours: ColoursFile,
+    /// The files of the font. Default: the font that is built in, which has Latin and Greek letters.
+    pub(in crate::scene) font: Option<FontFile>,
+    /// How many times larger than usual all type is, with the rows it stands in.
+    #[schemars(range(min = 0.5, max = 3.0))]
+    pub(in crate::scene) text_scale: f64,
+    /// How many times thicker than usual lines are, and how many times larger nodes and the signs on elements in the
+    /// plane.
+    #[schemars(range(min = 0.25, max = 4.0))]
+    pub(in crate::scene) line_scale: f64,
     /// What the clock counts from, in the words shown under the time.
     #[schemars(length(max = 80))]
     pub(in crate::scene) clock: String,
@@ -83,6 +99,11 @@ impl Default for ViewFile {
         Self {
             size: [1280, 720],
             theme: Theme::default(),
+            background: None,
+            colours: ColoursFile::default(),
+            font: None,
+            text_scale: 1.0,
+            line_scale: 1.0,
             clock: "after release".into(),
             columns: None,
             panels: None,
@@ -129,11 +150,20 @@ impl LabelFile {
 }
 
 /// Colours of springs.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(in crate::scene) struct SpringColourFile {
-    /// The strains at the ends of the scale. Default: −0.5 and 0.5.
+    /// The strains at the ends of the scale. Default: −0.3 and 0.3.
     pub(in crate::scene) range: Option<[f64; 2]>,
+    /// The colours of the scale. Default: `"violet-green"`, violet where springs are shortened, green where they are
+    /// lengthened.
+    pub(in crate::scene) map: ColourMap,
+}
+
+impl Default for SpringColourFile {
+    fn default() -> Self {
+        Self { range: None, map: ColourMap::VioletGreen }
+    }
 }
 
 /// Where the light comes from, seen from the camera.
@@ -207,6 +237,9 @@ pub(in crate::scene) struct ColourFile {
     /// strain of 0.5, a displacement of half an element's edge, the speed of a fall through the scene or at the start,
     /// the energy of an element strained by 0.5.
     pub(in crate::scene) range: Option<[f64; 2]>,
+    /// The colours of the scale.
+    #[serde(default)]
+    pub(in crate::scene) map: ColourMap,
 }
 
 /// A perspective camera that looks at a point. A body in the plane is looked at straight from the front without

@@ -1,6 +1,7 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
 use super::vector;
+use crate::scene::beside::similar;
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::{Limits, size};
 use crate::scene::npz::{Array, Npz, Numbers};
@@ -120,7 +121,7 @@ impl Lists {
         };
         if !path.exists() {
             let message = format!("is not there (looked for {})", path.display());
-            whole(report, message, similar(&path).map(|near| format!("did you mean {near:?}?")));
+            whole(report, message, similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
             return None;
         }
         let npz = match Npz::open(&path) {
@@ -176,17 +177,6 @@ impl Lists {
         }
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
-}
-
-/// The archive in the same folder whose name is most like that of a missing one.
-fn similar(path: &Path) -> Option<String> {
-    let wanted = path.file_name()?.to_str()?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let mut archives: Vec<String> = names.filter(|name| name.ends_with(".npz")).collect();
-    archives.sort();
-    nearest(wanted, &archives.iter().map(String::as_str).collect::<Vec<_>>()).map(str::to_owned)
 }
 
 /// The arrays that an archive may have, in the order in which they are read.

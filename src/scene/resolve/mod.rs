@@ -5,6 +5,7 @@ mod body;
 mod elements;
 mod grips;
 mod lists;
+mod look;
 mod motion;
 mod obstacles;
 mod reach;
@@ -12,11 +13,14 @@ mod runs;
 mod view;
 
 use super::Scene;
+use super::digest::FileDigests;
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
+use super::font;
 use super::generate::Generator;
 use super::limits::Limits;
 use super::report::{Report, Way, written};
 use super::structure::Checked;
+use super::view::FontFiles;
 use super::words::count;
 use crate::sim::body::Dimension;
 use glam::DVec3;
@@ -43,6 +47,8 @@ pub(super) struct Parts {
     holds: Vec<Option<HoldFile>>,
     grabs: Vec<Option<GrabFile>>,
     view: Option<ViewFile>,
+    /// The fonts that the view names; `None` if there is a mistake in them.
+    font: Option<FontFiles>,
 }
 
 impl Parts {
@@ -59,6 +65,11 @@ impl Parts {
         });
         let read = |body: &BodyFile| Lists::read(folder, body.file.as_ref()?, limits, report);
         let beside = body.as_ref().filter(|body| Generator::of(body).is_none()).and_then(read);
+        let view = if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) };
+        let font = match view.as_ref().and_then(|view| view.font.as_ref()) {
+            Some(typed) => font::read(folder, typed, report),
+            None => Some(FontFiles::default()),
+        };
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
@@ -70,13 +81,18 @@ impl Parts {
             obstacles: several(file, "obstacle", report),
             holds: several(file, "hold", report),
             grabs: several(file, "grab", report),
-            view: if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) },
+            view,
+            font,
         }
     }
 
-    /// The digest of what the body's own file holds.
-    pub(super) fn digest_of_file(&self) -> Option<String> {
-        self.beside.as_ref().map(Lists::digest)
+    /// Digests of what the files beside the scene hold.
+    pub(super) fn digests_of_files(&self) -> FileDigests {
+        let [regular, semi_bold] = match &self.font {
+            Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
+            None => [None, None],
+        };
+        FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold }
     }
 }
 
@@ -142,7 +158,7 @@ pub(super) fn resolve(
                 duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
                 runs,
             };
-            view::resolve(view, &around, report)
+            view::resolve(view, &around, parts.font.clone(), report)
         }
         _ => None,
     };

@@ -1,11 +1,11 @@
 //! How the scene is looked at.
 
 use super::body::ResolvedBody;
-use super::{reach, vector};
+use super::{look, reach, vector};
 use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{Camera, ColourScale, Follow, Labels, Light, View, Visible};
+use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, StrainScale, View, Visible};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
@@ -32,7 +32,12 @@ const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 const COLUMNS: usize = 3;
 
 /// The view, or `None` if there is a mistake in it.
-pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<View> {
+pub(super) fn resolve(
+    typed: &ViewFile,
+    scene: &Around<'_>,
+    font: Option<FontFiles>,
+    report: &mut Report<'_>,
+) -> Option<View> {
     let &Around { body, obstacles, .. } = scene;
     let runs = scene.runs.len();
     let dimension = body.body.dimension;
@@ -104,13 +109,16 @@ pub(super) fn resolve(typed: &ViewFile, scene: &Around<'_>, report: &mut Report<
         }
         Some(springs) => {
             let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
-            Some(rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?)
+            let range = rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?;
+            Some(StrainScale { range, map: springs.map })
         }
         None => None,
     };
+    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     Some(View {
         size: typed.size,
-        theme: typed.theme,
+        theme,
+        look,
         camera: chosen,
         clock: typed.clock.clone(),
         columns,
@@ -149,7 +157,7 @@ fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
 }
 
 /// The strains at the ends of the scale that colours springs.
-const SPRING_STRAIN: [f64; 2] = [-0.5, 0.5];
+const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
@@ -161,7 +169,7 @@ fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Op
         Some(range) => rising(range, &way, report)?,
         None => [0.0, scene.largest(typed.by)],
     };
-    Some(ColourScale { field: typed.by, range })
+    Some(ColourScale { field: typed.by, range, map: typed.map })
 }
 
 /// The ends of a scale, if they rise and are far enough apart to be told from each other.

@@ -3,6 +3,7 @@
 mod expect;
 mod keys;
 
+use super::file::{BackgroundFile, TypedColour};
 use super::report::{Report, Way, written};
 use super::schema::{choices, variants};
 use super::step::FractionOfCycle;
@@ -161,6 +162,9 @@ impl<'p> Walk<'_, '_, 'p> {
                 let message = format!("`{}` is {}; {expected}, or seconds as a number", self.here(), quoted(text));
                 self.mistake(span, message, None);
             }
+        } else if let Some(mistake) = colour_mistake(schema, text) {
+            let (wrong, help) = mistake;
+            self.mistake(span, format!("`{}` is {}{wrong}", self.here(), quoted(text)), help);
         } else {
             self.lengths(schema, "characters", "character", text.chars().count(), span.clone());
             if let Some(control) = text.chars().find(|c| c.is_control()) {
@@ -266,6 +270,15 @@ impl<'p> Walk<'_, '_, 'p> {
             self.path.pop();
         }
         Json::Object(json)
+    }
+}
+
+/// What goes on after the text that is no colour, if it should be one, and what to do.
+fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
+    match schema.get("format").and_then(Json::as_str)? {
+        "colour" => TypedColour::mistake(text),
+        "colour-or-transparent" => BackgroundFile::mistake(text),
+        _ => None,
     }
 }
 

@@ -1,0 +1,108 @@
+//! Colours as numbers: how bright they are, how they mix, how different they look, also to colour-blind eyes. Knows
+//! nothing of scenes and pictures.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod difference;
+mod oklab;
+mod typed;
+
+pub use difference::{Lab, Sight, cie76, ciede2000, difference, lab};
+pub use oklab::{Oklab, from_oklab, oklab};
+pub(crate) use typed::names;
+pub use typed::{UnknownColour, parse, written};
+
+/// An opaque colour: red, green, blue, as sRGB bytes.
+pub type Colour = [u8; 3];
+
+/// A colour as linear light, each channel from 0 to 1.
+pub fn linear(colour: Colour) -> [f64; 3] {
+    colour.map(|byte| {
+        let encoded = f64::from(byte) / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+    })
+}
+
+/// Linear light as the nearest sRGB bytes; what no byte can say comes to the nearest end.
+pub fn encoded(linear: [f64; 3]) -> Colour {
+    linear.map(|light| {
+        let light = light.clamp(0.0, 1.0);
+        let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 };
+        (255.0 * encoded).round() as u8
+    })
+}
+
+/// The relative luminance of a colour, from 0 to 1 (WCAG 2.2).
+pub fn luminance(colour: Colour) -> f64 {
+    let [red, green, blue] = linear(colour);
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+/// The contrast of two colours, from 1 to 21 (WCAG 2.2). Words of the usual size need 4.5.
+pub fn contrast(one: Colour, other: Colour) -> f64 {
+    let [a, b] = [luminance(one), luminance(other)];
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+/// One colour on its way to another: itself at a share of 0, the other at 1, between them by the sRGB bytes.
+pub fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
+    std::array::from_fn(|at| {
+        let [from, to] = [one[at], other[at]].map(f64::from);
+        (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8
+    })
+}
+
+/// The colour itself if it has a contrast with the ground, else the nearest that has one: with the same hue, lighter
+/// or darker, whichever changes it less. Black or white where none has it.
+pub fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
+    const STEPS: u32 = 200;
+    let own = oklab(colour);
+    let moved = |by: f64| {
+        let Oklab([lightness, a, b]) = own;
+        let moved = lightness + by;
+        (0.0..=1.0).contains(&moved).then(|| from_oklab(Oklab([moved, a, b])))
+    };
+    let steps = (0..=STEPS).flat_map(|step| [1.0, -1.0].map(|sign| sign * f64::from(step) / f64::from(STEPS)));
+    let found = steps.filter_map(moved).find(|&other| contrast(other, ground) >= least);
+    found.unwrap_or_else(|| best_of(&[[0; 3], [255; 3]], ground))
+}
+
+/// Of several colours, the one with most contrast with the ground; black if there is none.
+pub fn best_of(colours: &[Colour], ground: Colour) -> Colour {
+    let most = |a: &&Colour, b: &&Colour| contrast(**a, ground).total_cmp(&contrast(**b, ground));
+    colours.iter().max_by(most).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_and_bytes_are_the_same_colour() {
+        for byte in 0..=255 {
+            assert_eq!(encoded(linear([byte, 0, 255 - byte])), [byte, 0, 255 - byte]);
+        }
+        assert_eq!(encoded([-1.0, 2.0, 0.5]), [0, 255, 188]);
+    }
+
+    #[test]
+    fn contrast_runs_from_1_to_21() {
+        assert_eq!(contrast([0; 3], [255; 3]), 21.0);
+        assert_eq!(contrast([9, 99, 199], [9, 99, 199]), 1.0);
+        // The grey of WCAG's own example that just fails on white.
+        assert!(contrast([119; 3], [255; 3]) < 4.5 && contrast([118; 3], [255; 3]) >= 4.5);
+    }
+
+    #[test]
+    fn colours_become_readable_on_any_ground_with_little_change() {
+        assert_eq!(readable([0x1b, 0x23, 0x2e], [0xfb; 3], 4.5), [0x1b, 0x23, 0x2e]);
+        for ground in [[0; 3], [0x80; 3], [255; 3], [0xff, 0xf1, 0xd0], [0x10, 0x20, 0x60], [0xc0, 0x20, 0x20]] {
+            for colour in [[0xb8, 0x4a, 0], [0xff, 0x9b, 0x5c], [0x80; 3], [0x30, 0x60, 0xff]] {
+                let readable = readable(colour, ground, 4.5);
+                assert!(contrast(readable, ground) >= 4.5, "{colour:x?} on {ground:x?}: {readable:x?}");
+            }
+        }
+        // More than there is: the best there is.
+        assert_eq!(readable([0x80; 3], [0x80; 3], 20.0), [0; 3]);
+    }
+}

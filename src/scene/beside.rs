@@ -1,0 +1,19 @@
+//! Files that lie beside a scene and belong to it.
+
+use super::words::nearest;
+use std::path::Path;
+
+/// The file in the same folder, with one of several endings, whose name is most like that of a missing one.
+pub(super) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let has_ending = |name: &String| {
+        let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        ending.is_some_and(|ending| endings.contains(&ending.as_str()))
+    };
+    let mut similar: Vec<String> = names.filter(has_ending).collect();
+    similar.sort();
+    nearest(wanted, &similar.iter().map(String::as_str).collect::<Vec<_>>()).map(str::to_owned)
+}

@@ -1,0 +1,198 @@
+//! Colours, type and lines as typed.
+
+use crate::colour::{Colour, UnknownColour, names, parse, written};
+use crate::scene::words::{nearest, quoted};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::str::FromStr;
+
+/// What a colour may be, for messages.
+const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS such as \"steelblue\"";
+
+/// An opaque colour. It is written back as digits, so that a name and its digits mean the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub(in crate::scene) struct TypedColour(pub(in crate::scene) Colour);
+
+impl TypedColour {
+    /// Why a text is no colour, as words that go on after it, and what to do if more can be said; `None` if it is one.
+    pub(in crate::scene) fn mistake(text: &str) -> Option<(String, Option<String>)> {
+        let digits = |text: &str| format!("write \"#{}\"", text.trim());
+        Some(match parse(text).err()? {
+            UnknownColour::Unknown => {
+                let known: Vec<_> = names().collect();
+                let near = nearest(text.trim(), &known).map(|name| format!("did you mean {}?", quoted(name)));
+                (EXPECTED.to_owned(), near)
+            }
+            UnknownColour::WithoutHash => (EXPECTED.to_owned(), Some(digits(text))),
+            UnknownColour::Digits => ("; expected three or six digits, such as \"#93a5ba\"".to_owned(), None),
+            UnknownColour::Transparent => {
+                let message = ", which something shows through; expected an opaque colour".to_owned();
+                (message, Some("only `view.background` can be \"transparent\", and then all of it".to_owned()))
+            }
+        })
+    }
+}
+
+impl FromStr for TypedColour {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        parse(text).map(Self).map_err(|_| format!("this is no colour{EXPECTED}"))
+    }
+}
+
+impl TryFrom<String> for TypedColour {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<TypedColour> for String {
+    fn from(colour: TypedColour) -> Self {
+        written(colour.0)
+    }
+}
+
+impl JsonSchema for TypedColour {
+    fn schema_name() -> Cow<'static, str> {
+        "Colour".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "format": "colour" })
+    }
+}
+
+/// What is behind everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub(in crate::scene) enum BackgroundFile {
+    /// Nothing: whatever the picture is laid on.
+    Transparent,
+    /// A colour.
+    Colour(TypedColour),
+}
+
+/// The word for no background.
+const TRANSPARENT: &str = "transparent";
+
+impl BackgroundFile {
+    /// As for a colour.
+    pub(in crate::scene) fn mistake(text: &str) -> Option<(String, Option<String>)> {
+        if text == TRANSPARENT {
+            return None;
+        }
+        if let Err(UnknownColour::Transparent) = parse(text) {
+            let message =
+                ", which is neither opaque nor nothing; expected \"transparent\" or an opaque colour".to_owned();
+            return Some((message, None));
+        }
+        let (message, help) = TypedColour::mistake(text)?;
+        let near = nearest(text, &[TRANSPARENT]).map(|word| format!("did you mean {}?", quoted(word)));
+        Some((format!("{message}, or \"{TRANSPARENT}\""), near.or(help)))
+    }
+}
+
+impl TryFrom<String> for BackgroundFile {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        if text == TRANSPARENT { Ok(Self::Transparent) } else { text.parse().map(Self::Colour) }
+    }
+}
+
+impl From<BackgroundFile> for String {
+    fn from(background: BackgroundFile) -> Self {
+        match background {
+            BackgroundFile::Transparent => TRANSPARENT.to_owned(),
+            BackgroundFile::Colour(colour) => colour.into(),
+        }
+    }
+}
+
+impl JsonSchema for BackgroundFile {
+    fn schema_name() -> Cow<'static, str> {
+        "Background".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "format": "colour-or-transparent" })
+    }
+}
+
+/// Colours that take the place of the theme's. Each is digits, `"#rgb"` or `"#rrggbb"`, or a name of CSS such as
+/// `"steelblue"`; all are opaque.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(in crate::scene) struct ColoursFile {
+    /// A sound element, before light falls on it. The fill of elements in the plane and the squares of the tally follow,
+    /// and edges that would not be seen on it become lighter. At least 20 (CIEDE2000) from `turned_over`, also to
+    /// colour-blind eyes.
+    pub(in crate::scene) body: Option<TypedColour>,
+    /// An element that has turned over, before light falls on it, and its edges among bare lines. Its hatch, its signs
+    /// and the words about it follow.
+    pub(in crate::scene) turned_over: Option<TypedColour>,
+    /// Edges of sound elements, rims of nodes, and the sides of lines that a field colours.
+    pub(in crate::scene) edge: Option<TypedColour>,
+    /// The outline of a body and of solid obstacles.
+    pub(in crate::scene) outline: Option<TypedColour>,
+    /// A node, where no field colours it.
+    pub(in crate::scene) node: Option<TypedColour>,
+    /// Springs, and edges that take their place where surfaces are not shown.
+    pub(in crate::scene) spring: Option<TypedColour>,
+    /// Arrows of displacements, of all models alike.
+    pub(in crate::scene) arrow: Option<TypedColour>,
+    /// Arrows of what moves, and marks of what is held.
+    pub(in crate::scene) pointer: Option<TypedColour>,
+    /// A solid obstacle, before light falls on it. Its fill and outline in the plane follow.
+    pub(in crate::scene) obstacle: Option<TypedColour>,
+    /// A transparent plate. Its sides and edges, walls and slopes follow.
+    pub(in crate::scene) plate: Option<TypedColour>,
+    /// Names and numbers. Smaller words, ticks, the line of the floor in the plane and lines between panels follow: they
+    /// stand between it and the background. With the background it has a contrast of at least 4.5.
+    pub(in crate::scene) text: Option<TypedColour>,
+    /// The floor in space. It is not drawn on a transparent background.
+    pub(in crate::scene) floor: Option<TypedColour>,
+    /// The lines on floors and walls in space.
+    pub(in crate::scene) grid: Option<TypedColour>,
+    /// What a floor's colour goes to in the shadow.
+    pub(in crate::scene) shadow: Option<TypedColour>,
+}
+
+/// The files of fonts, TrueType or OpenType (.ttf, .otf, .ttc), looked for beside the scene file.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct FontFile {
+    /// The font of all words, such as one with the letters of another script. Letters it does not have come from the
+    /// font that is built in; digits and Latin letters it must have.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) regular: String,
+    /// The font of names and counts. Default: the same.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) semi_bold: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mistakes_say_what_is_near() {
+        let told = |text: &str| TypedColour::mistake(text).map(|(message, help)| format!("{message} {help:?}"));
+        assert_eq!(told("#abc"), None);
+        assert!(told("steelblu").unwrap().contains("did you mean \\\"steelblue\\\"?"));
+        assert!(told("93a5ba").unwrap().contains("write \\\"#93a5ba\\\""));
+        assert!(told("#93a5b").unwrap().contains("three or six digits"));
+        assert!(told("transparent").unwrap().contains("an opaque colour"));
+        assert_eq!(BackgroundFile::mistake("transparent"), None);
+        assert!(BackgroundFile::mistake("transparant").unwrap().1.unwrap().contains("\"transparent\"?"));
+        assert!(BackgroundFile::mistake("#ffffff80").unwrap().0.contains("neither opaque nor nothing"));
+    }
+
+    #[test]
+    fn a_name_and_its_digits_are_written_alike() {
+        for text in ["steelblue", "#4682b4", "rgb(70, 130, 180)"] {
+            assert_eq!(serde_json::to_string(&text.parse::<TypedColour>().unwrap()).unwrap(), "\"#4682b4\"");
+        }
+    }
+}

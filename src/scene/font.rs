@@ -1,0 +1,102 @@
+//! Reads the files of fonts.
+
+use super::beside::similar;
+use super::file::FontFile;
+use super::limits::size;
+use super::report::{Report, Way};
+use super::view::FontFiles;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The longest file that is read (bytes). Fonts of all Chinese characters have some 20 MiB.
+const LONGEST: u64 = 64 << 20;
+/// What the files of fonts are called.
+const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
+const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
+
+/// The fonts of a scene, looked for in its folder, or `None` after reporting what is wrong with them.
+pub(super) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
+    let mut one = |key: &str, name: &str| {
+        let found = open(&folder.join(name)).and_then(|bytes| check(&bytes).map(|()| bytes).map_err(plain));
+        let path = [Way::Key("view"), Way::Key("font"), Way::Key(key)];
+        found.map_err(|(message, help)| report.at(&path, format!("`{name}` {message}"), help)).ok()
+    };
+    let regular = one("regular", &typed.regular);
+    let semi_bold = typed.semi_bold.as_ref().map(|name| one("semi_bold", name));
+    Some(FontFiles { regular: Some(regular?), semi_bold: semi_bold.map_or(Some(None), |font| font.map(Some))? })
+}
+
+/// What is wrong with a file, and what to do.
+type Mistake = (String, Option<String>);
+
+fn plain(message: String) -> Mistake {
+    (message, None)
+}
+
+/// The bytes of a file of a font.
+fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
+    if !path.exists() {
+        let near = similar(path, &ENDINGS).map(|near| format!("did you mean {near:?}?"));
+        return Err((format!("is not there (looked for {})", path.display()), near));
+    }
+    if path.is_dir() {
+        return Err(plain(format!("is a folder; {EXPECTED}")));
+    }
+    // A pipe would keep everybody waiting.
+    if !path.is_file() {
+        return Err(plain(format!("is no regular file; {EXPECTED}")));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
+    read.map_err(|error| plain(format!("cannot be read: {error}")))?;
+    if bytes.len() as u64 > LONGEST {
+        let message = format!("is larger than {}, the most that a font may have", size(LONGEST.into()));
+        return Err(plain(message));
+    }
+    Ok(bytes.into())
+}
+
+/// Why bytes are no font to write a picture with.
+fn check(bytes: &[u8]) -> Result<(), String> {
+    match bytes.get(..4) {
+        Some([0, 1, 0, 0] | b"true" | b"OTTO" | b"ttcf") => letters(bytes),
+        Some(b"wOFF" | b"wOF2") => Err(format!("is a font packed for web pages (WOFF); {EXPECTED}")),
+        _ if bytes.is_empty() => Err(format!("is empty; {EXPECTED}")),
+        _ => Err(format!("is no font; {EXPECTED}")),
+    }
+}
+
+/// Why bytes that begin like a font are none that words can be written with.
+#[cfg(feature = "render")]
+fn letters(bytes: &[u8]) -> Result<(), String> {
+    use ab_glyph::{Font, FontRef};
+    let font = FontRef::try_from_slice(bytes)
+        .map_err(|_| format!("begins like a font but is damaged or cut short; {EXPECTED}"))?;
+    let drawn = |character: &char| {
+        let glyph = font.glyph_id(*character);
+        glyph.0 != 0 && font.outline(glyph).is_some_and(|outline| !outline.curves.is_empty())
+    };
+    let needed = ('0'..='9').chain('A'..='Z').chain('a'..='z');
+    let missing: Vec<char> = needed.filter(|character| !drawn(character)).collect();
+    match missing[..] {
+        [] => Ok(()),
+        [first, ..] => Err(format!(
+            "has no outline for {} of the digits and Latin letters, {first:?} among them, so numbers could not be written",
+            missing.len()
+        )),
+    }
+}
+
+/// Builds that cannot draw leave it at the beginning of the file.
+#[cfg(not(feature = "render"))]
+fn letters(_: &[u8]) -> Result<(), String> {
+    Ok(())
+}
+
+/// The digest of what is in a file, which stands for its name in that of a scene.
+pub(super) fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}

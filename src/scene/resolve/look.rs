@@ -1,0 +1,79 @@
+//! What the scene looks like: colours, type and lines.
+
+use crate::colour::{Colour, Sight, contrast, difference, written};
+use crate::scene::file::{BackgroundFile, ColoursFile, ViewFile};
+use crate::scene::palette::{LEAST_CONTRAST, Palette};
+use crate::scene::report::{Report, Way};
+use crate::scene::view::{FontFiles, Look, Theme};
+
+/// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
+const LEAST_DIFFERENCE: f64 = 20.0;
+
+/// The look with the theme that it has become, or `None` if there is a mistake in it.
+pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<(Theme, Look)> {
+    let background = match typed.background {
+        Some(BackgroundFile::Colour(colour)) => Some(colour.0),
+        Some(BackgroundFile::Transparent) | None => None,
+    };
+    let theme = Palette::theme_on(background, typed.theme);
+    let palette = Palette::with(theme, background, &typed.colours);
+    let known = report.total();
+    check_text(&typed.colours, &palette, report);
+    check_alarm(&typed.colours, &palette, report);
+    (report.total() == known).then(|| {
+        let transparent = typed.background == Some(BackgroundFile::Transparent);
+        let (text_scale, line_scale) = (typed.text_scale, typed.line_scale);
+        (theme, Look { palette, transparent, font, text_scale, line_scale })
+    })
+}
+
+fn way(role: &str) -> [Way<'_>; 3] {
+    [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
+}
+
+/// Words must be readable.
+fn check_text(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
+    let Some(text) = typed.text.map(|text| text.0) else { return };
+    let found = contrast(text, palette.background);
+    if found < LEAST_CONTRAST {
+        let message = format!(
+            "`view.colours.text` has a contrast of {} to 1 with the background {}; expected at least {LEAST_CONTRAST} to 1",
+            rounded_down(found),
+            written(palette.background)
+        );
+        let towards = if palette.is_light() { "darker" } else { "lighter" };
+        report.at(
+            &way("text"),
+            message,
+            format!("make the text {towards}, or leave it out: it follows the background"),
+        );
+    }
+}
+
+/// Nobody may take a turned-over element for a sound one.
+fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
+    let (key, other) = match (typed.turned_over, typed.body) {
+        (Some(_), _) => ("turned_over", "the body's"),
+        (None, Some(_)) => ("body", "that of turned-over elements,"),
+        (None, None) => return,
+    };
+    let pairs = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
+    let seen = pairs.iter().flat_map(|&(sound, place)| Sight::ALL.map(|sight| (sound, place, sight)));
+    let measured = seen.map(|(sound, place, sight)| (difference(sound, palette.alarm, sight), sound, place, sight));
+    let nearest = measured.min_by(|one, other| one.0.total_cmp(&other.0));
+    let Some((found, sound, place, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
+    let opposite: Colour = if key == "body" { palette.alarm } else { sound };
+    let message = format!(
+        "`view.colours.{key}` is too like {other} {} {place}: to {} they differ by {} (CIEDE2000); expected at least \
+         {LEAST_DIFFERENCE}",
+        written(opposite),
+        sight.name(),
+        rounded_down(found)
+    );
+    report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
+}
+
+/// A number with one digit behind the point, never more than it is: what falls short by a little must not look enough.
+fn rounded_down(number: f64) -> f64 {
+    (number * 10.0).floor() / 10.0
+}
