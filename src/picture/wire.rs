@@ -21,7 +21,9 @@ const BEHIND: f64 = 28.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
 /// or there would be nothing but lines.
 const SMALL_ELEMENT: f64 = 26.0;
-const THINNEST: f64 = 0.4;
+const THINNEST: f64 = 0.2;
+/// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.
+const SEEN_THROUGH: f64 = 8.0;
 /// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
 const HAZE: f64 = 0.62;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
@@ -73,6 +75,11 @@ impl Wire<'_> {
     /// The same for what a field colours only where it colours no surfaces.
     pub(super) fn without_surfaces(&self) -> Self {
         Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
+    }
+
+    /// Whether nothing is seen of springs inside the body.
+    pub(super) fn hides_inside(&self) -> bool {
+        self.surfaces && self.element < SEEN_THROUGH
     }
 
     /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its

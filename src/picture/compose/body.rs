@@ -80,6 +80,14 @@ impl Draft<'_> {
             strokes.extend(wire.edges(edges, over, false));
         }
         let strain = self.scene.view.spring_strain.map(|scale| (&self.composer.spring_ramp[..], scale.range));
+        let on_skin: Vec<_>;
+        let springs = if wire.hides_inside() && !self.flat {
+            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.composer.skin.holds(node));
+            on_skin = springs.iter().filter(holds).copied().collect();
+            &on_skin[..]
+        } else {
+            springs
+        };
         if !springs.is_empty() {
             strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
