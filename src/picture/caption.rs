@@ -4,7 +4,7 @@ use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
-use super::text::{TextRun, Weight, lay_out, shortened, width};
+use super::text::{Fonts, TextRun, Weight};
 use super::{Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Snapshot, Status};
@@ -32,6 +32,7 @@ const BAR_TICK: f64 = 9.0;
 /// Writes one panel after the other.
 pub(super) struct Writer<'a> {
     pub(super) palette: &'a Palette,
+    pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,
     pub(super) marks: Vec<Mark>,
     pub(super) words: Vec<TextRun>,
@@ -87,7 +88,7 @@ impl Writer<'_> {
     /// The title above all panels.
     pub(super) fn title(&mut self, around: Scale, width: f64, title: &str) {
         let room = width - 2.0 * around.margin();
-        let title = shortened(title, Weight::SemiBold, TITLE * around.title(), room);
+        let title = self.fonts.shortened(title, Weight::SemiBold, TITLE * around.title(), room);
         let size = TITLE * around.title();
         self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), TITLE_BASELINE * around.unit);
     }
@@ -110,17 +111,17 @@ impl Writer<'_> {
         let mut left = room.left;
         if !heading.letter.is_empty() {
             self.left(&heading.letter, Weight::SemiBold, title, self.palette.second_text, left, baseline);
-            left += width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
+            left += self.fonts.width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
         }
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
-        let name = shortened(heading.name, Weight::SemiBold, title, free[0] - (left - room.left) - reserved);
+        let name = self.fonts.shortened(heading.name, Weight::SemiBold, title, free[0] - (left - room.left) - reserved);
         self.left(&name, Weight::SemiBold, title, self.palette.text, left, baseline);
         if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
-            let left = left + width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
+            let left = left + self.fonts.width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        let second = shortened(heading.second, Weight::Regular, caption, free[1]);
+        let second = self.fonts.shortened(heading.second, Weight::Regular, caption, free[1]);
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
@@ -148,20 +149,20 @@ impl Writer<'_> {
     /// How much room the clock and its label take (px), at any time.
     pub(super) fn clock_room(&self, panel: Rectangle, label: &str) -> [f64; 2] {
         let label = self.clock_label(panel, label);
-        let time = width(WIDEST_TIME, Weight::Regular, self.scale.title());
-        [time, width(&label, Weight::Regular, self.scale.caption())]
+        let time = self.fonts.width(WIDEST_TIME, Weight::Regular, self.scale.title());
+        [time, self.fonts.width(&label, Weight::Regular, self.scale.caption())]
     }
 
     fn clock_label(&self, panel: Rectangle, label: &str) -> String {
         let room = LABEL_SHARE * Room::new(panel, self.scale).width();
-        shortened(label, Weight::Regular, self.scale.caption(), room)
+        self.fonts.shortened(label, Weight::Regular, self.scale.caption(), room)
     }
 
     /// The clock with its label, upper right.
     pub(super) fn clock(&mut self, panel: Rectangle, time: f64, label: &str) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let time = shortened(&number::time(time), Weight::Regular, title, room.width());
+        let time = self.fonts.shortened(&number::time(time), Weight::Regular, title, room.width());
         self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
         let label = self.clock_label(panel, label);
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
@@ -191,13 +192,13 @@ impl Writer<'_> {
         let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
         let all = snapshot.turned_over.len();
         let free = room.right - left;
-        let count = shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
+        let count = self.fonts.shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let explained = shortened("turned over", Weight::Regular, caption, free);
+        let explained = self.fonts.shortened("turned over", Weight::Regular, caption, free);
         self.left(&explained, Weight::Regular, caption, second, left, room.top + lines.caption);
         // The widest count, so that what stands beside it does not come and go.
-        let widest = width(&format!("{all} of {all}"), Weight::SemiBold, title);
-        left + widest.max(width(&explained, Weight::Regular, caption))
+        let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, title);
+        left + widest.max(self.fonts.width(&explained, Weight::Regular, caption))
     }
 
     /// A number with what it is, lower right, if there is room for it right of `taken` (px). Says where it begins at the
@@ -207,8 +208,9 @@ impl Writer<'_> {
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
         let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
-        let value = width(&number.widest, weight, title).max(width(&number.value, weight, title));
-        let wide = |text: &str| width(text, Weight::Regular, caption);
+        let value = self.fonts.width(&number.widest, weight, title).max(self.fonts.width(&number.value, weight, title));
+        let fonts = self.fonts;
+        let wide = |text: &str| fonts.width(text, Weight::Regular, caption);
         let Some(wording) = number.wordings.iter().find(|text| wide(text).max(value) <= free) else {
             return room.right;
         };
@@ -224,7 +226,7 @@ impl Writer<'_> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
         let text = number::plain_metres(metres);
-        let wide = width(&text, Weight::Regular, caption);
+        let wide = self.fonts.width(&text, Weight::Regular, caption);
         let free = between[1] - between[0] - 2.0 * self.scale.gap();
         if !Scale::legible(caption) || usual.max(wide) > free {
             return;
@@ -284,24 +286,25 @@ impl Writer<'_> {
 
     fn left(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, left: f64, baseline: f64) {
         if Scale::legible(size) && !text.is_empty() {
-            self.words.push(lay_out(text, weight, size, colour, left, baseline));
+            let run = self.fonts.lay_out(text, weight, size, colour, left, baseline);
+            self.words.push(run);
         }
     }
 
     fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
-        let left = right - width(text, weight, size);
+        let left = right - self.fonts.width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
     }
 }
 
 /// Lines of a text that are at most `room` wide (px) at a size; longer words stand on lines of their own.
-pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {
         let mut line = String::new();
         for word in paragraph.split_whitespace() {
             let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if line.is_empty() || width(&longer, Weight::Regular, size) <= room {
+            if line.is_empty() || fonts.width(&longer, Weight::Regular, size) <= room {
                 line = longer;
             } else {
                 lines.push(std::mem::replace(&mut line, word.to_owned()));
@@ -348,12 +351,13 @@ mod tests {
 
     #[test]
     fn captions_are_cut_between_words() {
+        let fonts = Fonts::default();
         let text = "One two three four five.\nA new line, anunusuallylongwordthatfitsnowhere end";
-        let lines = wrapped(text, 16.0, 120.0);
+        let lines = wrapped(&fonts, text, 16.0, 120.0);
         assert_eq!(lines.join(" "), text.replace('\n', " "));
         assert!(lines.len() > 4 && lines.iter().any(|line| line.starts_with("A new")));
-        let fits = |line: &&String| width(line, Weight::Regular, 16.0) > 120.0;
+        let fits = |line: &&String| fonts.width(line, Weight::Regular, 16.0) > 120.0;
         assert_eq!(lines.iter().filter(fits).count(), 1, "{lines:?}");
-        assert!(wrapped("", 16.0, 120.0).is_empty());
+        assert!(wrapped(&fonts, "", 16.0, 120.0).is_empty());
     }
 }

@@ -7,7 +7,7 @@ use super::layout::Scale;
 use super::narrow::narrow;
 use super::number::{self, Ticks};
 use super::palette::Colour;
-use super::text::{Weight, lay_out, width};
+use super::text::Weight;
 use super::{Mark, MarkShape};
 use glam::DVec2;
 
@@ -135,13 +135,16 @@ impl Legend {
         let &Bar { name, ramp, beyond, .. } = bar;
         let mut ticks = Ticks::new(bar.range, bar.unit);
         let numbers = NUMBERS * unit;
-        let wide = |text: &String| width(text, Weight::Regular, numbers);
+        let fonts = writer.fonts;
+        let wide = |text: &String| fonts.width(text, Weight::Regular, numbers);
         let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
         let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
         let caption = 16.0 * unit;
         let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
-        let named = width(name, Weight::SemiBold, caption) + space + width(&unit_text, Weight::Regular, caption);
+        let named = writer.fonts.width(name, Weight::SemiBold, caption)
+            + space
+            + writer.fonts.width(&unit_text, Weight::Regular, caption);
         let gap = 20.0 * unit;
         let free = right - left - named - gap - overhang;
         let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
@@ -209,9 +212,10 @@ impl Legend {
     ) -> f64 {
         let size = size * self.unit;
         if !text.is_empty() {
-            writer.words.push(lay_out(text, weight, size, colour, left, baseline));
+            let run = writer.fonts.lay_out(text, weight, size, colour, left, baseline);
+            writer.words.push(run);
         }
-        left + width(text, weight, size)
+        left + writer.fonts.width(text, weight, size)
     }
 
     /// The length (m) that the key's arrow stands for: a round one of about the length of the key where a metre has

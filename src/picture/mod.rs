@@ -38,7 +38,7 @@ pub use layout::Rectangle;
 pub use palette::{Colour, Palette};
 pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
-pub use text::{Glyph, TextRun, Weight, font, shortened, width};
+pub use text::{Face, Fonts, Glyph, TextRun, Weight};
 
 use glam::{Mat4, Vec3};
 
@@ -49,6 +49,8 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Its colours.
     pub palette: Palette,
+    /// The fonts of its words.
+    pub fonts: Fonts,
     /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
     pub ramp: Vec<Colour>,
     /// One for each run shown.

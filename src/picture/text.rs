@@ -1,8 +1,10 @@
 //! Words: which glyphs they need and how wide they are. Rasterising them is the renderer's work.
 
 use super::narrow::narrow;
-use ab_glyph::{Font, FontRef, GlyphId};
-use std::sync::LazyLock;
+use crate::scene::FontFiles;
+use ab_glyph::{Font, FontArc, FontRef, GlyphId, OutlinedGlyph, PxScale, point};
+use sha2::{Digest, Sha256};
+use std::sync::Arc;
 
 /// The two weights in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,6 +18,8 @@ pub enum Weight {
 /// One glyph of a line of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glyph {
+    /// The number of its font.
+    pub face: u8,
     /// Its number in the font.
     pub id: u16,
     /// Where its origin stands, from the left of the picture (px).
@@ -62,96 +66,177 @@ impl TextRun {
 const ASCENT: f32 = 0.78;
 const DESCENT: f32 = 0.22;
 
-static REGULAR: LazyLock<FontRef<'static>> =
-    LazyLock::new(|| load(include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf")));
-static SEMI_BOLD: LazyLock<FontRef<'static>> =
-    LazyLock::new(|| load(include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf")));
+/// The fonts of a picture: those that its scene brings with it, and behind them the ones that are built in, which serve
+/// where the others are missing or lack a letter. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Fonts(Arc<[Face]>);
 
-fn load(bytes: &'static [u8]) -> FontRef<'static> {
-    FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole")
+/// One font.
+#[derive(Debug)]
+pub struct Face {
+    font: FontArc,
+    /// Tells fonts apart, also those of different scenes.
+    pub key: u64,
 }
 
-/// The font of a weight.
-pub fn font(weight: Weight) -> &'static FontRef<'static> {
-    match weight {
-        Weight::Regular => &REGULAR,
-        Weight::SemiBold => &SEMI_BOLD,
+/// Two collections are equal if they hold the same fonts.
+impl PartialEq for Fonts {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.iter().map(|face| face.key).eq(other.0.iter().map(|face| face.key))
     }
 }
+
+static REGULAR: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
+static SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
 
 /// Stands for what was cut off.
 const ELLIPSIS: char = '…';
 
-/// The glyph of a character. The first glyph of the font is a box, which stands for all characters it does not have.
-fn glyph(font: &FontRef<'static>, character: char) -> GlyphId {
-    font.glyph_id(if character.is_whitespace() { ' ' } else { character })
-}
-
-/// How far a character moves the pen, in units of the type's size. All digits move it equally far, so that numbers
-/// do not jump from frame to frame.
-fn advance(font: &FontRef<'static>, character: char) -> f64 {
-    let units = f64::from(font.units_per_em().unwrap_or(1000.0));
-    let of = |character| f64::from(font.h_advance_unscaled(glyph(font, character))) / units;
-    if character.is_ascii_digit() { ('0'..='9').map(of).fold(0.0, f64::max) } else { of(character) }
-}
-
-/// The width of a text set at a size (px).
-pub fn width(text: &str, weight: Weight, size: f64) -> f64 {
-    let font = font(weight);
-    text.chars().map(|character| advance(font, character)).sum::<f64>() * size
-}
-
-/// The text itself if it is at most `room` wide (px), else its beginning and an ellipsis; nothing if even that is too
-/// wide. Characters that take no place of their own, such as line breaks, become spaces.
-pub fn shortened(text: &str, weight: Weight, size: f64, room: f64) -> String {
-    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    let text = text.trim();
-    if width(text, weight, size) <= room {
-        return text.to_owned();
+impl Default for Fonts {
+    /// Those that are built in.
+    fn default() -> Self {
+        Self::new(&FontFiles::default())
     }
-    let font = font(weight);
-    let mut used = advance(font, ELLIPSIS) * size;
-    let mut kept = String::new();
-    for character in text.chars() {
-        used += advance(font, character) * size;
-        if used > room {
-            break;
+}
+
+impl Fonts {
+    /// The fonts of a scene. A file that is no font, which no scene that was loaded has, is passed over.
+    pub fn new(files: &FontFiles) -> Self {
+        let built_in = |bytes: &'static [u8], key| {
+            let font = FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole");
+            Face { font: FontArc::new(font), key }
+        };
+        let own = |file: &Option<Arc<[u8]>>| {
+            let bytes = file.as_ref()?;
+            let font = FontArc::try_from_vec(bytes.to_vec()).ok()?;
+            let digest = Sha256::digest(bytes);
+            Some(Face { font, key: digest.iter().take(8).fold(0, |key, &byte| key << 8 | u64::from(byte)) })
+        };
+        let own = [&files.regular, &files.semi_bold].map(own);
+        let faces = [built_in(REGULAR, 0), built_in(SEMI_BOLD, 1)].into_iter();
+        Self(match own {
+            [Some(regular), Some(semi_bold)] => faces.chain([regular, semi_bold]).collect(),
+            [Some(only), None] | [None, Some(only)] => faces.chain([only]).collect(),
+            [None, None] => faces.collect(),
+        })
+    }
+
+    /// One of the fonts, by the number that glyphs name. The first one for a number that there is not.
+    pub fn face(&self, number: u8) -> &Face {
+        self.0.get(usize::from(number)).unwrap_or(&self.0[0])
+    }
+
+    /// The fonts that a text of a weight is looked up in, in order.
+    fn order(&self, weight: Weight) -> impl Iterator<Item = u8> {
+        let built_in = match weight {
+            Weight::Regular => 0,
+            Weight::SemiBold => 1,
+        };
+        // The scene's own stand behind the built-in ones; a single one serves both weights.
+        let own = match self.0.len() {
+            2 => None,
+            3 => Some(2),
+            _ => Some(2 + built_in),
+        };
+        own.into_iter().chain([built_in])
+    }
+
+    /// The font and the glyph of a character. The first glyph of the built-in font is a box, which stands for all
+    /// characters that no font has.
+    fn glyph(&self, weight: Weight, character: char) -> (u8, GlyphId) {
+        let character = if character.is_whitespace() { ' ' } else { character };
+        let mut last = (0, GlyphId(0));
+        for number in self.order(weight) {
+            last = (number, self.face(number).font.glyph_id(character));
+            if last.1.0 != 0 {
+                break;
+            }
         }
-        kept.push(character);
+        last
     }
-    if kept.is_empty() { String::new() } else { format!("{}{ELLIPSIS}", kept.trim_end()) }
+
+    /// How far a glyph moves the pen by itself, in units of the type's size.
+    fn own_advance(&self, (face, glyph): (u8, GlyphId)) -> f64 {
+        let face = self.face(face);
+        f64::from(face.font.h_advance_unscaled(glyph)) / f64::from(face.units_per_em())
+    }
+
+    /// How far a character moves the pen, in units of the type's size. All digits move it equally far, so that numbers
+    /// do not jump from frame to frame.
+    fn advance(&self, weight: Weight, character: char) -> f64 {
+        let of = |character| self.own_advance(self.glyph(weight, character));
+        if character.is_ascii_digit() { ('0'..='9').map(of).fold(0.0, f64::max) } else { of(character) }
+    }
+
+    /// The width of a text set at a size (px).
+    pub fn width(&self, text: &str, weight: Weight, size: f64) -> f64 {
+        text.chars().map(|character| self.advance(weight, character)).sum::<f64>() * size
+    }
+
+    /// The text itself if it is at most `room` wide (px), else its beginning and an ellipsis; nothing if even that is
+    /// too wide. Characters that take no place of their own, such as line breaks, become spaces.
+    pub fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
+        let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let text = text.trim();
+        if self.width(text, weight, size) <= room {
+            return text.to_owned();
+        }
+        let mut used = self.advance(weight, ELLIPSIS) * size;
+        let mut kept = String::new();
+        for character in text.chars() {
+            used += self.advance(weight, character) * size;
+            if used > room {
+                break;
+            }
+            kept.push(character);
+        }
+        if kept.is_empty() { String::new() } else { format!("{}{ELLIPSIS}", kept.trim_end()) }
+    }
+
+    /// Lays out one line that begins at `left` (px).
+    pub(super) fn lay_out(
+        &self,
+        text: &str,
+        weight: Weight,
+        size: f64,
+        colour: super::palette::Colour,
+        left: f64,
+        baseline: f64,
+    ) -> TextRun {
+        let mut pen = left;
+        let mut glyphs = Vec::with_capacity(text.len());
+        for character in text.chars() {
+            let glyph @ (face, id) = self.glyph(weight, character);
+            let own = self.own_advance(glyph) * size;
+            let moved = self.advance(weight, character) * size;
+            // A digit that is narrower than the widest one stands in the middle of its cell.
+            glyphs.push(Glyph { face, id: id.0, x: narrow(pen + (moved - own) / 2.0) });
+            pen += moved;
+        }
+        TextRun {
+            text: text.to_owned(),
+            weight,
+            size: narrow(size),
+            baseline: narrow(baseline),
+            colour,
+            span: [narrow(left), narrow(pen)],
+            glyphs,
+            has_halo: false,
+        }
+    }
 }
 
-/// Lays out one line that begins at `left` (px).
-pub(super) fn lay_out(
-    text: &str,
-    weight: Weight,
-    size: f64,
-    colour: super::palette::Colour,
-    left: f64,
-    baseline: f64,
-) -> TextRun {
-    let font = font(weight);
-    let units = f64::from(font.units_per_em().unwrap_or(1000.0));
-    let mut pen = left;
-    let mut glyphs = Vec::with_capacity(text.len());
-    for character in text.chars() {
-        let id = glyph(font, character);
-        let own = f64::from(font.h_advance_unscaled(id)) / units * size;
-        let moved = advance(font, character) * size;
-        // A digit that is narrower than the widest one stands in the middle of its cell.
-        glyphs.push(Glyph { id: id.0, x: narrow(pen + (moved - own) / 2.0) });
-        pen += moved;
+impl Face {
+    fn units_per_em(&self) -> f32 {
+        self.font.units_per_em().filter(|units| *units > 0.0).unwrap_or(1000.0)
     }
-    TextRun {
-        text: text.to_owned(),
-        weight,
-        size: narrow(size),
-        baseline: narrow(baseline),
-        colour,
-        span: [narrow(left), narrow(pen)],
-        glyphs,
-        has_halo: false,
+
+    /// The outline of a glyph for type of a size (px), whose origin lies at a place between two pixels (px, to the right);
+    /// `None` for blanks.
+    pub fn outline(&self, id: u16, size: f32, place: f32) -> Option<OutlinedGlyph> {
+        // The scale of a font is its height, sizes of type are lengths of the em.
+        let scale = PxScale::from(size * self.font.height_unscaled() / self.units_per_em());
+        self.font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))
     }
 }
 
@@ -161,38 +246,41 @@ mod tests {
 
     #[test]
     fn the_font_has_what_captions_need() {
+        let fonts = Fonts::default();
         for weight in [Weight::Regular, Weight::SemiBold] {
             for character in "AZaz09äöüßéñ ΑΩαωΔζων−–—…×°²³⁻∞≤≥≈→′√%/()".chars()
             {
-                assert_ne!(font(weight).glyph_id(character).0, 0, "{character} in {weight:?}");
+                assert_ne!(fonts.glyph(weight, character).1.0, 0, "{character} in {weight:?}");
             }
         }
     }
 
     #[test]
     fn unknown_characters_get_a_visible_box() {
-        let run = lay_out("龍", Weight::Regular, 16.0, [0; 3], 0.0, 0.0);
-        let id = GlyphId(run.glyphs[0].id);
-        assert!(font(Weight::Regular).outline(id).is_some_and(|outline| !outline.curves.is_empty()));
+        let fonts = Fonts::default();
+        let run = fonts.lay_out("龍", Weight::Regular, 16.0, [0; 3], 0.0, 0.0);
+        assert!(fonts.face(run.glyphs[0].face).outline(run.glyphs[0].id, 16.0, 0.0).is_some());
         assert!(run.span[1] > 4.0);
     }
 
     #[test]
     fn numbers_of_equal_length_are_equally_wide() {
         for weight in [Weight::Regular, Weight::SemiBold] {
-            assert_eq!(width("111 ms", weight, 26.0), width("888 ms", weight, 26.0));
+            let width = |text| Fonts::default().width(text, weight, 26.0);
+            assert_eq!(width("111 ms"), width("888 ms"));
         }
     }
 
     #[test]
     fn long_names_are_shortened_to_their_room() {
+        let fonts = Fonts::default();
         let name = "A very long name that nobody would ever read to its end";
         for room in [0.0, 10.0, 30.0, 100.0, 300.0] {
-            let short = shortened(name, Weight::SemiBold, 26.0, room);
-            assert!(width(&short, Weight::SemiBold, 26.0) <= room, "{short}");
+            let short = fonts.shortened(name, Weight::SemiBold, 26.0, room);
+            assert!(fonts.width(&short, Weight::SemiBold, 26.0) <= room, "{short}");
             assert!(short.is_empty() || short.ends_with('…'));
         }
-        assert_eq!(shortened("Short", Weight::SemiBold, 26.0, 300.0), "Short");
-        assert_eq!(shortened("two\nlines", Weight::Regular, 16.0, 300.0), "two lines");
+        assert_eq!(fonts.shortened("Short", Weight::SemiBold, 26.0, 300.0), "Short");
+        assert_eq!(fonts.shortened("two\nlines", Weight::Regular, 16.0, 300.0), "two lines");
     }
 }

@@ -1,8 +1,7 @@
 //! The glyphs in use, rasterised once each and kept in one texture.
 
 use crate::gpu::Gpu;
-use crate::picture::{Glyph, TextRun, Weight, font};
-use ab_glyph::{Font, GlyphId, PxScale, point};
+use crate::picture::{Face, Fonts, Glyph, TextRun};
 use std::collections::HashMap;
 
 /// Width of the texture (px).
@@ -13,7 +12,8 @@ const PLACES: f32 = 4.0;
 /// What makes one raster different from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
-    weight: Weight,
+    /// Which font, of any scene.
+    font: u64,
     id: u16,
     /// Size of the type in bits: any size is as good as any other.
     size: u32,
@@ -56,15 +56,16 @@ impl Glyphs {
     }
 
     /// The raster of a glyph of a text, and the whole pixel it belongs to; `None` for blanks.
-    pub(super) fn raster(&mut self, run: &TextRun, glyph: &Glyph) -> Option<(Raster, [f32; 2])> {
+    pub(super) fn raster(&mut self, fonts: &Fonts, run: &TextRun, glyph: &Glyph) -> Option<(Raster, [f32; 2])> {
         let quarter = (glyph.x * PLACES).round();
         let pixel = (quarter / PLACES).floor();
         let place = quarter - pixel * PLACES;
-        let key = Key { weight: run.weight, id: glyph.id, size: run.size.to_bits(), place: place as u8 };
+        let face = fonts.face(glyph.face);
+        let key = Key { font: face.key, id: glyph.id, size: run.size.to_bits(), place: place as u8 };
         let raster = match self.rasters.get(&key) {
             Some(known) => *known,
             None => {
-                let new = self.rasterise(run, glyph.id, place / PLACES);
+                let new = self.rasterise(face, run.size, glyph.id, place / PLACES);
                 self.rasters.insert(key, new);
                 new
             }
@@ -73,14 +74,12 @@ impl Glyphs {
         raster.map(|raster| (raster, [pixel, run.baseline.round()]))
     }
 
-    fn rasterise(&mut self, run: &TextRun, id: u16, place: f32) -> Option<Raster> {
-        let font = font(run.weight);
-        // The scale of a font is its height, sizes of type are lengths of the em.
-        let scale = PxScale::from(run.size * font.height_unscaled() / font.units_per_em().unwrap_or(1000.0));
-        let outlined = font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))?;
+    fn rasterise(&mut self, face: &Face, size: f32, id: u16, place: f32) -> Option<Raster> {
+        let outlined = face.outline(id, size, place)?;
         let bounds = outlined.px_bounds();
         let [width, height] = [bounds.width(), bounds.height()].map(|length| length as u32);
-        if width == 0 || height == 0 || width > WIDTH {
+        // A font may say anything of its letters.
+        if width == 0 || height == 0 || width > WIDTH || height > WIDTH {
             return None;
         }
         let at = self.reserve(width, height);

@@ -3,7 +3,7 @@
 use super::glyphs::Glyphs;
 use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{self, Colour, MarkShape, Picture, TextRun};
+use crate::picture::{self, Colour, Fonts, MarkShape, Picture, TextRun};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
@@ -97,9 +97,10 @@ impl Overlay {
         for run in &picture.words {
             if run.has_halo {
                 let offsets = HALO.iter().flat_map(|&(radius, count)| ring(radius * run.size, count));
-                offsets.for_each(|offset| self.write_run(run, picture.palette.background, offset, &mut marks));
+                offsets
+                    .for_each(|offset| self.write_run(&picture.fonts, run, picture.palette.halo, offset, &mut marks));
             }
-            self.write_run(run, run.colour, [0.0; 2], &mut marks);
+            self.write_run(&picture.fonts, run, run.colour, [0.0; 2], &mut marks);
         }
         self.marks.write(gpu, &marks);
         if self.glyphs.upload(gpu) || self.bind_group.is_none() {
@@ -110,9 +111,9 @@ impl Overlay {
     }
 
     /// Adds the glyphs of a line of text in a colour, moved (px).
-    fn write_run(&mut self, run: &TextRun, colour: Colour, offset: [f32; 2], marks: &mut Vec<Mark>) {
+    fn write_run(&mut self, fonts: &Fonts, run: &TextRun, colour: Colour, offset: [f32; 2], marks: &mut Vec<Mark>) {
         for glyph in &run.glyphs {
-            if let Some((raster, [x, y])) = self.glyphs.raster(run, glyph) {
+            if let Some((raster, [x, y])) = self.glyphs.raster(fonts, run, glyph) {
                 let [width, height] = raster.size.map(|length| length as f32);
                 let [left, top] = [x + raster.offset[0] + offset[0], y + raster.offset[1] + offset[1]];
                 marks.push(Mark {

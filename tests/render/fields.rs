@@ -3,7 +3,7 @@
 use super::{fig4b, gpu};
 use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
 use localshape::render::Renderer;
-use localshape::scene::{ColourScale, Scene, Theme, Visible};
+use localshape::scene::{ColourMap, ColourScale, Scene, Theme, Visible};
 use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use localshape::{scene::Limits, sequence::Sequence};
@@ -15,7 +15,7 @@ const FIELDS: [Field; 4] = [Field::Strain, Field::Displacement, Field::Speed, Fi
 /// The scene of Fig. 4(b) with a field, and one of its frames.
 fn with_field(field: Field, range: [f64; 2], index: u64) -> (Scene, Frame) {
     let (mut scene, _) = fig4b(0);
-    scene.view.colour = Some(ColourScale { field, range });
+    scene.view.colour = Some(ColourScale { field, range, map: ColourMap::default() });
     let frame = Sequence::new(&scene, &[0, 1]).frame(index);
     (scene, frame)
 }

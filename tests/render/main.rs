@@ -7,6 +7,7 @@ mod fields;
 mod obstacles;
 mod pictures;
 mod shown;
+mod words;
 
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::scene::{Limits, Scene};

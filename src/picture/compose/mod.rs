@@ -17,6 +17,7 @@ use super::ramp;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
+use super::text::Fonts;
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
 use crate::scene::{Camera, Follow, Scene, StrainScale};
@@ -37,6 +38,7 @@ const SCALE_BAR: f64 = 120.0;
 pub struct Composer<'a> {
     scene: &'a Scene,
     palette: Palette,
+    fonts: Fonts,
     /// The elements in rows.
     tally: Tally,
     /// The second line of each run.
@@ -97,6 +99,7 @@ impl<'a> Composer<'a> {
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette,
+            fonts: Fonts::new(&scene.view.look.font),
             tally: Tally::new(body, scene.view.side),
             descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
             rest_areas: areas,
@@ -119,7 +122,8 @@ impl<'a> Composer<'a> {
         let caption = self.caption(frame.runs.len());
         let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
         let (scale, framing) = (layout.scale, self.framing(frame));
-        let mut writer = Writer { palette: &self.palette, scale, marks: Vec::new(), words: Vec::new() };
+        let mut writer =
+            Writer { palette: &self.palette, fonts: &self.fonts, scale, marks: Vec::new(), words: Vec::new() };
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, &layout, &framing, &mut writer);
@@ -140,7 +144,8 @@ impl<'a> Composer<'a> {
         for word in &mut words {
             word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
         }
-        Picture { size, palette: self.palette, ramp: self.ramp.clone(), panels, under, marks, words }
+        let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
+        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, words }
     }
 
     /// The lines of the caption.
@@ -150,7 +155,7 @@ impl<'a> Composer<'a> {
         if !Scale::legible(around.caption()) {
             return Vec::new();
         }
-        wrapped(&view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
+        wrapped(&self.fonts, &view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
     }
 
     /// What the camera of all panels looks at.
@@ -193,7 +198,8 @@ impl<'a> Composer<'a> {
             }
             // One camera for all panels, and so one bar.
             if view.scale_bar && at == 0 {
-                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale);
+                let room = to - from - 2.0 * writer.scale.gap();
+                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
                 writer.scale_bar(viewport, [from, to], metres, pixels);
             }
         }
@@ -208,10 +214,10 @@ impl<'a> Composer<'a> {
         (view.legend && (view.strip.is_some() || has_arrows)).then_some((colour, has_springs && view.strip.is_some()))
     }
 
-    /// What the scale bar stands for (m), and how long it is in this frame and without a moving camera (px).
-    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> (f64, [f64; 2]) {
+    /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).
+    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, [f64; 2]) {
         let [now, usual] = self.pixels_a_metre(viewport, framing, scale);
-        let metres = number::round_below(SCALE_BAR * scale.unit / usual);
+        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / usual);
         (metres, [now, usual].map(|pixels| metres * pixels))
     }
 

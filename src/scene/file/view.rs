@@ -250,8 +250,8 @@ pub(in crate::scene) struct CameraFile {
     /// Turn to the right around the vertical, from looking along −z (rad). Default: 0.541, which is 31°. Not in the
     /// plane.
     pub(in crate::scene) azimuth: Option<f64>,
-    /// Height above the horizon (rad), less than a quarter turn (1.57) either way. Default: 0.297, which is 17°; under
-    /// a plate that faces down 0.227, which is 13°. Not in the plane.
+    /// Height above the horizon (rad), less than a quarter turn (1.57) either way, or the camera would look along its
+    /// up-axis. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not in the plane.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(in crate::scene) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.

@@ -2,6 +2,7 @@
 //! built from a part that has one.
 
 mod body;
+mod camera;
 mod elements;
 mod grips;
 mod lists;

@@ -1,6 +1,7 @@
 //! How the scene is looked at.
 
 use super::body::ResolvedBody;
+use super::camera::{eye, is_inside};
 use super::{look, reach, vector};
 use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
@@ -10,6 +11,7 @@ use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
 use crate::sim::grip::Grip;
+use crate::sim::words::rounded;
 use crate::sim::world::cycle;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -74,6 +76,12 @@ pub(super) fn resolve(
     if typed.camera.target.is_none() && typed.camera.distance.is_none() {
         show_reach(&mut chosen, start, standing, scene);
     }
+    if dimension == Dimension::Space && is_inside(eye(&chosen), &body.body, start) {
+        let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
+        let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
+        let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
+        report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
+    }
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
         (None, Some(ArrangementFile::Row)) => runs,
@@ -95,6 +103,7 @@ pub(super) fn resolve(
         },
         None => Visible::usual(dimension, body.body.len()),
     };
+    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -114,7 +123,6 @@ pub(super) fn resolve(
         }
         None => None,
     };
-    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
     Some(View {
         size: typed.size,
         theme,

@@ -1,0 +1,43 @@
+//! Whether a camera can see anything.
+
+use crate::scene::view::Camera;
+use crate::sim::body::Body;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Where a camera stands at the start (m).
+pub(super) fn eye(camera: &Camera) -> DVec3 {
+    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
+    camera.target + camera.distance * DVec3::new(across * level, rise, along * level)
+}
+
+/// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
+pub(super) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
+    let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+    // A closed surface that is all around fills the whole sky, one that is not fills nothing.
+    let sky: f64 = outside
+        .flat_map(|(face, _)| (2..face.len()).map(move |at| [face[0], face[at - 1], face[at]]))
+        .map(|nodes| solid_angle(nodes.map(|node| position[node as usize] - point)))
+        .sum();
+    sky.abs() > 2.0 * PI
+}
+
+/// The solid angle that a triangle fills, seen from the origin, positive if its corners run counter-clockwise from
+/// outside (A. van Oosterom, J. Strackee, 1983).
+fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let [x, y, z] = [a.length(), b.length(), c.length()];
+    let above = a.dot(b.cross(c));
+    let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+    2.0 * libm::atan2(above, below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_corner_of_a_cube_fills_an_eighth_of_the_sky() {
+        assert!((solid_angle([DVec3::X, DVec3::Y, DVec3::Z]) - PI / 2.0).abs() < 1e-12);
+        assert!((solid_angle([DVec3::Y, DVec3::X, DVec3::Z]) + PI / 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,169 @@
+//! Where words stand: nowhere over each other, and in every frame at the same place.
+
+use super::fig4b;
+use localshape::picture::{Composer, Picture, TextRun, compose};
+use localshape::scene::{Labels, Limits, Scene};
+use localshape::sequence::Sequence;
+
+/// Everything that can be written, in a scene that blows up, beside one that does not.
+const ALL: &str = r#"
+title = 'Everything that can be written'
+gravity = [0, -9.8, 0]
+time = { duration = 0.6, step = 0.005, frames_per_second = 20 }
+body = { lattice = { cells = [3, 3, 3], side = 0.1 }, mass = 1.0, lowest = 0.3 }
+
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', stiffness = 1e4 }
+
+[[run]]
+name = 'Mass-spring'
+model = { kind = 'mass-spring', stiffness = 1e4, springs = 'edges+face-diagonals' }
+integrator = 'explicit-euler'
+
+[[run]]
+name = 'A third model with a name that nobody would read to its end'
+model = { kind = 'mass-spring', stiffness = 2e4, springs = 'all' }
+
+[[obstacle]]
+kind = 'floor'
+restitution = 0.5
+
+[view]
+title = 'A title above all panels that says what the picture is about, at some length, for the sake of this test'
+caption = 'A caption of several sentences. It is set in lines, and goes on until there are at least two of them at every size.'
+letters = true
+strip = 'shape_error'
+colour = { by = 'strain' }
+spring_colour = {}
+"#;
+
+fn load(text: &str) -> Scene {
+    Scene::parse(text, "words.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Scenes with all kinds of words, at many sizes.
+fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for show in ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"] {
+        for size in
+            [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]]
+        {
+            for more in ["", "panels = 'column'", "theme = 'dark'\npanels = 'row'"] {
+                let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
+                let text = ALL.replace("spring_colour = {}", colours);
+                scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
+            }
+        }
+    }
+    scenes
+}
+
+/// Two lines of text whose boxes share something.
+fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
+    let words = &picture.words;
+    for (at, one) in words.iter().enumerate() {
+        for other in &words[at + 1..] {
+            let [[a, b, c, d], [e, f, g, h]] = [one, other].map(TextRun::bounds);
+            if a < g && e < c && b < h && f < d {
+                return Some([one, other]);
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn no_words_overlap_and_none_leaves_the_picture() {
+    for scene in scenes() {
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let picture = compose(&scene, &Sequence::new(&scene, &runs).frame(scene.last_frame()));
+        if let Some([one, other]) = overlapping(&picture) {
+            panic!("“{}” lies over “{}” in {:?}", one.text, other.text, picture.size);
+        }
+        let [width, height] = picture.size.map(|length| length as f32);
+        for word in &picture.words {
+            let [left, top, right, bottom] = word.bounds();
+            let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+            assert!(inside, "“{}” leaves the picture of {:?}", word.text, picture.size);
+        }
+    }
+}
+
+#[test]
+fn everything_is_written_where_there_is_room() {
+    let scene = load(&format!("{ALL}\nsize = [1920, 1080]\nshow = ['springs', 'displacements']\n"));
+    let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(scene.last_frame()));
+    let said: Vec<_> = picture.words.iter().map(|word| word.text.as_str()).collect();
+    let expected = [
+        "a",
+        "b",
+        "c",
+        "Local shape",
+        "Mass-spring",
+        "600 ms",
+        "0 of 27",
+        "turned over",
+        "shape error",
+        "0.1 m",
+        "diverged",
+        "strain",
+        "spring strain",
+        "0.25",
+    ];
+    for words in expected {
+        assert!(said.contains(&words), "“{words}” is not in {said:?}");
+    }
+    for beginning in ["A title above all", "A caption of several", "A third model", "displacement ", "at "] {
+        assert!(said.iter().any(|words| words.starts_with(beginning)), "“{beginning}…” is not in {said:?}");
+    }
+}
+
+#[test]
+fn words_stay_where_they_are() {
+    for text in [
+        ALL.replace("integrator = 'explicit-euler'", "")
+            .replace("step = 0.005, ", "")
+            .replace("spring_colour = {}", ""),
+        {
+            include_str!("../../scenes/fig4b.toml")
+                .replace("camera = { follow = true }", "camera = { follow = 'body' }")
+        },
+    ] {
+        let scene = load(&text);
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let (composer, mut sequence) = (Composer::new(&scene), Sequence::new(&scene, &runs));
+        let first = composer.compose(&sequence.frame(0));
+        for frame in 1..=scene.last_frame().min(60) {
+            let picture = composer.compose(&sequence.frame(frame));
+            assert_eq!(picture.words.len(), first.words.len(), "words come or go in frame {frame}");
+            for (now, before) in picture.words.iter().zip(&first.words) {
+                assert_eq!((now.baseline, now.size), (before.baseline, before.size), "{}", now.text);
+                // Numbers keep one end, whatever their length; all other words keep both.
+                let kept = [0, 1].map(|end| (now.span[end] - before.span[end]).abs() < 1e-3);
+                let is_number = now.text.starts_with(|c: char| c.is_ascii_digit() || c == '−');
+                let stays = if is_number { kept.contains(&true) } else { kept == [true; 2] };
+                assert!(stays, "“{}” has moved from “{}” in frame {frame}", now.text, before.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_wanted_is_not_written() {
+    let (mut scene, frame) = fig4b(4);
+    let all = compose(&scene, &frame).words.len();
+    let labels = scene.view.labels;
+    for (wanted, words) in [
+        (Labels { count: false, ..labels }, "turned over"),
+        (Labels { number: false, ..labels }, "shape error"),
+        (Labels { clock: false, ..labels }, "after first contact"),
+        (Labels { name: false, ..labels }, "Local shape"),
+        (Labels { model: false, ..labels }, "27 cubes, k = 10 kN/m, ζ = 0.1"),
+    ] {
+        scene.view.labels = wanted;
+        let picture = compose(&scene, &frame);
+        assert!(picture.words.len() < all);
+        assert!(picture.words.iter().all(|word| word.text != words), "“{words}” is there");
+    }
+}
