@@ -16,6 +16,11 @@ const ALARM_CONTOUR = 3u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
+// Opacities of hidden edges: of those of sound elements and of those of turned-over ones, behind surfaces that hide
+// everything and behind those that hide nothing.
+const HIDDEN = vec2<f32>(0.16, 0.62);
+const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
+
 // Half the width of the widest line, and a pixel for its smooth border (px in the reference picture).
 const REACH = 1.25;
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
@@ -77,27 +82,28 @@ fn opacity(segment: Segment) -> @location(0) vec4<f32> {
     let here = depth_at(middle);
     let visible = before >= here || panel.flatness > 0.5;
     let scale = panel.line_scale;
-    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
-    let of_obstacle = segment.kind == OBSTACLE_EDGE || segment.kind == OBSTACLE_CONTOUR;
-    if !visible && (of_obstacle && segment.kind == OBSTACLE_EDGE || !of_obstacle && is_obstacle(texel_of(middle))) {
+    // Nothing is seen through an obstacle, and of an obstacle nothing through anything but clear surfaces.
+    if !visible && segment.kind != OBSTACLE_CONTOUR && is_obstacle(texel_of(middle)) {
         return vec4(0.0);
     }
     if segment.kind == OBSTACLE_EDGE {
-        return vec4(0.80 * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
+        let through = select(1.0 - panel.opacity, 1.0, visible);
+        return vec4(0.80 * through * covered(distance, 1.15 * scale), 0.0, 0.0, 0.0);
     }
     let strength = min(1.0, panel.element / SMALL_ELEMENT)
         * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
     if segment.kind == EDGE && panel.flatness > 0.5 {
         return vec4(0.75 * strength * covered(distance, 1.5 * scale), 0.0, 0.0, 0.0);
     }
+    let hidden_alpha = mix(SEEN_THROUGH, HIDDEN, panel.opacity);
     if segment.kind == EDGE {
         let seen = 0.80 * strength * covered(distance, 1.15 * scale);
-        let hidden = 0.16 * strength * strength * covered(distance, 0.9 * scale);
+        let hidden = hidden_alpha.x * strength * strength * covered(distance, 0.9 * scale);
         return vec4(select(hidden, seen, visible), 0.0, 0.0, 0.0);
     }
     if segment.kind == ALARM_EDGE {
         let behind_alarm = textureLoad(alarm_depth, vec2<i32>(middle), 0) > before;
-        let hidden = select(0.62, 0.15, behind_alarm);
+        let hidden = select(hidden_alpha.y, 0.15, behind_alarm);
         let alpha = select(hidden, 0.95, visible) * strength;
         return vec4(0.0, alpha * covered(distance, 1.5 * scale), 0.0, 0.0);
     }

@@ -19,12 +19,22 @@ fn solid_corner(
     return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour);
 }
 
-@fragment
-fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
+fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
     if dot(corner.position, panel.up) < panel.floor {
         discard;
     }
     let light = light(corner.position, corner.normal);
     let colour = corner.colour * light.diffuse + light.gloss;
-    return vec4(sqrt(saturate(colour)), OBSTACLE);
+    return vec4(sqrt(saturate(colour)), opacity);
+}
+
+@fragment
+fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
+    return solid(corner, OBSTACLE);
+}
+
+// Among the turned-over elements, to be seen through clear surfaces.
+@fragment
+fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
+    return solid(corner, 1.0);
 }

@@ -30,7 +30,10 @@ struct Panel {
     // Left, top, width and height of the body's region in the textures that hold bodies (px).
     region: vec4<f32>,
     // Its left and top in the picture (px), less its left and top in those textures.
-    place: vec4<f32>,
+    place: vec2<f32>,
+    // Opacity of sound elements.
+    opacity: f32,
+    spare: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

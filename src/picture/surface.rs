@@ -41,6 +41,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) soft: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
+    /// Opacity of sound elements.
+    pub(super) opacity: f64,
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
 }
@@ -174,7 +176,7 @@ impl Surroundings<'_> {
         let (start, end) = (self.at(a), self.at(b));
         let faces_away = |&(_, first): &([u32; 2], u32)| !facing[first as usize..][..cut].contains(&true);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
-        if self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT } {
+        if self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT } {
             lines.push(self.line(start, end, kinds.edge));
         }
         let along = (end - start) / cut as f64;

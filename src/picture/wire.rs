@@ -18,6 +18,8 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
+/// The same behind one that hides nothing.
+const CLEAR: f64 = 160.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
 /// or there would be nothing but lines.
 const SMALL_ELEMENT: f64 = 26.0;
@@ -65,8 +67,9 @@ pub(super) struct Wire<'a> {
     pub(super) line: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
-    /// Whether surfaces are drawn, too.
+    /// Whether surfaces are drawn, too, and how opaque they are.
     pub(super) surfaces: bool,
+    pub(super) opacity: f64,
     /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
 }
@@ -79,7 +82,7 @@ impl Wire<'_> {
 
     /// Whether nothing is seen of springs inside the body.
     pub(super) fn hides_inside(&self) -> bool {
-        self.surfaces && self.element < SEEN_THROUGH
+        self.surfaces && self.element < SEEN_THROUGH * self.opacity
     }
 
     /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its
@@ -227,7 +230,8 @@ impl Wire<'_> {
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Stroke {
         let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
-        let behind = (BEHIND * strength * strength).round() as u8;
+        let behind = (CLEAR + (BEHIND - CLEAR) * self.opacity) * strength * strength;
+        let behind = behind.round() as u8;
         Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,

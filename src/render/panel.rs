@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Colour, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// The struct `Panel` of `shaders/panel.wgsl`, field by field.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -27,7 +27,9 @@ pub(super) struct PanelUniform {
     pub(super) outline: Vec3,
     pub(super) soft: f32,
     pub(super) region: Vec4,
-    pub(super) place: Vec4,
+    pub(super) place: Vec2,
+    pub(super) opacity: f32,
+    pub(super) spare: f32,
 }
 
 /// An sRGB colour as linear light.
@@ -100,7 +102,9 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         outline: linear(palette.outline),
         soft: sight.soft,
         region: Vec4::from_array(region.map(|length| length as f32)),
-        place: Vec4::new(left, top, 0.0, 0.0),
+        place: Vec2::new(left, top),
+        opacity: panel.opacity,
+        spare: 0.0,
     }
 }
 

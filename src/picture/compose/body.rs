@@ -24,6 +24,7 @@ impl Draft<'_> {
             side: self.side,
             soft: self.composer.soft * self.side,
             element: self.element,
+            opacity: self.scene.view.opacity,
             shades: self.shades.as_ref(),
         };
         let sets = self.composer.shell.boundaries(self.body, &self.run.snapshot.turned_over);
@@ -121,6 +122,7 @@ impl Draft<'_> {
             line: self.scale.line(),
             element: self.element,
             surfaces: self.scene.view.visible.surfaces,
+            opacity: self.scene.view.opacity,
             shades: (!self.of_nodes.is_empty()).then_some((&self.composer.ramp[..], &self.of_nodes[..])),
         }
     }
