@@ -17,6 +17,11 @@ const ALARM_CONTOUR = 3u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
+// Opacities of hidden edges: of those of sound elements and of those of turned-over ones, behind surfaces that hide
+// everything and behind those that hide nothing.
+const HIDDEN = vec2<f32>(0.16, 0.62);
+const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
+
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
@@ -27,6 +32,10 @@ const STEP = 0.22;
 const ROUND_STEP = 0.8;
 // Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
 const SMALL_ELEMENT = 26.0;
+// Towards this size (px) edges fade out: so close together they would only flicker.
+const SMALLEST_ELEMENT = vec2<f32>(1.5, 4.0);
+// Folds inside the turned-over set of elements smaller than this (px) are fainter.
+const SMALL_FOLDED = 8.0;
 
 @vertex
 fn segment(
@@ -75,8 +84,8 @@ fn widest(kind: u32) -> f32 {
 // How much is seen of an edge, and how much of it lies behind a body.
 fn edge_shares(at: Beside, kind: u32, sample: u32) -> vec2<f32> {
     let seen = visible_share(at.depth * (1.0 + OFFSET), sample_depth(at.middle, sample));
-    // Nothing is seen through an obstacle, and of an obstacle nothing through anything.
-    let through = kind != OBSTACLE_EDGE && !(seen < 1.0 && is_obstacle(at.middle, sample));
+    // Nothing is seen through an obstacle, and of an obstacle nothing through anything but clear surfaces.
+    let through = !(seen < 1.0 && is_obstacle(at.middle, sample));
     return vec2(seen, select(0.0, 1.0 - seen, through));
 }
 
@@ -150,7 +159,9 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
     let kind = segment.kind;
     let scale = panel.line_scale;
-    let strength = min(1.0, panel.element / SMALL_ELEMENT);
+    let strength = min(1.0, panel.element / SMALL_ELEMENT)
+        * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
+    let hidden_alpha = mix(SEEN_THROUGH, HIDDEN, panel.opacity);
     var shares = vec2(0.0);
     for (var sample = 0u; sample < SAMPLES; sample++) {
         shares += edge_shares(at, kind, sample) / f32(SAMPLES);
@@ -158,15 +169,17 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     if kind == ALARM_EDGE {
         // Turned-over elements hide more of it than sound ones.
         let alarm = textureLoad(alarm_depth, texel_of(at.middle), 0);
-        let behind = mix(0.15, 0.62, visible_share(at.depth * (1.0 + OFFSET), alarm));
+        let behind = mix(0.15, hidden_alpha.y, visible_share(at.depth * (1.0 + OFFSET), alarm));
         let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
         return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
     }
     if panel.flatness > 0.5 {
         return vec4(0.75 * strength * covered(at.distance, 1.5 * scale), 0.0, 0.0, 0.0);
     }
-    let seen = 0.80 * select(strength, 1.0, kind == OBSTACLE_EDGE) * covered(at.distance, 1.15 * scale);
-    let hidden = 0.16 * strength * strength * covered(at.distance, 0.9 * scale);
+    let of_obstacle = kind == OBSTACLE_EDGE;
+    let seen = 0.80 * select(strength, 1.0, of_obstacle) * covered(at.distance, 1.15 * scale);
+    let weak = hidden_alpha.x * strength * strength * covered(at.distance, 0.9 * scale);
+    let hidden = select(weak, (1.0 - panel.opacity) * seen, of_obstacle);
     return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
 }
 
@@ -186,6 +199,15 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
     shares *= segment.strength;
     let outline = shares.x * covered(at.distance, 2.2 * scale);
     let step = 0.85 * shares.y * covered(at.distance, 1.5 * scale);
-    let through = 0.80 * shares.z * covered(at.distance, 1.7 * scale);
+    var through = 0.0;
+    if of_alarm {
+        // Where the set ends, its outline is drawn at full strength.
+        let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
+        let ends = textureLoad(alarm_depth, texel_of(at.middle + across), 0) <= 0.0
+            || textureLoad(alarm_depth, texel_of(at.middle - across), 0) <= 0.0;
+        let smallness = min(1.0, panel.element / SMALL_FOLDED);
+        let fold = select(smallness * smallness, 1.0, ends);
+        through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * scale);
+    }
     return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);
 }

@@ -35,8 +35,7 @@ fn solid_corner(
     return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above);
 }
 
-@fragment
-fn solid_surface(corner: SolidCorner) -> SolidPixel {
+fn solid(corner: SolidCorner, opacity: f32) -> SolidPixel {
     // Where it meets the floor, each sample decides for itself.
     let rise = vec2(dpdx(corner.above), dpdy(corner.above));
     var samples = 0u;
@@ -48,5 +47,19 @@ fn solid_surface(corner: SolidCorner) -> SolidPixel {
     let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
     let colour = material * light.diffuse + light.gloss;
     let inside = saturate(corner.inward + 0.5);
-    return SolidPixel(vec4(sqrt(saturate(colour) * inside), OBSTACLE * inside), samples);
+    return SolidPixel(vec4(sqrt(saturate(colour) * inside), opacity * inside), samples);
+}
+
+@fragment
+fn solid_surface(corner: SolidCorner) -> SolidPixel {
+    return solid(corner, OBSTACLE);
+}
+
+// Among the turned-over elements, which have one sample a pixel, to be seen through clear surfaces.
+@fragment
+fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
+    if corner.above < 0.0 {
+        discard;
+    }
+    return solid(corner, 1.0).colour;
 }

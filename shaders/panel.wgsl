@@ -32,6 +32,8 @@ struct Panel {
     // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
+    // Opacity of sound elements.
+    opacity: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

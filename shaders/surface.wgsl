@@ -30,6 +30,8 @@ const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
+// The highest opacity stored of what one sees through: solid obstacles are told from surfaces by a higher one.
+const MOST_OPACITY = 252.0 / 255.0;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
 
@@ -113,15 +115,31 @@ fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
 }
 
+// What is stored of a sound surface of a colour, which lets through what is behind.
+fn see_through(colour: vec3<f32>) -> vec4<f32> {
+    return vec4(sqrt(saturate(colour) * panel.opacity), min(panel.opacity, MOST_OPACITY));
+}
+
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     let light = light(corner.position, corner.normal);
     var colour = panel.sound * light.diffuse + light.gloss;
     let at = vec2<i32>(corner.place.xy);
     let behind = textureLoad(alarm_depth, at, 0);
+    let is_clear = panel.opacity < 1.0;
+    if is_clear && behind <= 0.0 {
+        return see_through(colour);
+    }
+    if is_clear {
+        let stored = textureLoad(alarm_colour, at, 0);
+        if stored.a > 0.99 {
+            return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity))), 1.0);
+        }
+    }
     if behind > 0.0 && panel.flatness < 0.5 {
         let depth = panel.near / behind - 1.0 / corner.place.w;
-        let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+        // The clearer the surface, the less what is deep under it loses.
+        let deep = panel.opacity * smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
         let stored = textureLoad(alarm_colour, at, 0);
         let lit = stored.rgb * stored.rgb;
         let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));

@@ -52,7 +52,12 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
 // The hatch of the turned-over set by itself, for those who look through the body: how much of a pixel it covers.
 @fragment
 fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
-    return vec4(0.0, 0.0, 0.0, stripes(corner.hatch, corner.place.xy));
+    let covered = stripes(corner.hatch, corner.place.xy);
+    if panel.opacity < 1.0 {
+        // Under a clear surface, their own colour is seen, too.
+        return vec4(sqrt(saturate(mix(tint(corner), panel.alarm, covered))), 0.5 * covered);
+    }
+    return vec4(0.0, 0.0, 0.0, covered);
 }
 
 @fragment
@@ -66,6 +71,15 @@ fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
     var colour = tint(corner);
     let at = vec2<i32>(corner.place.xy);
     let behind = textureLoad(alarm_depth, at, 0);
+    if panel.opacity < 1.0 {
+        if behind <= 0.0 {
+            return see_through(colour);
+        }
+        // Turned-over elements keep their own opacity: a little of the surface shows that it lies before them.
+        let stored = textureLoad(alarm_colour, at, 0);
+        let covering = select(panel.opacity * panel.opacity, panel.opacity, stored.a > 0.99);
+        return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, covering))), 1.0);
+    }
     if behind > 0.0 && panel.flatness < 0.5 {
         let depth = panel.near / behind - 1.0 / corner.place.w;
         let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);

@@ -39,9 +39,10 @@ impl Shades {
     }
 
     /// The places of the corners of a face; all nowhere if one of them is, for nothing lies between nowhere and a place.
-    pub(super) fn corners(&self, nodes: &[u32], element: Option<u32>) -> Vec<f32> {
-        let corners: Vec<_> = nodes.iter().map(|&node| self.corner(node, element)).collect();
-        if corners.contains(&NOWHERE) { vec![NOWHERE; nodes.len()] } else { corners }
+    pub(super) fn corners(&self, nodes: &[u32], element: Option<u32>) -> Vec<f64> {
+        let nowhere = f64::from(NOWHERE);
+        let corners: Vec<_> = nodes.iter().map(|&node| f64::from(self.corner(node, element))).collect();
+        if corners.contains(&nowhere) { vec![nowhere; nodes.len()] } else { corners }
     }
 
     /// A place for each node, for lines and discs: its own, or the mean of its elements'.
@@ -100,10 +101,10 @@ mod tests {
         let scale = |field| ColourScale { field, range: [0.0, 4.0], map: ColourMap::default() };
         let speed = Shades::new(&body, &scale(Field::Speed), &[0.0, 1.0, 2.0, f64::NAN]);
         assert_eq!(speed.corners(&[0, 1, 2], Some(0)), [0.0, 0.25, 0.5]);
-        assert_eq!(speed.corners(&[1, 3, 2], Some(1)), [NOWHERE; 3]);
+        assert_eq!(speed.corners(&[1, 3, 2], Some(1)), [-1.0; 3]);
         let strain = Shades::new(&body, &scale(Field::Strain), &[1.0, 3.0]);
         assert_eq!(strain.corners(&[1, 3, 2], Some(1)), [0.75; 3]);
-        assert_eq!(strain.corners(&[1, 3, 2], None), [NOWHERE; 3]);
+        assert_eq!(strain.corners(&[1, 3, 2], None), [-1.0; 3]);
         assert_eq!(strain.of_nodes(&body), [0.25, 0.5, 0.5, 0.75]);
         // What a snapshot without the field gives.
         assert_eq!(Shades::new(&body, &scale(Field::Strain), &[]).of_nodes(&body), [NOWHERE; 4]);

@@ -15,6 +15,7 @@ mod camera;
 mod caption;
 mod compose;
 mod ears;
+mod exploded;
 mod field;
 mod grip;
 mod layout;
@@ -27,6 +28,7 @@ mod plane;
 mod pointer;
 mod ramp;
 mod shadow;
+mod shell;
 mod skin;
 mod strip;
 mod surface;
@@ -80,6 +82,8 @@ pub struct Panel {
     pub floor: Option<Floor>,
     /// The boundary of the elements that have kept their sign.
     pub sound: Mesh,
+    /// Its opacity, above 0 and up to 1.
+    pub opacity: f32,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
     /// Edges and contours of both, and of solid obstacles.

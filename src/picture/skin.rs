@@ -4,7 +4,6 @@ use super::camera::Lens;
 use super::ears::Ears;
 use crate::sim::body::Body;
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// What belongs to faces fades as they turn from the viewer at this cosine to being seen from the side.
 const GRAZING: f64 = 0.08;
@@ -16,18 +15,25 @@ pub(super) struct Skin {
     pub(super) nodes: Vec<u32>,
     /// Its triangles, as places in `nodes`.
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Where each node of the body stands in `nodes`, or [`INSIDE`].
+    places: Vec<u32>,
 }
+
+/// The place of a node that is not on the surface.
+const INSIDE: u32 = u32::MAX;
 
 impl Skin {
     /// The skin of a body.
     pub(super) fn new(body: &Body, ears: &Ears) -> Self {
-        let mut places = HashMap::new();
+        let mut places = vec![INSIDE; body.len()];
         let mut nodes = Vec::new();
         let mut place = |node: u32| {
-            *places.entry(node).or_insert_with(|| {
+            let place = &mut places[node as usize];
+            if *place == INSIDE {
+                *place = nodes.len() as u32;
                 nodes.push(node);
-                nodes.len() as u32 - 1
-            })
+            }
+            *place
         };
         let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
         let mut triangles = Vec::new();
@@ -37,7 +43,12 @@ impl Skin {
                 None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
             }
         }
-        Self { nodes, triangles }
+        Self { nodes, triangles, places }
+    }
+
+    /// Whether a node is on the surface.
+    pub(super) fn holds(&self, node: u32) -> bool {
+        self.places[node as usize] != INSIDE
     }
 
     /// How much of each node of the body is seen, from 0 to 1: all of those on a side of the skin that is turned towards

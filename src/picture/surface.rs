@@ -4,6 +4,7 @@ use super::camera::Lens;
 use super::ears::Ears;
 use super::field::Shades;
 use super::narrow::{narrow, narrow_point};
+use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::sim::body::Body;
 use crate::sim::topology::{around, ordered};
@@ -18,33 +19,15 @@ const FLATNESS: f64 = 0.35;
 const GRAZING: f64 = 0.02;
 /// The finest cut of a patch in each direction.
 const FINEST_CUT: usize = 6;
+/// Where there are more faces than this they are cut in two at the most, and where there are more than that not at all:
+/// their patches are small, and drawing them takes longest.
+const MANY_FACES: usize = 3000;
+const VERY_MANY_FACES: usize = 12_000;
 
-/// A face that bounds a set of elements.
-pub(super) struct Side {
-    /// Its corners, seen from outside of the set counter-clockwise.
-    nodes: Vec<u32>,
-    /// The element of the set that it belongs to.
-    element: Option<u32>,
-}
-
-/// Faces that bound a set of elements, seen from outside of it counter-clockwise.
-///
-/// A face bounds a set when exactly one of its two sides is in it. The side of a face that belongs to no element counts
-/// as outside of every set; a face that bounds no element at all belongs to the sound ones.
-pub(super) fn boundary(body: &Body, turned_over: &[bool], over: bool) -> Vec<Side> {
-    let inside =
-        |element: Option<u32>| element.is_some_and(|at| turned_over.get(at as usize).copied().unwrap_or(false) == over);
-    let faces = &body.faces;
-    let sides = faces.inner.iter().zip(&faces.outer);
-    let bounding =
-        faces.nodes.iter().zip(sides).filter_map(|(nodes, (&inner, &outer))| match (inside(inner), inside(outer)) {
-            (true, false) => Some(Side { nodes: nodes.to_vec(), element: inner }),
-            (false, true) => Some(Side { nodes: nodes.iter().rev().copied().collect(), element: outer }),
-            _ if inner.is_none() && outer.is_none() && !over => Some(Side { nodes: nodes.to_vec(), element: None }),
-            _ => None,
-        });
-    bounding.collect()
-}
+/// Edges of elements smaller than this (px) are as good as transparent and left out. The shader knows it, too.
+const SMALLEST_ELEMENT: f64 = 1.5;
+/// Edges of elements smaller than this (px) are not seen through the body.
+const SEEN_THROUGH: f64 = 6.5;
 
 /// What is needed to turn faces into what a panel shows.
 pub(super) struct Surroundings<'a> {
@@ -58,6 +41,10 @@ pub(super) struct Surroundings<'a> {
     pub(super) side: f64,
     /// The unit of the hatch (m).
     pub(super) soft: f64,
+    /// Length of an element's edge (px).
+    pub(super) element: f64,
+    /// Opacity of sound elements.
+    pub(super) opacity: f64,
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
 }
@@ -69,11 +56,77 @@ pub(super) struct Lines {
     pub(super) contour: LineKind,
 }
 
-/// A grid of points on one face, cut evenly in both directions. Triangles are grids with one side of length zero.
-struct Patch {
+/// The pieces into which every bilinear patch of a surface is cut.
+struct Grid {
+    /// Cells in each direction.
+    cut: usize,
+    /// The points, by their shares of the way along both directions, and how much each corner weighs there.
+    points: Vec<([f64; 2], [f64; 4])>,
     /// The corners of the small triangles, as places in `points`.
     triangles: Vec<[u32; 3]>,
+}
+
+impl Grid {
+    /// A grid of `cut` × `cut` cells of two triangles.
+    fn new(cut: usize) -> Self {
+        let points = (0..(cut + 1) * (cut + 1)).map(|at| {
+            let [u, v] = [at % (cut + 1), at / (cut + 1)].map(|along| along as f64 / cut as f64);
+            ([u, v], [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v])
+        });
+        let across = (cut + 1) as u32;
+        let corners = (0..cut as u32).flat_map(|row| (0..cut as u32).map(move |column| row * across + column));
+        let triangles = corners.flat_map(|at| [[at, at + 1, at + across + 1], [at, at + across + 1, at + across]]);
+        Self { cut, points: points.collect(), triangles: triangles.collect() }
+    }
+}
+
+/// One face cut into triangles, as long as it is being worked on; its memory then serves the next one.
+#[derive(Default)]
+struct Patch {
+    /// The corners of the face, seen from outside counter-clockwise.
+    nodes: Vec<u32>,
+    corners: Vec<DVec3>,
+    /// Where each corner lies in the hatch.
+    phases: Vec<f64>,
     points: Vec<DVec3>,
+    /// The triangles, as places in `points`, and how much each shows its outside, from 0 to 1.
+    triangles: Vec<[u32; 3]>,
+    facing: Vec<f64>,
+}
+
+/// The sides of all faces of a surface, cut into pieces: how much the triangle at each piece shows its outside.
+#[derive(Default)]
+struct Borders {
+    /// Piece after piece of side after side.
+    facing: Vec<f64>,
+    /// Each side: its nodes, and where its pieces begin in `facing`.
+    sides: Vec<([u32; 2], u32)>,
+}
+
+impl Borders {
+    /// The sides in the order of their edges; those of one edge stand beside each other.
+    fn sorted(&self, nodes: usize) -> Vec<([u32; 2], u32)> {
+        // Sorted into boxes by the first node, which leaves hardly anything to sort.
+        let low = |side: &([u32; 2], u32)| side.0[0].min(side.0[1]) as usize;
+        let mut starts = vec![0_u32; nodes + 1];
+        self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
+        (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
+        let mut sorted = vec![([0; 2], 0); self.sides.len()];
+        for side in &self.sides {
+            let place = &mut starts[low(side)];
+            sorted[*place as usize] = *side;
+            *place += 1;
+        }
+        let key = |side: &([u32; 2], u32)| (ordered(side.0), side.1);
+        let mut rest = &mut sorted[..];
+        while let Some(first) = rest.first().map(low) {
+            let count = rest.iter().take_while(|side| low(side) == first).count();
+            let (group, after) = rest.split_at_mut(count);
+            group.sort_unstable_by_key(key);
+            rest = after;
+        }
+        sorted
+    }
 }
 
 impl Surroundings<'_> {
@@ -81,31 +134,65 @@ impl Surroundings<'_> {
         self.position[node as usize]
     }
 
-    /// Adds a surface to a mesh and its lines to the lines.
-    pub(super) fn add(&self, faces: &[Side], kinds: Lines, mesh: &mut Mesh, lines: &mut Vec<Line>) {
-        let cut = self.cut(faces);
-        // For each pair of points, the facing of the triangles beside it: the same as the first, or not.
-        let mut borders: HashMap<(u32, u32, usize), Facing> = HashMap::new();
-        let mut edges: Vec<[u32; 2]> = Vec::new();
-        for side in faces {
-            let face = &side.nodes[..];
-            let patch = self.patch(face, cut);
-            let facing = self.emit(side, &patch, mesh);
-            self.inner_contours(&patch, &facing, kinds, lines);
-            self.note_borders(face, cut, &facing, &mut borders);
-            edges.extend(around(face).map(ordered));
+    /// The corners of a face as seen from outside of the set that it bounds.
+    fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
+        nodes.clear();
+        nodes.extend_from_slice(&self.body.faces.nodes[side.face as usize]);
+        if side.reversed {
+            nodes.reverse();
         }
-        edges.sort_unstable();
-        edges.dedup();
-        for &[a, b] in &edges {
-            lines.push(self.line(self.at(a), self.at(b), kinds.edge, 1.0));
-            let (start, along) = (self.at(a), (self.at(b) - self.at(a)) / cut as f64);
-            for piece in 0..cut {
-                let strength = borders.get(&(a, b, piece)).map_or(0.0, Facing::contour);
-                if strength > 0.0 {
-                    let [from, to] = [piece, piece + 1].map(|at| start + at as f64 * along);
-                    lines.push(self.line(from, to, kinds.contour, strength));
-                }
+    }
+
+    /// Adds a surface to a mesh and its lines to the lines.
+    ///
+    /// There are `total` faces in this and other surfaces.
+    pub(super) fn add(&self, faces: &[Side], total: usize, kinds: Lines, mesh: &mut Mesh, lines: &mut Vec<Line>) {
+        if faces.is_empty() {
+            return;
+        }
+        let grid = Grid::new(self.cut(faces, total));
+        let cut = grid.cut;
+        let per_face = (cut + 1) * (cut + 1);
+        mesh.vertices.reserve(faces.len() * per_face);
+        mesh.triangles.reserve(faces.len() * 2 * cut * cut);
+        mesh.shades.reserve(if self.shades.is_some() { faces.len() * per_face } else { 0 });
+        let (mut patch, mut borders) = (Patch::default(), Borders::default());
+        borders.sides.reserve(4 * faces.len());
+        borders.facing.reserve(4 * cut * faces.len());
+        for side in faces {
+            self.corners(side, &mut patch.nodes);
+            let ears = self.ears.of(&patch.nodes);
+            self.emit(side, ears, &grid, &mut patch, mesh);
+            self.inner_contours(&patch, kinds, lines);
+            note_borders(&patch, ears, cut, &mut borders);
+        }
+        let sides = borders.sorted(self.body.len());
+        for edge in sides.chunk_by(|one, other| ordered(one.0) == ordered(other.0)) {
+            self.edge(edge, &borders.facing, cut, kinds, lines);
+        }
+    }
+
+    /// The lines along one edge, at which the sides of some faces meet.
+    fn edge(&self, sides: &[([u32; 2], u32)], facing: &[f64], cut: usize, kinds: Lines, lines: &mut Vec<Line>) {
+        let [a, b] = ordered(sides[0].0);
+        let (start, end) = (self.at(a), self.at(b));
+        let faces_away =
+            |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
+        let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
+        if self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT } {
+            lines.push(self.line(start, end, kinds.edge, 1.0));
+        }
+        let along = (end - start) / cut as f64;
+        for piece in 0..cut {
+            let seen = |&([from, to], first): &([u32; 2], u32)| {
+                facing[first as usize + if from < to { piece } else { cut - 1 - piece }]
+            };
+            let (least, most) =
+                sides.iter().map(seen).fold((1.0, 0.0), |(a, b): (f64, f64), at| (a.min(at), b.max(at)));
+            let strength = if sides.len() == 1 { 1.0 } else { contour(least, most) };
+            if strength > 0.0 {
+                let [from, to] = [piece, piece + 1].map(|at| start + at as f64 * along);
+                lines.push(self.line(from, to, kinds.contour, strength));
             }
         }
     }
@@ -116,146 +203,126 @@ impl Surroundings<'_> {
     }
 
     /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
-    fn cut(&self, faces: &[Side]) -> usize {
-        let warp = |face: &[u32]| match face[..] {
-            [a, b, c, d] if self.ears.of(face).is_none() => {
-                (self.at(a) - self.at(b) + self.at(c) - self.at(d)).length()
-            }
-            _ => 0.0,
+    fn cut(&self, faces: &[Side], total: usize) -> usize {
+        let affordable = match total {
+            ..=MANY_FACES => FINEST_CUT,
+            ..=VERY_MANY_FACES => 2,
+            _ => return 1,
         };
-        let deviation = |side: &Side| {
-            let face = &side.nodes[..];
-            let (_, distance) = self.lens.project(self.at(face[0]))?;
+        let (mut nodes, mut largest) = (Vec::new(), 0.0_f64);
+        for side in faces {
+            self.corners(side, &mut nodes);
+            let [a, b, c, d] = match nodes[..] {
+                [a, b, c, d] if self.ears.of(&nodes).is_none() => [a, b, c, d].map(|node| self.at(node)),
+                _ => continue,
+            };
+            let Some((_, distance)) = self.lens.project(a) else { continue };
             let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
             // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
-            Some(warp(face) / 4.0 * scale)
-        };
-        let largest = faces.iter().filter_map(deviation).fold(0.0, f64::max);
+            largest = largest.max((a - b + c - d).length() / 4.0 * scale);
+        }
         let needed = (largest / FLATNESS).sqrt().ceil();
-        let affordable = if faces.len() > 3000 { 2 } else { FINEST_CUT };
         if needed >= affordable as f64 { affordable } else { (needed as usize).max(1) }
     }
 
-    fn patch(&self, face: &[u32], cut: usize) -> Patch {
-        if let Some(triangles) = self.ears.of(face) {
-            return Patch { triangles: triangles.to_vec(), points: face.iter().map(|&node| self.at(node)).collect() };
-        }
-        match face[..] {
-            [a, b, c, d] => bilinear([a, b, c, d].map(|node| self.at(node)), cut),
-            _ => {
-                // A fan around the middle; for a triangle the middle is not needed.
-                let corners: Vec<_> = face.iter().map(|&node| self.at(node)).collect();
-                let count = corners.len() as u32;
-                if count == 3 {
-                    return Patch { triangles: vec![[0, 1, 2]], points: corners };
+    /// Cuts a face into triangles and adds them to a mesh.
+    fn emit(&self, side: &Side, ears: Option<&[[u32; 3]]>, grid: &Grid, patch: &mut Patch, mesh: &mut Mesh) {
+        let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
+        let Patch { nodes, corners, phases, points, triangles, facing } = patch;
+        corners.clear();
+        corners.extend(nodes.iter().map(|&node| self.at(node)));
+        phases.clear();
+        let phase = |node: u32| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft);
+        phases.extend(nodes.iter().map(|&node| phase(node)));
+        points.clear();
+        triangles.clear();
+        let vertex = |point: DVec3, normal: DVec3, phase: f64| Vertex {
+            position: narrow_point((point - self.origin) / self.side).to_array(),
+            normal: narrow_point(normal / (self.side * self.side)).to_array(),
+            hatch: narrow(phase),
+        };
+        let shades = self.shades.map(|shades| shades.corners(nodes, side.element));
+        if let ([a, b, c, d], None) = (&corners[..], ears) {
+            for &([u, v], weights) in &grid.points {
+                let point = a.lerp(*b, u).lerp(d.lerp(*c, u), v);
+                let normal = bilinear_normal([*a, *b, *c, *d], [u, v]);
+                mesh.vertices.push(vertex(point, normal, weighted(&weights, phases)));
+                points.push(point);
+            }
+            if let Some(shades) = shades {
+                mesh.shades.extend(grid.points.iter().map(|(_, weights)| narrow(weighted(weights, &shades))));
+            }
+            triangles.extend_from_slice(&grid.triangles);
+        } else {
+            let normal = newell(corners);
+            points.extend_from_slice(corners);
+            mesh.vertices.extend(points.iter().zip(&*phases).map(|(&point, &phase)| vertex(point, normal, phase)));
+            mesh.shades.extend(shades.iter().flatten().map(|&shade| narrow(shade)));
+            let count = nodes.len() as u32;
+            match ears {
+                Some(ears) => triangles.extend_from_slice(ears),
+                None if count == 3 => triangles.push([0, 1, 2]),
+                None => {
+                    // A fan around the middle.
+                    let share = 1.0 / f64::from(count);
+                    let mean = |of: &[f64]| of.iter().map(|value| share * value).sum::<f64>();
+                    let middle = corners.iter().sum::<DVec3>() / f64::from(count);
+                    points.push(middle);
+                    mesh.vertices.push(vertex(middle, normal, mean(phases)));
+                    mesh.shades.extend(shades.map(|shades| narrow(mean(&shades))));
+                    triangles.extend((0..count).map(|at| [at, (at + 1) % count, count]));
                 }
-                let middle = corners.iter().sum::<DVec3>() / f64::from(count);
-                let triangles = (0..count).map(|at| [at, (at + 1) % count, count]).collect();
-                Patch { triangles, points: corners.into_iter().chain([middle]).collect() }
             }
         }
-    }
-
-    /// Adds the triangles of a patch to a mesh and says of each how much it shows its outside, from 0 to 1.
-    fn emit(&self, side: &Side, patch: &Patch, mesh: &mut Mesh) -> Vec<f64> {
-        let face = &side.nodes[..];
-        let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
-        let corners: Vec<_> = face.iter().map(|&node| self.at(node)).collect();
-        let phases: Vec<_> = face
-            .iter()
-            .map(|&node| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft))
-            .collect();
-        let is_bilinear = face.len() == 4 && self.ears.of(face).is_none();
-        let weights = weights(face.len(), patch.points.len(), is_bilinear);
-        for (point, weight) in patch.points.iter().zip(&weights) {
-            let normal = match corners[..] {
-                [a, b, c, d] if is_bilinear => bilinear_normal([a, b, c, d], weight.place),
-                _ => newell(&corners),
-            };
-            let phase: f64 = weight.of_corner.iter().zip(&phases).map(|(weight, phase)| weight * phase).sum();
-            mesh.vertices.push(Vertex {
-                position: narrow_point((*point - self.origin) / self.side).to_array(),
-                normal: narrow_point(normal / (self.side * self.side)).to_array(),
-                hatch: narrow(phase),
-            });
-        }
-        if let Some(shades) = self.shades {
-            let corners = shades.corners(face, side.element);
-            mesh.shades.extend(weights.iter().map(|weight| {
-                let shares = weight.of_corner.iter().zip(&corners);
-                narrow(shares.map(|(weight, &corner)| weight * f64::from(corner)).sum())
-            }));
-        }
-        let mut facing = Vec::with_capacity(patch.triangles.len());
-        for triangle in &patch.triangles {
-            let [a, b, c] = triangle.map(|at| patch.points[at as usize]);
+        facing.clear();
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|at| points[at as usize]);
             let cosine = self.lens.facing(a, (b - a).cross(c - a));
             facing.push((0.5 + 0.5 * cosine / GRAZING).clamp(0.0, 1.0));
             mesh.triangles.push(triangle.map(|at| base + at));
         }
-        facing
     }
 
     /// Contours between the triangles of one patch.
-    fn inner_contours(&self, patch: &Patch, facing: &[f64], kinds: Lines, lines: &mut Vec<Line>) {
+    fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut Vec<Line>) {
+        let Patch { points, triangles, facing, .. } = patch;
         if facing.windows(2).all(|two| two[0] == two[1]) {
             return;
         }
         let mut sides: HashMap<[u32; 2], f64> = HashMap::new();
-        for (triangle, &seen) in patch.triangles.iter().zip(facing) {
+        for (triangle, &seen) in triangles.iter().zip(facing) {
             for side in around(triangle) {
                 if let Some(other) = sides.insert(ordered(side), seen)
                     && other != seen
                 {
-                    let [a, b] = side.map(|at| patch.points[at as usize]);
+                    let [a, b] = side.map(|at| points[at as usize]);
                     lines.push(self.line(a, b, kinds.contour, contour(other, seen)));
                 }
             }
         }
     }
+}
 
-    /// Notes how the triangles along the sides of a face are turned.
-    fn note_borders(&self, face: &[u32], cut: usize, facing: &[f64], borders: &mut HashMap<(u32, u32, usize), Facing>) {
-        let ears = self.ears.of(face);
-        for (side, [a, b]) in around(face).enumerate() {
-            let two = [side as u32, ((side + 1) % face.len()) as u32];
-            // The one triangle that has this side.
-            let ear = ears.and_then(|ears| ears.iter().position(|ear| two.iter().all(|corner| ear.contains(corner))));
-            for piece in 0..cut {
-                let seen = match face.len() {
-                    _ if ears.is_some() => ear.map_or(1.0, |at| facing[at]),
-                    4 => facing[border_triangle(side, piece, cut)],
-                    3 => facing[0],
-                    _ => facing[side],
-                };
-                let key = if a < b { (a, b, piece) } else { (b, a, cut - 1 - piece) };
-                borders.entry(key).and_modify(|facing| facing.meet(seen)).or_insert(Facing::new(seen));
-            }
+/// Notes how the triangles along the sides of a face are turned.
+fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut Borders) {
+    let Patch { nodes, facing, .. } = patch;
+    for (side, ends) in around(nodes).enumerate() {
+        borders.sides.push((ends, u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces")));
+        if let ([_, _, _, _], None) = (&nodes[..], ears) {
+            borders.facing.extend((0..cut).map(|piece| facing[border_triangle(side, piece, cut)]));
+            continue;
         }
-    }
-}
-
-/// How the triangles that share a line are turned.
-struct Facing {
-    least: f64,
-    most: f64,
-    count: u32,
-}
-
-impl Facing {
-    fn new(seen: f64) -> Self {
-        Self { least: seen, most: seen, count: 1 }
-    }
-
-    fn meet(&mut self, seen: f64) {
-        self.least = self.least.min(seen);
-        self.most = self.most.max(seen);
-        self.count += 1;
-    }
-
-    /// How much of a contour the line is.
-    fn contour(&self) -> f64 {
-        if self.count == 1 { 1.0 } else { contour(self.least, self.most) }
+        let two = [side as u32, ((side + 1) % nodes.len()) as u32];
+        let seen = match ears {
+            // The one triangle that has this side.
+            Some(ears) => {
+                let ear = ears.iter().position(|ear| two.iter().all(|corner| ear.contains(corner)));
+                ear.map_or(1.0, |at| facing[at])
+            }
+            None if nodes.len() == 3 => facing[0],
+            None => facing[side],
+        };
+        borders.facing.extend(std::iter::repeat_n(seen, cut));
     }
 }
 
@@ -265,28 +332,12 @@ fn contour(one: f64, other: f64) -> f64 {
     (3.0 * (one - other).abs()).min(1.0)
 }
 
-/// A bilinear patch cut into `cut` × `cut` cells of two triangles.
-fn bilinear([a, b, c, d]: [DVec3; 4], cut: usize) -> Patch {
-    let across = (cut + 1) as u32;
-    let mut points = Vec::with_capacity((cut + 1) * (cut + 1));
-    for row in 0..=cut {
-        for column in 0..=cut {
-            let [u, v] = [column, row].map(|at| at as f64 / cut as f64);
-            points.push(a.lerp(b, u).lerp(d.lerp(c, u), v));
-        }
-    }
-    let mut triangles = Vec::with_capacity(2 * cut * cut);
-    for row in 0..cut as u32 {
-        for column in 0..cut as u32 {
-            let at = row * across + column;
-            triangles.push([at, at + 1, at + across + 1]);
-            triangles.push([at, at + across + 1, at + across]);
-        }
-    }
-    Patch { triangles, points }
+/// The sum of what stands at the corners of a face, each times its weight.
+fn weighted(weights: &[f64; 4], of_corners: &[f64]) -> f64 {
+    weights.iter().zip(of_corners).map(|(weight, corner)| weight * corner).sum()
 }
 
-/// The triangle of [`bilinear`] that holds a piece of a side of the quadrilateral.
+/// The triangle of a [`Grid`] that holds a piece of a side of the quadrilateral.
 fn border_triangle(side: usize, piece: usize, cut: usize) -> usize {
     let last = cut - 1;
     match side {
@@ -309,37 +360,4 @@ fn bilinear_normal([a, b, c, d]: [DVec3; 4], [u, v]: [f64; 2]) -> DVec3 {
 fn newell(corners: &[DVec3]) -> DVec3 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
-}
-
-/// Where a point of a patch stands in its face.
-struct Weight {
-    of_corner: Vec<f64>,
-    place: [f64; 2],
-}
-
-/// The weights of all points of a patch, in their order.
-fn weights(corners: usize, points: usize, is_bilinear: bool) -> Vec<Weight> {
-    if is_bilinear {
-        let cut = points.isqrt() - 1;
-        let place = |at: usize| [at % (cut + 1), at / (cut + 1)].map(|along| along as f64 / cut as f64);
-        let weight = |[u, v]: [f64; 2]| {
-            let of_corner = vec![(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v];
-            Weight { of_corner, place: [u, v] }
-        };
-        return (0..points).map(|at| weight(place(at))).collect();
-    }
-    (0..points)
-        .map(|at| {
-            let share = |corner: usize| {
-                if at == corners {
-                    1.0 / corners as f64
-                } else if at == corner {
-                    1.0
-                } else {
-                    0.0
-                }
-            };
-            Weight { of_corner: (0..corners).map(share).collect(), place: [0.0; 2] }
-        })
-        .collect()
 }

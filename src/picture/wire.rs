@@ -19,10 +19,14 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
+/// The same behind one that hides nothing.
+const CLEAR: f64 = 160.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
 /// or there would be nothing but lines.
 const SMALL_ELEMENT: f64 = 26.0;
-const THINNEST: f64 = 0.4;
+const THINNEST: f64 = 0.2;
+/// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.
+const SEEN_THROUGH: f64 = 8.0;
 /// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
 const HAZE: f64 = 0.62;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
@@ -64,8 +68,9 @@ pub(super) struct Wire<'a> {
     pub(super) line: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
-    /// Whether surfaces are drawn, too.
+    /// Whether surfaces are drawn, too, and how opaque they are.
     pub(super) surfaces: bool,
+    pub(super) opacity: f64,
     /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
 }
@@ -74,6 +79,11 @@ impl Wire<'_> {
     /// The same for what a field colours only where it colours no surfaces.
     pub(super) fn without_surfaces(&self) -> Self {
         Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
+    }
+
+    /// Whether nothing is seen of springs inside the body.
+    pub(super) fn hides_inside(&self) -> bool {
+        self.surfaces && self.element < SEEN_THROUGH * self.opacity
     }
 
     /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its
@@ -221,7 +231,8 @@ impl Wire<'_> {
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Stroke {
         let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
-        let behind = (BEHIND * strength * strength).round() as u8;
+        let behind = (CLEAR + (BEHIND - CLEAR) * self.opacity) * strength * strength;
+        let behind = behind.round() as u8;
         Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,

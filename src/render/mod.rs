@@ -212,10 +212,15 @@ impl Renderer {
         }
         let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
+        let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
             self.lines.prepare_among(&gpu, &self.panels, &bodies);
             let new = || Solids::new(&gpu, &self.panels, self.samples);
-            self.solids.get_or_insert_with(new).write(&gpu, picture);
+            let solids = self.solids.get_or_insert_with(new);
+            solids.write(&gpu, picture);
+            if with_clear {
+                solids.prepare_behind(&gpu, &self.panels);
+            }
         }
         if with_slabs {
             let new = || {
@@ -242,6 +247,9 @@ impl Renderer {
         {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
             self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint);
+            if let Some(solids) = solids.filter(|_| with_clear) {
+                solids.draw_behind(&mut pass, &self.panels, &places);
+            }
         }
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));

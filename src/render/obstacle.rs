@@ -68,6 +68,8 @@ const EDGE: [wgpu::VertexAttribute; 5] =
 #[derive(Debug)]
 pub(super) struct Solids {
     pipeline: wgpu::RenderPipeline,
+    /// For those that are seen through clear surfaces, as soon as there are any.
+    behind: Option<wgpu::RenderPipeline>,
     vertices: GrowingBuffer<SolidVertex>,
     indices: GrowingBuffer<u32>,
     ranges: Vec<Range<u32>>,
@@ -80,6 +82,16 @@ impl Solids {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+        Self {
+            pipeline: Self::pipeline(gpu, panels, "solid_surface", samples),
+            behind: None,
+            vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
+            indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
+            ranges: Vec::new(),
+        }
+    }
+
+    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str, samples: u32) -> wgpu::RenderPipeline {
         // The light is that on bodies.
         let module = shader(
             gpu,
@@ -89,7 +101,7 @@ impl Solids {
         let recipe = Recipe {
             label: "obstacle",
             shader: &module,
-            entries: ["solid_corner", "solid_surface"],
+            entries: ["solid_corner", fragment],
             groups: &[&panels.layout],
             vertices: &[Some(layout::<SolidVertex>(&SOLID, wgpu::VertexStepMode::Vertex))],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -98,12 +110,12 @@ impl Solids {
             depth: true,
             samples,
         };
-        Self {
-            pipeline: recipe.build(gpu),
-            vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
-            indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
-            ranges: Vec::new(),
-        }
+        recipe.build(gpu)
+    }
+
+    /// Prepares to draw what is seen through clear surfaces.
+    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels) {
+        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind", 1));
     }
 
     /// Uploads the solids of a picture.
@@ -130,7 +142,24 @@ impl Solids {
 
     /// Draws the solids of all panels, in the pass and after the bodies.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
-        pass.set_pipeline(&self.pipeline);
+        self.draw_with(&self.pipeline, pass, panels, places);
+    }
+
+    /// Draws the solids of all panels among the turned-over elements, if that was prepared.
+    pub(super) fn draw_behind(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+        if let Some(pipeline) = &self.behind {
+            self.draw_with(pipeline, pass, panels, places);
+        }
+    }
+
+    fn draw_with(
+        &self,
+        pipeline: &wgpu::RenderPipeline,
+        pass: &mut wgpu::RenderPass<'_>,
+        panels: &Panels,
+        places: &[Rectangle],
+    ) {
+        pass.set_pipeline(pipeline);
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
         for (panel, (range, &place)) in self.ranges.iter().zip(places).enumerate() {

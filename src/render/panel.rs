@@ -28,6 +28,8 @@ pub(super) struct PanelUniform {
     pub(super) soft: f32,
     pub(super) region: Vec4,
     pub(super) place: Vec4,
+    pub(super) opacity: f32,
+    pub(super) spare: [f32; 3],
 }
 
 /// An sRGB colour as linear light.
@@ -101,6 +103,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         soft: sight.soft,
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
+        opacity: panel.opacity,
+        spare: [0.0; 3],
     }
 }
 

@@ -6,7 +6,11 @@ use super::rotation::{self, moment};
 use super::snapshot::{Diagnostics, Placement};
 use super::topology;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Threads measure no fewer elements than this at a time.
+const LEAST_ELEMENTS: usize = 1024;
 
 /// What is known of a body beforehand.
 pub struct Diagnose {
@@ -59,14 +63,11 @@ impl Diagnose {
             diagnostics.momentum += velocity * mass;
             diagnostics.angular_momentum += position.cross(velocity) * mass;
         }
-        let mut volume = 0.0;
-        let turned_over: Vec<_> = (0..self.sizes.len())
-            .map(|element| {
-                let (now, at_rest) = self.volume(element, &state.position);
-                volume += now;
-                now * at_rest < 0.0
-            })
-            .collect();
+        let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
+        let volumes: Vec<_> = elements.map(|element| self.volume(element, &state.position)).collect();
+        // Summed in the order of the elements, whoever measured them.
+        let volume: f64 = volumes.iter().fold(0.0, |sum, (now, _)| sum + now);
+        let turned_over: Vec<_> = volumes.iter().map(|(now, at_rest)| now * at_rest < 0.0).collect();
         diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
         diagnostics.volume_ratio = volume / self.volume_at_rest;
         let placement = self.placement(&state.position);

@@ -3,7 +3,7 @@
 use super::panel::Draft;
 use crate::picture::narrow::narrow_point;
 use crate::picture::plane::node_radius;
-use crate::picture::surface::{Lines, Surroundings, boundary};
+use crate::picture::surface::{Lines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use glam::DVec3;
@@ -23,13 +23,16 @@ impl Draft<'_> {
             origin: self.origin,
             side: self.side,
             soft: self.composer.soft * self.side,
+            element: self.element,
+            opacity: self.scene.view.opacity,
             shades: self.shades.as_ref(),
         };
-        let over = &self.run.snapshot.turned_over;
+        let sets = self.composer.shell.boundaries(self.body, &self.run.snapshot.turned_over);
+        let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
-        surroundings.add(&boundary(self.body, over, false), kinds, &mut sound, lines);
+        surroundings.add(&sets[0], total, kinds, &mut sound, lines);
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
-        surroundings.add(&boundary(self.body, over, true), kinds, &mut turned_over, lines);
+        surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
         // What a field colours has strokes instead.
         if self.shades.is_none() {
             self.bare_lines(lines);
@@ -78,6 +81,14 @@ impl Draft<'_> {
             strokes.extend(wire.edges(edges, over, false));
         }
         let strain = self.scene.view.spring_strain.map(|scale| (&self.composer.spring_ramp[..], scale.range));
+        let on_skin: Vec<_>;
+        let springs = if wire.hides_inside() && !self.flat {
+            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.composer.skin.holds(node));
+            on_skin = springs.iter().filter(holds).copied().collect();
+            &on_skin[..]
+        } else {
+            springs
+        };
         if !springs.is_empty() {
             strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
@@ -111,6 +122,7 @@ impl Draft<'_> {
             line: self.scale.line(),
             element: self.element,
             surfaces: self.scene.view.visible.surfaces,
+            opacity: self.scene.view.opacity,
             shades: (!self.of_nodes.is_empty()).then_some((&self.composer.ramp[..], &self.of_nodes[..])),
         }
     }

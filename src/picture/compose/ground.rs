@@ -35,7 +35,8 @@ impl Draft<'_> {
         let (normal, height) = contact::ground(&self.scene.obstacles, self.run.snapshot.time)?;
         let (plane, anchor) = self.plane(normal, height);
         let view = &self.scene.view;
-        let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening());
+        let fade =
+            FLOOR_FADE.map(|sizes| sizes * self.composer.extent * self.composer.spread / self.side * self.widening());
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
         let cell = self.cell();
@@ -80,10 +81,12 @@ impl Draft<'_> {
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
-        if !self.scene.view.visible.surfaces {
-            // What one sees through lets most of the light through.
+        // What one sees through lets most of the light through.
+        let opacity = if self.scene.view.visible.surfaces { self.scene.view.opacity } else { 0.0 };
+        if opacity < 1.0 {
+            let left = SHEER + (1.0 - SHEER) * opacity;
             let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
-            cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
+            cells.for_each(|cell| *cell = (f64::from(*cell) * left).round() as u8);
         }
         shades
     }
@@ -106,7 +109,7 @@ impl Draft<'_> {
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
     /// panel.
     pub(super) fn widening(&self) -> f64 {
-        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.composer.extent);
+        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.composer.extent * self.composer.spread);
         (self.framing.distance / usual).sqrt()
     }
 

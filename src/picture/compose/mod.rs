@@ -9,11 +9,13 @@ use super::arrows;
 use super::camera::{self, Lens, Middles};
 use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
+use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
 use super::palette::Palette;
 use super::plane::LEVEL;
 use super::ramp;
+use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
@@ -24,9 +26,11 @@ use crate::history::History;
 use crate::scene::{Camera, Follow, Scene, StrainScale};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
+use crate::sim::grip::Grip;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
 use glam::DVec3;
 use panel::Draft;
+use std::borrow::Cow;
 
 /// Bodies of more elements than this along a side have softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
@@ -46,6 +50,8 @@ pub struct Composer<'a> {
     descriptions: Vec<String>,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
+    /// Which faces lie on its outside, and which between elements.
+    shell: Shell,
     /// The surface of the body.
     skin: Skin,
     /// How faces that are not convex are cut into triangles.
@@ -56,12 +62,18 @@ pub struct Composer<'a> {
     ramp: Vec<Colour>,
     /// The colours of the strain of springs, if it is shown.
     spring_ramp: Vec<Colour>,
+    /// The body with its elements apart, if that is how it is drawn. What follows is about that one, then.
+    exploded: Option<Exploded>,
+    /// The nodes that are held and dragged.
+    grips: Cow<'a, [Grip]>,
     /// The edges of the elements, if surfaces are not shown.
     edges: Edges,
     /// The nodes that get arrows.
     bearers: Vec<u32>,
     /// The size of the body (m).
     extent: f64,
+    /// How many times that what is drawn of it takes.
+    spread: f64,
     /// The middle of the nodes at the start (m).
     start: DVec3,
     /// The box around the nodes at the start (m).
@@ -108,6 +120,22 @@ impl<'a> Composer<'a> {
             Dimension::Space => Vec::new(),
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
+        let tally = Tally::new(body, scene.view.side);
+        let descriptions = scene.runs.iter().map(|run| run.model.describe(body)).collect();
+        let (apart, ground) = (scene.view.explode, contact::ground(&scene.obstacles, 0.0));
+        let exploded = (apart > 0.0).then(|| Exploded::new(body, apart));
+        let grips = match &exploded {
+            Some(exploded) => {
+                let apart = |grip: &Grip| Grip { nodes: exploded.copies(&grip.nodes), ..grip.clone() };
+                Cow::Owned(scene.grips.iter().map(apart).collect())
+            }
+            None => Cow::Borrowed(&scene.grips[..]),
+        };
+        let start = match &exploded {
+            Some(exploded) => Cow::Owned(exploded.positions(&scene.initial.position, ground.map(|(normal, _)| normal))),
+            None => Cow::Borrowed(&scene.initial.position),
+        };
+        let body = exploded.as_ref().map_or(body, |exploded| &exploded.body);
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
         let bare = bare_elements(body);
@@ -123,17 +151,21 @@ impl<'a> Composer<'a> {
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette,
             fonts: Fonts::new(&scene.view.look.font),
-            tally: Tally::new(body, scene.view.side),
-            descriptions: scene.runs.iter().map(|run| run.model.describe(body)).collect(),
+            tally,
+            descriptions,
             rest_areas: areas,
+            shell: if visible.surfaces { Shell::new(body) } else { Shell::default() },
             skin,
             ears,
             bare,
             extent,
-            start_box: bounds(&scene.initial.position).into(),
+            spread: 1.0 + apart,
+            start_box: bounds(&start).into(),
             start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             strips: None,
+            grips,
+            exploded,
         }
     }
 

@@ -16,8 +16,10 @@ use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::{Camera, FloorStyle, Follow, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
+use crate::sim::field::Support;
 use crate::sim::snapshot::{RunFrame, Status};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Coordinates of what blew up are kept within this (sides).
 const FARTHEST: f64 = 1e12;
@@ -66,8 +68,21 @@ impl<'a> Draft<'a> {
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
         // A body of which no node is known is drawn as nothing.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let position = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
-        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &run.snapshot.field));
+        let mut position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
+        let mut field = Cow::Borrowed(&run.snapshot.field[..]);
+        let mut drawn = body;
+        if let Some(exploded) = &composer.exploded {
+            let ground = contact::ground(&scene.obstacles, run.snapshot.time).map(|(normal, _)| normal);
+            if !position.is_empty() {
+                position = exploded.positions(&position, ground);
+            }
+            if view.colour.is_some_and(|scale| scale.field.support() == Support::Nodes) {
+                field = Cow::Owned(exploded.of_nodes(&field, body.len()));
+            }
+            drawn = &exploded.body;
+        }
+        let body = drawn;
+        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &field));
         let of_nodes = match &shades {
             Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
             _ => Vec::new(),
@@ -108,6 +123,7 @@ impl<'a> Draft<'a> {
             sight: self.sight(),
             floor: self.floor(&staged),
             sound,
+            opacity: narrow(self.scene.view.opacity),
             turned_over,
             lines,
             obstacles,
@@ -215,7 +231,7 @@ impl<'a> Draft<'a> {
             return;
         }
         let hands = Hands {
-            grips: &self.scene.grips,
+            grips: &self.composer.grips,
             time: self.run.snapshot.time,
             frame: 1.0 / self.scene.frames_per_second,
             position: &self.position,

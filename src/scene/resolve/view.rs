@@ -14,6 +14,7 @@ use crate::sim::grip::Grip;
 use crate::sim::words::rounded;
 use crate::sim::world::cycle;
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
@@ -56,14 +57,14 @@ pub(super) fn resolve(
             (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(elevation))
         }
     };
-    let start = &body.initial.position;
+    let start = &spread(&body.initial.position, typed.explode, obstacles);
     let standing = standing(start, obstacles);
     let mut chosen = Camera {
         azimuth,
         elevation,
         field_of_view: typed.camera.field_of_view.unwrap_or(FIELD_OF_VIEW),
         target: standing,
-        distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body)),
+        distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body) * (1.0 + typed.explode)),
         rise: 0.0,
         follow: typed.camera.follow.into(),
     };
@@ -76,7 +77,7 @@ pub(super) fn resolve(
     if typed.camera.target.is_none() && typed.camera.distance.is_none() {
         show_reach(&mut chosen, start, standing, scene);
     }
-    if dimension == Dimension::Space && is_inside(eye(&chosen), &body.body, start) {
+    if dimension == Dimension::Space && is_inside(eye(&chosen), &body.body, &body.initial.position) {
         let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
         let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
@@ -250,6 +251,19 @@ fn size(body: &ResolvedBody) -> f64 {
     let (low, high) = bounds(&body.initial.position);
     let start = (high - low).max_element();
     if start > 0.0 { start } else { body.body.extent() }
+}
+
+/// The start of a body that is drawn with its elements apart, a little larger than it is drawn.
+fn spread<'s>(start: &'s [DVec3], apart: f64, obstacles: &[Obstacle]) -> Cow<'s, [DVec3]> {
+    if apart == 0.0 || start.is_empty() {
+        return Cow::Borrowed(start);
+    }
+    let mut anchor = start.iter().sum::<DVec3>() / start.len() as f64;
+    if let Some((normal, _)) = contact::ground(obstacles, 0.0) {
+        let lowest = start.iter().map(|at| at.dot(normal)).fold(f64::INFINITY, f64::min);
+        anchor += (lowest - anchor.dot(normal)) * normal;
+    }
+    Cow::Owned(start.iter().map(|&at| at + apart * (at - anchor)).collect())
 }
 
 /// The middle of the body moved down or up until it stands on the first floor that faces upwards.
