@@ -121,10 +121,8 @@ fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
     var outline = 0.0;
     if farther <= 0.0 {
         // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
-        let close = normal * 0.9;
-        let open = sample_depth(at.middle + close, sample) <= 0.0
-            || sample_depth(at.middle - close, sample) <= 0.0;
-        outline = select(shown, 1.0, open);
+        let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
+        outline = select(shown, 1.0, sample_depth(at.middle + close, sample) <= 0.0);
     }
     // Where one thing ends before another, a contour is drawn however close they are.
     let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));

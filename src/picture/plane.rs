@@ -11,6 +11,7 @@ use super::{Mark, MarkShape};
 use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 
 /// Floors whose normal rises more than this are level.
 pub(super) const LEVEL: f64 = 1.0 - 1e-9;
@@ -126,7 +127,7 @@ impl Flat<'_> {
     fn level(&self, level: f64, alignment: f64, marks: &mut Vec<Mark>) {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
-        let (y, margin, unit) = (pixel[1] + alignment, self.scale.margin(), self.scale.unit);
+        let (y, margin, unit) = (sharpened(pixel[1] + alignment), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
         // Below the captions it would underline them.
         let [_, clear, _, room] = self.clear.map(f64::from);
@@ -258,6 +259,11 @@ impl Flat<'_> {
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.lens.project(point).map(|(pixel, _)| DVec2::from(pixel))
     }
+}
+
+/// A place near one (px) that moves as steadily but stays longer where a line is sharp: on the borders of pixels.
+fn sharpened(place: f64) -> f64 {
+    place - libm::sin(TAU * place) / TAU
 }
 
 /// The radius of a node where elements have edges of a length (px): smaller than usual where they are short.
