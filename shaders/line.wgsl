@@ -178,7 +178,7 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let seen = 0.80 * select(strength, 1.0, of_obstacle) * covered(at.distance, 1.15 * scale);
     let weak = hidden_alpha.x * strength * strength * covered(at.distance, 0.9 * scale);
     let hidden = select(weak, (1.0 - panel.opacity) * seen, of_obstacle);
-    return vec4(shares.x * seen + shares.y * hidden, 0.0, 0.0, 0.0);
+    return vec4(shares.x * seen + segment.strength * shares.y * hidden, 0.0, 0.0, 0.0);
 }
 
 @fragment

@@ -243,7 +243,8 @@ pub struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
-    /// How much of a contour is drawn, from 0 to 1: one comes and goes gently as a face turns towards the viewer.
+    /// From 0 to 1: how much of a contour is drawn, which comes and goes gently as a face turns towards the viewer; how
+    /// much of an edge of a sound element is seen where a surface hides it.
     pub strength: f32,
 }
 

@@ -47,6 +47,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) opacity: f64,
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
+    /// Whether edges of sound elements are drawn in front, and behind surfaces.
+    pub(super) edges: [bool; 2],
 }
 
 /// Kinds of lines on a surface.
@@ -179,8 +181,11 @@ impl Surroundings<'_> {
         let faces_away =
             |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
-        if self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT } {
-            lines.push(self.line(start, end, kinds.edge, 1.0));
+        // Edges of turned-over elements are drawn in any case.
+        let [in_front, behind] = if kinds.edge == LineKind::Edge { self.edges } else { [true; 2] };
+        let is_large = self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT };
+        if is_large && if is_hidden { behind } else { in_front } {
+            lines.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
         let along = (end - start) / cut as f64;
         for piece in 0..cut {

@@ -8,10 +8,10 @@
 //! `UPDATE_GOLDENS=1 cargo test --release --test golden`, then look at every one that changed.
 #![cfg(feature = "render")]
 
-use image::RgbImage;
+use image::{DynamicImage, RgbImage};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::output::{Tags, encode, read_tags};
-use localshape::picture::compose;
+use localshape::picture::{Composer, compose};
 use localshape::render::Renderer;
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
@@ -69,34 +69,48 @@ fn device() -> Option<Gpu> {
     }
 }
 
-/// The last frame of a scene, drawn.
-fn draw(gpu: &Gpu, scene: &Scene) -> (RgbImage, Tags) {
+/// The last frame of a scene, drawn, with opacities if it has no background.
+fn draw(gpu: &Gpu, scene: &Scene) -> (DynamicImage, Tags) {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(scene, &runs).frame(scene.last_frame());
     let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a renderer");
-    let image = renderer.draw(&compose(scene, &frame)).expect("a picture");
+    let image = if scene.view.look.transparent {
+        let [on_white, on_black] = [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground).compose(&frame));
+        renderer.draw_transparent(&on_white, &on_black).expect("a picture").into()
+    } else {
+        renderer.draw(&compose(scene, &frame)).expect("a picture").into()
+    };
     (image, Tags::new(scene, &frame, &gpu.description().to_string()))
 }
 
-/// How many pixels differ by more than [`CHANNEL`]; `None` if the sizes differ.
-fn different_pixels(expected: &RgbImage, actual: &RgbImage) -> Option<usize> {
-    let differs = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > CHANNEL);
-    (expected.dimensions() == actual.dimensions())
-        .then(|| expected.pixels().zip(actual.pixels()).filter(|(a, b)| differs(a, b)).count())
+/// How many pixels differ by more than [`CHANNEL`]; `None` if the sizes differ, or only one has opacities.
+fn different_pixels(expected: &DynamicImage, actual: &DynamicImage) -> Option<usize> {
+    let alike = expected.color() == actual.color() && expected.width() == actual.width();
+    let differs = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > CHANNEL);
+    let pixels = |image: &DynamicImage| image.color().bytes_per_pixel() as usize;
+    (alike && expected.height() == actual.height()).then(|| {
+        let [one, other] = [expected, actual].map(|image| image.as_bytes().chunks(pixels(image)));
+        one.zip(other).filter(|&two| differs(two)).count()
+    })
 }
 
-fn allowed(picture: &RgbImage) -> usize {
+fn allowed(picture: &DynamicImage) -> usize {
     AT_LEAST.max((PART * f64::from(picture.width()) * f64::from(picture.height())) as usize)
 }
 
+/// A picture as a file.
+fn encoded(image: &DynamicImage, tags: &Tags) -> Vec<u8> {
+    encode([image.width(), image.height()], image.as_bytes(), tags)
+}
+
 /// What is wrong with a picture, in words; `None` if it is as expected.
-fn judge(golden: &Path, actual: &RgbImage, tags: &Tags) -> Option<String> {
+fn judge(golden: &Path, actual: &DynamicImage, tags: &Tags) -> Option<String> {
     let accept = "look at both, then accept with UPDATE_GOLDENS=1 cargo test --release --test golden";
     if !golden.exists() {
         return Some("the golden is missing; make it with UPDATE_GOLDENS=1 cargo test --release --test golden".into());
     }
     let expected = match image::open(golden) {
-        Ok(expected) => expected.to_rgb8(),
+        Ok(expected) => expected,
         Err(error) => return Some(format!("the golden cannot be read: {error}")),
     };
     let Ok(Some(expected_tags)) = read_tags(golden) else {
@@ -106,7 +120,10 @@ fn judge(golden: &Path, actual: &RgbImage, tags: &Tags) -> Option<String> {
         return Some(format!("state moved: the simulation gives other positions or velocities; {accept}"));
     }
     match different_pixels(&expected, actual) {
-        None => Some(format!("{:?} instead of {:?}; {accept}", actual.dimensions(), expected.dimensions())),
+        None => {
+            let kind = |image: &DynamicImage| format!("{} × {} of {:?}", image.width(), image.height(), image.color());
+            Some(format!("{} instead of {}; {accept}", kind(actual), kind(&expected)))
+        }
         Some(count) if count > allowed(&expected) => {
             Some(format!("same state, drawn differently: {count} pixels, {} allowed; {accept}", allowed(&expected)))
         }
@@ -130,7 +147,7 @@ fn every_scene_looks_as_it_did() {
             let (image, tags) = draw(&gpu, &scene);
             let golden = goldens.join(&stem).with_extension("png");
             let Some(complaint) = judge(&golden, &image, &tags) else { continue };
-            let bytes = encode(image.dimensions().into(), image.as_raw(), &tags);
+            let bytes = encoded(&image, &tags);
             if update {
                 assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
                 std::fs::write(&golden, bytes).expect("a golden");
@@ -177,7 +194,7 @@ fn the_gate_tells_what_moved() {
         version: "0".into(),
         adapter: "none".into(),
     };
-    let verdict = |image: &RgbImage, tags: &Tags| judge(&golden, image, tags).unwrap_or_default();
+    let verdict = |image: &RgbImage, tags: &Tags| judge(&golden, &image.clone().into(), tags).unwrap_or_default();
     assert!(verdict(&image, &tags).starts_with("the golden is missing; make it with UPDATE_GOLDENS=1"));
     std::fs::write(&golden, encode([32, 32], image.as_raw(), &tags)).expect("a golden");
     assert_eq!(verdict(&image, &tags), "");

@@ -23,6 +23,7 @@ impl Draft<'_> {
             origin: self.origin,
             side: self.side,
             soft: self.composer.soft * self.side,
+            edges: self.scene.view.edges,
             element: self.element,
             opacity: self.scene.view.opacity,
             shades: self.shades.as_ref(),
