@@ -4,9 +4,9 @@
 //! dark theme.
 
 use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::Composer;
+use localshape::picture::compose;
 use localshape::render::Renderer;
-use localshape::scene::{Limits, Scene, Theme};
+use localshape::scene::{Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
 use std::error::Error;
 use std::path::Path;
@@ -22,11 +22,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let samples = more.get(1).map_or(Ok(4), |samples| samples.parse())?;
     if more.get(2).is_some_and(|theme| theme == "dark") {
-        scene.view.theme = Theme::Dark;
+        scene.view.look = Look::of(Theme::Dark);
     }
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(&scene, &runs).frame(frame.parse()?);
-    let picture = Composer::new(&scene).compose(&frame);
+    let picture = compose(&scene, &frame);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
     Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture)?.save(out)?;
     Ok(())

@@ -37,13 +37,14 @@
 //! ```
 //!
 //! [`scene`] reads and resolves, [`sim`] simulates in double precision, [`sequence`] hands out frames, `picture` makes
-//! plain data of a frame, `render` draws it, [`output`] writes files, [`cli`] is the program. Without the feature `render`
+//! plain data of a frame, `render` draws it, [`history`] tells what comes before and after it, [`output`] writes files, [`cli`] is the program. Without the feature `render`
 //! (on by default) the crate simulates and needs no graphics library.
 
 pub mod cli;
 pub mod colour;
 #[cfg(feature = "render")]
 pub mod gpu;
+pub mod history;
 pub mod output;
 pub mod paper;
 #[cfg(feature = "render")]

@@ -6,6 +6,7 @@ use super::interrupt;
 use super::options::RunOptions;
 use super::report;
 use super::scenes::Job;
+use crate::history::{History, Rehearsal};
 use crate::output::{
     Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, STATES_FILE, Spent, StatesWriter, Summary,
     Timings, thread_time,
@@ -24,6 +25,10 @@ use std::time::Duration;
 pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
+    /// Whether they show each moment among all others and need to know the scene's course before the first frame.
+    fn need_history(&self) -> bool;
+    /// Takes note of the scene's course.
+    fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
     /// Waits until all frames are written, and writes down how many and how long it took.
@@ -142,6 +147,11 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
 
+        if let Some(pictures) = pictures.as_mut().filter(|pictures| pictures.need_history())
+            && let Some(history) = self.rehearse(pool, options.quiet)
+        {
+            pictures.take_history(&history);
+        }
         let with_field = pictures.is_some();
         let made = self.frames(pool, options.quiet, with_field, |frame| {
             diagnostics.write(frame)?;
@@ -186,6 +196,24 @@ impl Recording<'_> {
         summary.times = Some(self.times);
         let written = summary.write(&self.folder).map_err(Failure::from);
         result.and(written)
+    }
+
+    /// Simulates once from start to end, whichever frames were asked for: a frame drawn alone must look as it does among
+    /// others. `None` if the user wants to stop, and then no frame is begun, either.
+    fn rehearse(&mut self, pool: &ThreadPool, quiet: bool) -> Option<History> {
+        let mut rehearsal = pool.install(|| Rehearsal::new(self.scene, &self.runs));
+        let bar = console::progress(&self.scene.title, rehearsal.steps_at_end(), quiet);
+        bar.set_message("simulating once ahead for the strips");
+        let slice = slice(&self.scene.body);
+        let mut arrived = false;
+        while !arrived && !interrupt::requested() {
+            let clock = Clock::thread();
+            arrived = pool.install(|| rehearsal.advance(slice));
+            self.times.simulate += Spent { cpu: None, ..clock.spent() };
+            bar.set_position(rehearsal.steps());
+        }
+        bar.finish_and_clear();
+        arrived.then(|| rehearsal.finish())
     }
 
     /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field.

@@ -5,6 +5,7 @@ use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
 use crate::gpu::{AdapterChoice, Gpu};
+use crate::history::History;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Timings};
 use crate::picture::Composer;
 use crate::render::{RenderError, Renderer};
@@ -90,9 +91,11 @@ struct Device {
 
 impl Studio for Device {
     fn begin<'s>(&self, scene: &'s Scene, folder: &Path) -> Result<Box<dyn Pictures + 's>, Failure> {
+        let transparent = scene.view.look.transparent;
         Ok(Box::new(Drawing {
             scene,
-            composer: Composer::new(scene),
+            composer: if transparent { Composer::on_ground(scene, [255; 3]) } else { Composer::new(scene) },
+            on_black: transparent.then(|| Composer::on_ground(scene, [0; 3])),
             renderer: Renderer::new(&self.gpu, scene.view.size, self.samples).map_err(failed)?,
             writer: FrameWriter::start(folder, self.writers),
             adapter: self.gpu.description().to_string(),
@@ -106,7 +109,10 @@ impl Studio for Device {
 /// The pictures of one scene.
 struct Drawing<'a> {
     scene: &'a Scene,
+    /// On the scene's background, or on white if it has none.
     composer: Composer<'a>,
+    /// On black, if the scene has no background.
+    on_black: Option<Composer<'a>>,
     renderer: Renderer,
     writer: FrameWriter,
     adapter: String,
@@ -123,16 +129,28 @@ impl Pictures for Drawing<'_> {
         summary.frames.written = Some(0);
     }
 
+    fn need_history(&self) -> bool {
+        self.scene.view.strip.is_some()
+    }
+
+    fn take_history(&mut self, history: &History) {
+        let composers = std::iter::once(&mut self.composer).chain(&mut self.on_black);
+        composers.for_each(|composer| composer.set_history(history));
+    }
+
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
         let clock = Clock::thread();
         let picture = self.composer.compose(frame);
+        let on_black = self.on_black.as_ref().map(|composer| composer.compose(frame));
         self.compose += clock.spent();
         let clock = Clock::thread();
-        let image = self.renderer.draw(&picture).map_err(failed)?;
+        let pixels = match &on_black {
+            None => self.renderer.draw(&picture).map_err(failed)?.into_raw(),
+            Some(on_black) => self.renderer.draw_transparent(&picture, on_black).map_err(failed)?.into_raw(),
+        };
         self.draw += clock.spent();
-        let (width, height) = image.dimensions();
         let tags = Tags::new(self.scene, frame, &self.adapter);
-        Ok(self.writer.write(PixelFrame { size: [width, height], pixels: image.into_raw(), tags })?)
+        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, tags })?)
     }
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {

@@ -43,28 +43,24 @@ impl Sight {
             Self::Protanopia => "eyes without red cones (protanopia)",
         }
     }
+}
 
-    /// What linear light looks like, once for each of the two models of loss.
-    fn seen(self, light: [f64; 3]) -> [[f64; 3]; 2] {
-        let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
-        match self {
-            Self::Usual => [light; 2],
-            Self::Deuteranopia => [&MACHADO_2009[0], &VIENOT_1999[0]].map(through),
-            Self::Protanopia => [&MACHADO_2009[1], &VIENOT_1999[1]].map(through),
-        }
+/// What linear light looks like to somebody, as light that looks the same to all, once for each of two models of the loss
+/// of cones: Machado 2009 and Viénot 1999.
+pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
+    let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
+    match sight {
+        Sight::Usual => [light; 2],
+        Sight::Deuteranopia => [&MACHADO_2009[0], &VIENOT_1999[0]].map(through),
+        Sight::Protanopia => [&MACHADO_2009[1], &VIENOT_1999[1]].map(through),
     }
 }
 
 /// How different two colours look to somebody: the smaller CIEDE2000 of both models of that sight. Some 1 can just be
 /// told when the colours touch; 20 nobody takes for one another.
 pub fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
-    least(one, other, sight, ciede2000)
-}
-
-/// The same by another measure of difference.
-fn least(one: Colour, other: Colour, sight: Sight, measure: fn(Lab, Lab) -> f64) -> f64 {
-    let [one, other] = [one, other].map(|colour| sight.seen(linear(colour)).map(lab));
-    (0..2).map(|model| measure(one[model], other[model])).fold(f64::INFINITY, f64::min)
+    let [one, other] = [one, other].map(|colour| seen_by(sight, linear(colour)).map(lab));
+    (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
 
 /// A colour in CIELAB: lightness from 0 to 100, how red rather than green, how yellow rather than blue.
@@ -157,7 +153,7 @@ mod tests {
     #[test]
     fn losses_keep_greys_and_take_red_from_green() {
         for sight in Sight::ALL {
-            for seen in sight.seen([0.5; 3]) {
+            for seen in seen_by(sight, [0.5; 3]) {
                 assert!(seen.iter().all(|light| (light - 0.5).abs() < 0.01), "{sight:?} {seen:?}");
             }
         }

@@ -7,7 +7,7 @@ mod difference;
 mod oklab;
 mod typed;
 
-pub use difference::{Lab, Sight, cie76, ciede2000, difference, lab};
+pub use difference::{Lab, Sight, cie76, ciede2000, difference, lab, seen_by};
 pub use oklab::{Oklab, from_oklab, oklab};
 pub(crate) use typed::names;
 pub use typed::{UnknownColour, parse, written};

@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 pub struct PixelFrame {
     /// Width and height (px).
     pub size: [u32; 2],
-    /// Red, green and blue of each pixel, in rows from the top left, sRGB.
+    /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
     pub pixels: Vec<u8>,
     /// What it shows.
     pub tags: Tags,

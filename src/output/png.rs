@@ -64,18 +64,24 @@ impl Tags {
     }
 }
 
-/// A picture of 8-bit red, green and blue as a PNG file in sRGB, with its tags.
+/// A picture of 8-bit red, green and blue, or of these and opacity, as a PNG file in sRGB, with its tags.
 ///
-/// `pixels` holds three bytes for each pixel, in rows from the top left.
+/// `pixels` holds three bytes for each pixel, or four, in rows from the top left. Opacity has not been multiplied into
+/// the colours.
 ///
 /// # Panics
-/// If `pixels` does not have the length that `size`, width and height (px), asks for, or the size is zero.
+/// If `pixels` has neither of the lengths that `size`, width and height (px), asks for, or the size is zero.
 pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
     let [width, height] = size;
-    assert_eq!(pixels.len() as u64, 3 * u64::from(width) * u64::from(height), "three bytes for each pixel");
+    let all = u64::from(width) * u64::from(height);
+    let colour = match pixels.len() as u64 {
+        length if length == 3 * all => png::ColorType::Rgb,
+        length if length == 4 * all => png::ColorType::Rgba,
+        length => panic!("{length} bytes for {all} pixels; expected three for each, or four"),
+    };
     let mut bytes = Vec::with_capacity(pixels.len() / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -158,6 +164,22 @@ mod tests {
         let mut back = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut back).unwrap();
         assert_eq!(back, pixels);
+    }
+
+    #[test]
+    fn opacities_survive_the_file() {
+        let pixels: Vec<u8> = (0..5 * 3 * 4).map(|byte| byte * 4).collect();
+        let bytes = encode([5, 3], &pixels, &tags());
+        assert_eq!(bytes, encode([5, 3], &pixels, &tags()), "equal input, equal bytes");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+        assert_eq!(reader.info().color_type, png::ColorType::Rgba);
+        let mut back = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut back).unwrap();
+        assert_eq!(back, pixels);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(read_frame(&path).unwrap(), Some(([5, 3], tags())));
     }
 
     #[test]

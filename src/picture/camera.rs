@@ -124,7 +124,7 @@ impl Lens {
     /// the reference size.
     pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
         let camera = &view.camera;
-        let [above, below] = layout::rooms(&view.labels, view.scale_bar);
+        let [above, below] = layout::rooms(view);
         let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
         let height = panel[3].min(panel[2] / FULL_ASPECT).min(room / REFERENCE_ROOM);
         let slope = height / 2.0 / libm::tan(camera.field_of_view / 2.0);

@@ -5,7 +5,7 @@ use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
-use super::{Mark, MarkShape, number};
+use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Snapshot, Status};
 
@@ -35,6 +35,7 @@ pub(super) struct Writer<'a> {
     pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,
     pub(super) marks: Vec<Mark>,
+    pub(super) curves: Vec<Curve>,
     pub(super) words: Vec<TextRun>,
 }
 
@@ -90,13 +91,13 @@ impl Writer<'_> {
         let room = width - 2.0 * around.margin();
         let title = self.fonts.shortened(title, Weight::SemiBold, TITLE * around.title(), room);
         let size = TITLE * around.title();
-        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), TITLE_BASELINE * around.unit);
+        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), around.row(TITLE_BASELINE));
     }
 
     /// The caption below all panels, with its first baseline at a height (px).
     pub(super) fn caption(&mut self, around: Scale, lines: &[String], baseline: f64) {
         for (at, line) in lines.iter().enumerate() {
-            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.unit;
+            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.type_unit();
             let colour = self.palette.second_text;
             self.left(line, Weight::Regular, around.caption(), colour, around.margin(), baseline);
         }

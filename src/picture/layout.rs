@@ -12,7 +12,7 @@
 //! caption
 //! ```
 
-use crate::scene::{Labels, View};
+use crate::scene::{Labels, Look, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
@@ -23,6 +23,8 @@ const REFERENCE_PANEL_HEIGHT: f64 = 460.0;
 /// Type smaller than this cannot be read and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
+/// Free around and inside each panel (px in the reference picture).
+const MARGIN: f64 = 40.0;
 /// Height of the ground of the title, and of a strip with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
 const STRIP: f64 = 128.0;
@@ -75,12 +77,12 @@ impl Layout {
     pub(super) fn new(view: &View, runs: usize, legend: u32, caption_lines: usize) -> Self {
         let size = view.size.map(|length| length.max(1));
         let around = Self::around(view, runs);
-        let unit = around.unit;
-        let rows = |length: f64| (length * unit).round() as u32;
-        let title = if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(TITLE) };
+        let rows = |length: f64| (length * around.unit).round() as u32;
+        let title =
+            if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(around.of_type(TITLE)) };
         let caption = match caption_lines {
             0 => 0,
-            lines => rows((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION + BELOW_CAPTION),
+            lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION),
         };
         // Whatever stands around them, panels keep half of the picture.
         let [title, legend, caption] = match title + legend + caption <= size[1] / 2 {
@@ -89,10 +91,10 @@ impl Layout {
         };
         let height = size[1] - title - legend - caption;
         let panels = panels([size[0], height], runs, view.columns);
-        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel));
+        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(&view.look));
         let strip = |panel: Rectangle| {
             let [width, height] = [panel[2], panel[3]].map(f64::from);
-            let room = (STRIP * scale.unit).min(STRIP_SHARE * height).round();
+            let room = (STRIP * scale.type_unit()).min(STRIP_SHARE * height).round();
             let (side, below) = (scale.margin().min(width / 2.0), (BELOW_STRIP * scale.unit).min(room));
             let top = f64::from(title + panel[1]) + height - room;
             [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
@@ -111,26 +113,31 @@ impl Layout {
             panels: panels.into_iter().map(place).collect(),
             ground: [0, title, size[0], height],
             legend: title + height,
-            caption: f64::from(title + height + legend) + ABOVE_CAPTION * unit,
+            caption: f64::from(title + height + legend) + ABOVE_CAPTION * around.type_unit(),
         }
     }
 
     /// Sizes of type and lines around the panels of a view of a number of runs.
     pub(super) fn around(view: &View, runs: usize) -> Scale {
         let size = view.size.map(|length| length.max(1));
-        panels(size, runs, view.columns).first().map_or(Scale { unit: 1.0 }, |&panel| Scale::new(size, panel))
+        panels(size, runs, view.columns)
+            .first()
+            .map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel))
+            .with(&view.look)
     }
 }
 
 /// The room above and below the body in a panel that words need (px in the reference picture).
-pub(super) fn rooms(labels: &Labels, scale_bar: bool) -> [f64; 2] {
-    let Labels { letter, name, model, clock, count, number } = *labels;
+pub(super) fn rooms(view: &View) -> [f64; 2] {
+    let Labels { letter, name, model, clock, count, number } = view.labels;
     let above = match (letter || name, model || clock) {
         (_, true) => WORDS_ABOVE,
         (true, false) => NAME_ABOVE,
         (false, false) => NO_WORDS,
     };
-    [above, if count || number || scale_bar { WORDS_BELOW } else { NO_WORDS }]
+    let below = if count || number || view.scale_bar { WORDS_BELOW } else { NO_WORDS };
+    // Inside the margin, rows are as high as their type.
+    [above, below].map(|room| room.min(MARGIN) + (room - MARGIN).max(0.0) * view.look.text_scale)
 }
 
 /// Divides a picture into panels, row by row; together they cover it without gaps. No panel is without a pixel as
@@ -154,29 +161,57 @@ pub(super) fn panels(size: [u32; 2], count: usize, columns: usize) -> Vec<Rectan
 pub(super) struct Scale {
     /// Pixels for one pixel of the reference picture.
     pub(super) unit: f64,
+    /// How many times larger than usual type is, with its rows.
+    type_factor: f64,
+    /// How many times thicker than usual lines are.
+    line_factor: f64,
 }
 
 impl Scale {
+    /// That of the reference picture.
+    pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0 };
+
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         let [width, height] = [panel[2], panel[3]].map(f64::from);
         let unit =
             (f64::from(size[1]) / REFERENCE_HEIGHT).min(width / REFERENCE_WIDTH).min(height / REFERENCE_PANEL_HEIGHT);
-        Self { unit }
+        Self { unit, ..Self::REFERENCE }
+    }
+
+    /// The same with type and lines as a scene asks for.
+    pub(super) fn with(self, look: &Look) -> Self {
+        Self { type_factor: look.text_scale, line_factor: look.line_scale, ..self }
+    }
+
+    /// Pixels for one pixel of type in the reference picture, and of what stands in its rows.
+    pub(super) fn type_unit(self) -> f64 {
+        self.of_type(self.unit)
+    }
+
+    /// A length as much longer as type is larger.
+    pub(super) fn of_type(self, length: f64) -> f64 {
+        length * self.type_factor
+    }
+
+    /// A height of type within margins, given in the reference picture (px): inside the margin, rows are as high as
+    /// their type.
+    pub(super) fn row(self, height: f64) -> f64 {
+        (MARGIN + (height - MARGIN) * self.type_factor) * self.unit
     }
 
     /// Names, clock and count (px).
     pub(super) fn title(self) -> f64 {
-        26.0 * self.unit
+        26.0 * self.type_unit()
     }
 
     /// Everything else (px).
     pub(super) fn caption(self) -> f64 {
-        16.0 * self.unit
+        16.0 * self.type_unit()
     }
 
     /// Free space around and inside each panel (px).
     pub(super) fn margin(self) -> f64 {
-        40.0 * self.unit
+        MARGIN * self.unit
     }
 
     /// Between things beside each other (px).
@@ -192,7 +227,7 @@ impl Scale {
     /// How thick lines are, in parts of their thickness in the reference picture. Thinner ones than at a third of
     /// that size would only be fainter.
     pub(super) fn line(self) -> f64 {
-        self.unit.max(0.35)
+        self.unit.max(0.35) * self.line_factor
     }
 }
 
@@ -208,9 +243,9 @@ impl Baselines {
     pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
         let height = f64::from(panel[3]);
         Self {
-            title: 60.0 * scale.unit,
-            second: 86.0 * scale.unit,
-            count: height - 58.0 * scale.unit,
+            title: scale.row(60.0),
+            second: scale.row(86.0),
+            count: height - (38.0 + 20.0 * scale.type_factor) * scale.unit,
             caption: height - 38.0 * scale.unit,
         }
     }
@@ -229,6 +264,7 @@ pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Theme;
 
     #[test]
     fn panels_cover_the_picture_without_gaps() {
@@ -253,7 +289,7 @@ mod tests {
     #[test]
     fn the_ground_between_the_words_lies_inside_the_panel() {
         let rooms = [WORDS_ABOVE, WORDS_BELOW];
-        assert_eq!(clear_of_words([640, 0, 640, 720], Scale { unit: 1.0 }, rooms), [680, 102, 560, 518]);
+        assert_eq!(clear_of_words([640, 0, 640, 720], Scale::REFERENCE, rooms), [680, 102, 560, 518]);
         for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
             let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel), rooms);
             assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
@@ -291,5 +327,20 @@ mod tests {
         assert_eq!(unit([1920, 1080], 2, 2), 1.5);
         assert!(unit([1280, 720], 6, 3) < 0.8);
         assert!(unit([64, 64], 2, 2) < 0.1);
+    }
+
+    #[test]
+    fn type_and_lines_grow_by_themselves() {
+        let look = Look { text_scale: 2.0, line_scale: 3.0, ..Look::of(Theme::Light) };
+        let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&look));
+        assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));
+        assert_eq!((large.line(), large.margin()), (3.0 * usual.line(), usual.margin()));
+        // Each row has room for its type.
+        let panel = [0, 0, 640, 720];
+        let rows = Baselines::new(large, panel);
+        assert!(rows.second - rows.title > large.caption() && rows.caption - rows.count >= large.caption());
+        let view = View { look, ..View::default() };
+        let [_, top, _, height] = clear_of_words(panel, large, rooms(&view));
+        assert!(f64::from(top) > rows.second && f64::from(top + height) < rows.count - large.title());
     }
 }

@@ -76,7 +76,7 @@ impl Legend {
         let apart = APART * parts.saturating_sub(1) as f64;
         let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
-        let unit = scale.unit.max(roomy).min((width - 2.0 * scale.margin()) / needed);
+        let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
         let height = (HEIGHT * unit).round() as u32;
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }

@@ -6,9 +6,11 @@
 //! ```
 //!
 //! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
-//! out depends on the scene and that frame alone.
+//! out depends on the scene and that frame alone. Where frames stand among all others ([`crate::scene::View::strip`]),
+//! the composer is told the scene's course beforehand, which depends on the scene alone, too.
 
 mod arrows;
+mod axis;
 mod camera;
 mod caption;
 mod compose;
@@ -28,6 +30,7 @@ mod ramp;
 mod shadow;
 mod shell;
 mod skin;
+mod strip;
 mod surface;
 mod tally;
 mod text;
@@ -60,6 +63,8 @@ pub struct Picture {
     pub under: Vec<Mark>,
     /// Flat marks above the bodies, in the order in which they are drawn.
     pub marks: Vec<Mark>,
+    /// Flat curves above the marks, in the order in which they are drawn.
+    pub curves: Vec<Curve>,
     /// Words, above everything else.
     pub words: Vec<TextRun>,
 }
@@ -290,6 +295,21 @@ pub struct Bead {
     pub colour: Colour,
     /// The colour of its rim.
     pub rim: Colour,
+}
+
+/// A flat curve on the picture with round ends and joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Where it goes through, in straight pieces (px to the right and down); a single point is a dot.
+    pub points: Vec<[f32; 2]>,
+    /// Its width (px).
+    pub width: f32,
+    /// Length of its dashes and of the gaps between them (px); `None` for a solid curve.
+    pub dash: Option<[f32; 2]>,
+    /// Its colour.
+    pub colour: Colour,
+    /// Its opacity, from 0 to 1.
+    pub alpha: f32,
 }
 
 /// A flat mark on the picture.

@@ -39,7 +39,7 @@ pub(super) fn ratio(value: f64) -> String {
     }
 }
 
-fn with_minus(text: String) -> String {
+pub(super) fn with_minus(text: String) -> String {
     let zero = text.strip_prefix('-').filter(|rest| !rest.contains(|c: char| ('1'..='9').contains(&c)));
     zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
 }
@@ -49,7 +49,7 @@ const PREFIXES: [(f64, &str); 7] =
     [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
 
 /// The prefix that leaves one to three digits before the point, and what it stands for.
-fn prefix(size: f64) -> (f64, &'static str) {
+pub(super) fn prefix(size: f64) -> (f64, &'static str) {
     // A thousandth less than whole numbers still has their prefix, whatever was rounded.
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
@@ -71,7 +71,7 @@ pub(super) fn round_below(value: f64) -> f64 {
 }
 
 /// A number times a power of ten, as exact as it is typed.
-fn times_ten(digits: f64, power: f64) -> f64 {
+pub(super) fn times_ten(digits: f64, power: f64) -> f64 {
     format!("{digits}e{power}").parse().unwrap_or(digits)
 }
 

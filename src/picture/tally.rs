@@ -68,7 +68,7 @@ impl Tally {
             Some(lengths) => {
                 // Few rows stand in the middle of the height that three would take.
                 let taken = self.rows.len() as f64 * (lengths[0] + lengths[1]) - lengths[1];
-                let raised = ((HEIGHT * scale.unit - taken) / 2.0).max(0.0);
+                let raised = ((HEIGHT * scale.type_unit() - taken) / 2.0).max(0.0);
                 self.draw_squares(turned_over, palette, lengths, [corner[0], corner[1] - raised], marks)
             }
             None => self.draw_bar(turned_over, palette, scale, room, corner, marks),
@@ -80,11 +80,11 @@ impl Tally {
         let columns = self.rows.iter().map(Vec::len).max()? as f64;
         let rows = self.rows.len() as f64;
         let gap: f64 = if rows > 3.0 || columns > 14.0 { 2.0 } else { 3.0 };
-        let room = (room / scale.unit).min(WIDTH);
+        let room = (room / scale.type_unit()).min(WIDTH);
         let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(17.0);
-        let pixels = side * scale.unit;
+        let pixels = side * scale.type_unit();
         // Whole pixels keep all squares alike.
-        (pixels >= 2.0).then(|| [pixels.round(), (gap * scale.unit).round().max(1.0)])
+        (pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
     }
 
     fn draw_squares(
@@ -127,11 +127,12 @@ impl Tally {
         if self.count == 0 {
             return 0.0;
         }
-        let [width, height] = [(BAR[0] * scale.unit).min(room).round(), (BAR[1] * scale.unit).round().max(1.0)];
+        let [width, height] =
+            [(BAR[0] * scale.type_unit()).min(room).round(), (BAR[1] * scale.type_unit()).round().max(1.0)];
         let over = turned_over.iter().filter(|&&over| over).count();
         // A single element among thousands still shows.
         let filled = if over == 0 { 0.0 } else { (width * over as f64 / self.count as f64).max(2.0).min(width) };
-        let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.unit - height).round());
+        let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.type_unit() - height).round());
         let bar = |from: f64, length: f64, colour| Mark {
             rectangle: [left + from, top, length, height].map(narrow),
             along: Mark::UPRIGHT,

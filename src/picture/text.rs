@@ -57,7 +57,8 @@ impl TextRun {
     /// Whether it lies over a part of the picture (px).
     pub(super) fn touches(&self, [x, y, width, height]: super::Rectangle) -> bool {
         let [left, top, right, bottom] = self.bounds();
-        let [x, y, x2, y2] = [x, y, x + width, y + height].map(|at| at as f32);
+        let [x, y, x2, y2] = [x, y, x + width, y + height].map(f64::from);
+        let [left, top, right, bottom] = [left, top, right, bottom].map(f64::from);
         width > 0 && height > 0 && left < x2 && right > x && top < y2 && bottom > y
     }
 }
@@ -282,5 +283,30 @@ mod tests {
         }
         assert_eq!(fonts.shortened("Short", Weight::SemiBold, 26.0, 300.0), "Short");
         assert_eq!(fonts.shortened("two\nlines", Weight::Regular, 16.0, 300.0), "two lines");
+    }
+
+    #[test]
+    fn letters_come_from_the_scene_then_from_the_built_in_font_then_there_is_a_box() {
+        // A font whose table of characters has been emptied knows no letter, like one of another script.
+        let mut blank = REGULAR.to_vec();
+        let tables = usize::from(u16::from_be_bytes([blank[4], blank[5]]));
+        let entry = (0..tables).map(|at| 12 + 16 * at).find(|&at| &blank[at..at + 4] == b"cmap").unwrap();
+        let start = u32::from_be_bytes(blank[entry + 8..entry + 12].try_into().unwrap()) as usize;
+        blank[start + 2..start + 4].fill(0);
+        let with = |regular: &[u8], semi_bold: Option<&[u8]>| {
+            Fonts::new(&FontFiles { regular: Some(regular.into()), semi_bold: semi_bold.map(Into::into) })
+        };
+        let face = |fonts: &Fonts, weight, text: &str| fonts.lay_out(text, weight, 16.0, [0; 3], 0.0, 0.0).glyphs[0];
+        let [own, other] = [with(SEMI_BOLD, None), with(&blank, Some(SEMI_BOLD))];
+        assert_eq!(face(&own, Weight::Regular, "A").face, 2);
+        assert_eq!(face(&own, Weight::SemiBold, "A").face, 2, "one font serves both weights");
+        assert_eq!(face(&other, Weight::Regular, "A").face, 0);
+        assert_eq!(face(&other, Weight::SemiBold, "A").face, 3);
+        assert_eq!(face(&other, Weight::Regular, "A").id, face(&Fonts::default(), Weight::Regular, "A").id);
+        // The box of the built-in font.
+        let unknown = face(&own, Weight::SemiBold, "龍");
+        assert_eq!((unknown.face, unknown.id), (1, 0));
+        assert_eq!(own.width("111", Weight::Regular, 26.0), own.width("888", Weight::Regular, 26.0));
+        assert!(own == with(SEMI_BOLD, None) && own != other && own != Fonts::default());
     }
 }

@@ -5,6 +5,7 @@ use super::narrow::{narrow, narrow_point};
 use super::palette::{Colour, Palette};
 use super::ramp;
 use super::{Bead, Second, Stroke};
+use crate::colour::mixed;
 use crate::sim::body::Body;
 use glam::DVec3;
 
@@ -276,12 +277,4 @@ pub(super) fn spring_strain(body: &Body, position: &[DVec3], ends: [u32; 2]) -> 
     let length = |points: &[DVec3]| points[ends[0] as usize].distance(points[ends[1] as usize]);
     let rest = length(&body.rest);
     if rest > 0.0 { length(position) / rest - 1.0 } else { f64::NAN }
-}
-
-/// One colour on its way to another.
-pub(super) fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
-    std::array::from_fn(|at| {
-        let [from, to] = [one[at], other[at]].map(f64::from);
-        (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8
-    })
 }

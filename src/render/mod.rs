@@ -7,13 +7,17 @@
 //! 4. `ground`: the floor, its grid and its shadows, into the picture.
 //! 5. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
 //! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
-//! 7. `overlay`: marks and words.
+//! 7. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
+//!
+//! A picture without a background is drawn twice, and `alpha` finds its opacities.
 //!
 //! With a scalar field, `tint` takes the place of `surface`.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
+mod alpha;
 mod composite;
+mod curve;
 mod glyphs;
 mod ground;
 mod line;
@@ -30,7 +34,7 @@ mod tint;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
-use image::RgbImage;
+use image::{RgbImage, RgbaImage};
 use obstacle::{Slabs, Solids};
 use panel::Panels;
 use target::{Bodies, Canvas};
@@ -92,6 +96,8 @@ pub struct Renderer {
     strokes: Option<stroke::Strokes>,
     tint: Option<tint::Tint>,
     overlay: overlay::Overlay,
+    /// Made when first needed.
+    curves: Option<curve::Curves>,
     canvas: Canvas,
     bodies: Option<Bodies>,
     read_back: ReadBack,
@@ -124,6 +130,7 @@ impl Renderer {
             strokes: None,
             tint: None,
             overlay: overlay::Overlay::new(gpu),
+            curves: None,
             canvas: Canvas::new(gpu, size),
             bodies: None,
             read_back: ReadBack::new(gpu, width, height),
@@ -144,6 +151,25 @@ impl Renderer {
         let [width, height] = self.size;
         // The read-back gives exactly three bytes for each pixel.
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
+    }
+
+    /// Draws a picture without a background: each pixel gets its opacity, 0 where nothing is and 255 where nothing of the
+    /// ground is seen. Takes the picture composed on white and on black ground, see
+    /// [`Composer::on_ground`](crate::picture::Composer::on_ground), and draws it twice.
+    ///
+    /// Laid on white, a picture of the light theme looks as it does on white ground, and one of the dark theme laid on
+    /// black as on black, to within rounding. The other way round, so do words, marks and all that is grey; borders of
+    /// coloured things, which blend light where pages blend bytes, are a little off.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn draw_transparent(&mut self, on_white: &Picture, on_black: &Picture) -> Result<RgbaImage, RenderError> {
+        let white = self.draw(on_white)?;
+        let black = self.draw(on_black)?;
+        let made_for_light = on_white.palette.is_made_for_light();
+        let with_solids = on_white.panels.iter().filter(|panel| !panel.obstacles.solids.is_empty());
+        let solid: Vec<_> = with_solids.map(|panel| panel.region).collect();
+        Ok(alpha::recover(&white, &black, made_for_light, &solid))
     }
 
     /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted, for
@@ -174,6 +200,10 @@ impl Renderer {
         self.lines.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
+        if !picture.curves.is_empty() {
+            self.curves.get_or_insert_with(|| curve::Curves::new(&gpu, self.size)).write(&gpu, picture);
+        }
+        let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
         let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
@@ -250,7 +280,11 @@ impl Renderer {
         }
         {
             let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
-            self.overlay.draw(&mut pass);
+            self.overlay.draw_marks(&mut pass);
+            if let Some(curves) = curves {
+                curves.draw(&mut pass);
+            }
+            self.overlay.draw_words(&mut pass);
         }
         self.bodies = Some(bodies);
         Ok(self.read_back.submit(&gpu, commands, &self.canvas.texture))

@@ -53,8 +53,9 @@ pub(super) struct Overlay {
     canvas: GrowingBuffer<CanvasUniform>,
     glyphs: Glyphs,
     marks: GrowingBuffer<Mark>,
-    /// How many of the marks lie below the bodies.
+    /// How many of the marks lie below the bodies, and how many are marks and no glyphs.
     under: u32,
+    plain: u32,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -86,6 +87,7 @@ impl Overlay {
             glyphs: Glyphs::new(gpu),
             marks: GrowingBuffer::new(gpu, "marks", wgpu::BufferUsages::VERTEX, 256),
             under: 0,
+            plain: 0,
             bind_group: None,
         }
     }
@@ -94,6 +96,7 @@ impl Overlay {
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let mut marks: Vec<_> = picture.under.iter().chain(&picture.marks).map(plain).collect();
         self.under = picture.under.len() as u32;
+        self.plain = marks.len() as u32;
         for run in &picture.words {
             if run.has_halo {
                 let offsets = HALO.iter().flat_map(|&(radius, count)| ring(radius * run.size, count));
@@ -144,9 +147,14 @@ impl Overlay {
         self.draw_range(pass, 0..self.under);
     }
 
-    /// Draws what lies above the bodies.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw_range(pass, self.under..self.marks.len() as u32);
+    /// Draws the marks above the bodies.
+    pub(super) fn draw_marks(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_range(pass, self.under..self.plain);
+    }
+
+    /// Draws the words.
+    pub(super) fn draw_words(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_range(pass, self.plain..self.marks.len() as u32);
     }
 
     fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {

@@ -4,8 +4,8 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite, ground, line, obstacle, overlay, stroke,
-    surface, tint,
+    MULTISAMPLED_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite, curve, ground, line, obstacle, overlay,
+    stroke, surface, tint,
 };
 use std::mem::offset_of;
 
@@ -26,6 +26,7 @@ fn shaders_are_valid() {
     parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
+    parse(&[curve::SHADER]);
     for reading in [SINGLE_SHADER, MULTISAMPLED_SHADER] {
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
             parse(&[PANEL_SHADER, STRIP_SHADER, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
@@ -89,6 +90,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
         [first, second, middle, fade, key, sky, background, floor, grid, shadow, viewport]
     );
     same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, [size, unused]);
+    same_layout!(parse(&[curve::SHADER]), "Canvas", CanvasUniform, [size, unused]);
 }
 
 #[test]

@@ -88,9 +88,9 @@ impl Palette {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }
 
-    /// Whether it is dark on light ground, as on paper.
-    pub fn is_light(&self) -> bool {
-        contrast(self.background, [0; 3]) >= contrast(self.background, [255; 3])
+    /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].
+    pub fn is_made_for_light(&self) -> bool {
+        contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])
     }
 
     /// The same on another ground, into which the floor goes over without a border and what is far fades.
@@ -134,9 +134,9 @@ impl Palette {
             own.alarm = alarm;
             own.alarm_line = hatch(alarm, &theme);
             own.alarm_text = alarm;
-            own.alarm_on_white = readable(alarm, [255; 3], LEAST_CONTRAST);
+            own.alarm_on_white = readable(alarm, [255; 3], GOOD_CONTRAST);
         }
-        own.alarm_text = readable(own.alarm_text, own.background, LEAST_CONTRAST);
+        own.alarm_text = readable(own.alarm_text, own.background, GOOD_CONTRAST.min(most_contrast(own.background)));
         if let Some(edge) = typed(&given.edge) {
             (own.edge, own.casing) = (edge, edge);
         }
@@ -189,6 +189,8 @@ impl Palette {
 
 /// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
 pub(super) const LEAST_CONTRAST: f64 = 4.5;
+/// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
+const GOOD_CONTRAST: f64 = 5.0;
 /// The least contrast of lines with the body they lie on: they need less than words (WCAG 2.2, 1.4.11).
 const LINE_CONTRAST: f64 = 3.0;
 /// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
@@ -213,6 +215,11 @@ fn hatch(alarm: Colour, theme: &Palette) -> Colour {
         return from_oklab(Oklab([lightness + LIGHTER_HATCH, a, b]));
     }
     like(alarm, theme.alarm, theme.alarm_line)
+}
+
+/// The contrast of black or white, whichever has more, with a ground; never less than 4.58.
+fn most_contrast(ground: Colour) -> f64 {
+    contrast([0; 3], ground).max(contrast([255; 3], ground))
 }
 
 /// How far a colour is on the way from one to another.
@@ -290,3 +297,164 @@ const DARK: Palette = Palette {
     casing: [0x0b, 0x10, 0x17],
     arrows: [[0x56, 0xb4, 0xe9], [0xc3, 0xcb, 0xd5]],
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::{Lab, Sight, cie76, ciede2000, encoded, lab, linear, seen_by};
+
+    const WHITE: Colour = [255; 3];
+
+    fn typed(text: &str) -> Option<TypedColour> {
+        Some(text.parse().unwrap_or_else(|error| panic!("{text}: {error}")))
+    }
+
+    /// All that words stand on.
+    fn words(palette: &Palette) -> Vec<(Colour, Colour)> {
+        let texts = [palette.text, palette.second_text, palette.alarm_text];
+        let grounds = [palette.background, palette.floor];
+        let mut pairs: Vec<_> = texts.iter().flat_map(|&text| grounds.map(|ground| (text, ground))).collect();
+        pairs.push((palette.alarm_on_white, WHITE));
+        pairs
+    }
+
+    #[test]
+    fn words_can_be_read_on_whatever_they_stand_on() {
+        for theme in [LIGHT, DARK] {
+            for (text, ground) in words(&theme) {
+                let found = contrast(text, ground);
+                assert!(found >= LEAST_CONTRAST, "{text:x?} on {ground:x?} has a contrast of {found:.2}");
+            }
+        }
+    }
+
+    /// The light that falls on faces, as `shaders/surface.wgsl` has it: on all sides of the key light, facing up, level
+    /// and down, standing on the floor and in the air.
+    fn lights() -> Vec<[f64; 3]> {
+        const KEY: [f64; 3] = [0.66, 0.635, 0.595];
+        const SKY: [f64; 3] = [0.60, 0.635, 0.68];
+        const GROUND: [f64; 3] = [0.27, 0.262, 0.25];
+        let mut lights = vec![[1.0; 3]];
+        for key in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            for upward in [-1.0, -0.5, 0.0, 0.5, 1.0_f64] {
+                for contact in [0.72, 1.0] {
+                    let contact = contact + (1.0 - contact) * upward.abs();
+                    lights.push(std::array::from_fn(|at| {
+                        let around = GROUND[at] + (SKY[at] - GROUND[at]) * (0.5 + 0.5 * upward);
+                        KEY[at] * key + around * contact
+                    }));
+                }
+            }
+        }
+        lights
+    }
+
+    fn brightness(light: [f64; 3]) -> f64 {
+        0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]
+    }
+
+    /// A turned-over element at a depth behind a sound one, from 0 to 1, as `shaders/surface.wgsl` mixes it.
+    fn through(sound: [f64; 3], alarm: [f64; 3], light: [f64; 3], deep: f64) -> [f64; 3] {
+        let colour: [f64; 3] = std::array::from_fn(|at| sound[at] * light[at]);
+        let grey = brightness(colour);
+        std::array::from_fn(|at| {
+            let lit = alarm[at] * light[at];
+            let unlit = lit * 0.86 / brightness(light).max(0.05);
+            let alarm = lit + (unlit - lit) * 0.65 * deep;
+            let grey = colour[at] + (grey - colour[at]) * 0.7;
+            grey + (alarm - grey) * (1.0 - 0.4 * deep)
+        })
+    }
+
+    /// The smallest difference of two colours to anybody who does not see as most do.
+    fn apart(one: [f64; 3], other: [f64; 3], measure: fn(Lab, Lab) -> f64) -> f64 {
+        let [one, other] = [one, other].map(|light| linear(encoded(light)));
+        let sights = [Sight::Usual, Sight::Deuteranopia, Sight::Protanopia];
+        let seen = sights.iter().flat_map(|&sight| seen_by(sight, one).into_iter().zip(seen_by(sight, other)));
+        seen.map(|(one, other)| measure(lab(one), lab(other))).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn nobody_takes_turned_over_elements_for_sound_ones() {
+        let mut least = [f64::INFINITY; 4];
+        for theme in [LIGHT, DARK] {
+            let [sound, flat, tally, alarm] = [theme.sound, theme.sound_flat, theme.tally, theme.alarm].map(linear);
+            for measure in [ciede2000, cie76] {
+                for sound in [sound, flat, tally] {
+                    let found = apart(sound, alarm, measure);
+                    least[0] = least[0].min(found);
+                    assert!(found >= 20.0, "as they are: {found:.1}");
+                }
+                for light in lights() {
+                    let lit = |colour: [f64; 3]| std::array::from_fn(|at| colour[at] * light[at]);
+                    let found = apart(lit(sound), lit(alarm), measure);
+                    least[1] = least[1].min(found);
+                    assert!(found >= 20.0, "in the light {light:.2?}: {found:.1}");
+                    let found = apart(lit(sound), through(sound, alarm, light, 0.0), measure);
+                    least[2] = least[2].min(found);
+                    assert!(found >= 20.0, "just behind, in the light {light:.2?}: {found:.1}");
+                    // Deep inside, the hue and the outline carry the meaning; it still is plainly another colour.
+                    let found = apart(lit(sound), through(sound, alarm, light, 1.0), measure);
+                    least[3] = least[3].min(found);
+                }
+            }
+        }
+        println!("as they are, lit, just behind, deep inside: {least:.1?}");
+    }
+
+    #[test]
+    fn what_is_not_given_follows() {
+        let given = ColoursFile { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b"), ..ColoursFile::default() };
+        for theme in [Theme::Light, Theme::Dark] {
+            let (own, of_theme) = (Palette::with(theme, None, &given), Palette::of(theme));
+            assert_eq!((own.sound, own.alarm), ([0x8f, 0xbc, 0x8f], [0x7b, 0x2d, 0x8b]));
+            // Green, and lighter or darker than the body as in the theme.
+            for (colour, others) in [(own.sound_flat, of_theme.sound_flat), (own.tally, of_theme.tally)] {
+                assert!(colour[1] > colour[0] && colour[1] > colour[2], "{colour:x?}");
+                let lighter = |one: Colour, other: Colour| oklab(one).0[0] - oklab(other).0[0];
+                assert!((lighter(colour, own.sound) - lighter(others, of_theme.sound)).abs() < 0.02, "{colour:x?}");
+            }
+            assert!(contrast(own.alarm_line, own.alarm) > 1.5);
+            for (text, ground) in words(&own) {
+                assert!(contrast(text, ground) >= LEAST_CONTRAST, "{text:x?} on {ground:x?}");
+            }
+            let same = (own.background, own.text, own.grid, own.outline, own.second_text);
+            assert_eq!(
+                same,
+                (of_theme.background, of_theme.text, of_theme.grid, of_theme.outline, of_theme.second_text)
+            );
+        }
+        assert_eq!(Palette::with(Theme::Dark, None, &ColoursFile::default()), DARK);
+        assert_eq!(Palette::with(Theme::Light, None, &ColoursFile::default()), LIGHT);
+    }
+
+    #[test]
+    fn a_dark_body_gets_light_edges_and_a_dark_alarm_a_light_hatch() {
+        let given = ColoursFile { body: typed("#202830"), turned_over: typed("#603000"), ..ColoursFile::default() };
+        let own = Palette::with(Theme::Light, None, &given);
+        assert!(oklab(own.edge).0[0] > oklab(own.sound).0[0] && contrast(own.edge, own.sound) >= LINE_CONTRAST);
+        assert!(oklab(own.alarm_line).0[0] > oklab(own.alarm).0[0] + 0.2);
+    }
+
+    #[test]
+    fn any_background_has_words_that_can_be_read() {
+        for red in [0, 60, 120, 128, 150, 200, 255] {
+            for green in [0, 60, 110, 120, 128, 180, 255] {
+                for blue in [0, 120, 255] {
+                    let ground = [red, green, blue];
+                    for theme in [Theme::Light, Theme::Dark] {
+                        let theme = Palette::theme_on(Some(ground), theme);
+                        let own = Palette::with(theme, Some(ground), &ColoursFile::default());
+                        for text in [own.text, own.second_text, own.alarm_text] {
+                            assert!(contrast(text, ground) >= LEAST_CONTRAST, "{text:x?} on {ground:x?}");
+                        }
+                    }
+                }
+            }
+        }
+        assert_eq!(Palette::theme_on(Some([0; 3]), Theme::Light), Theme::Dark);
+        assert_eq!(Palette::theme_on(Some([255; 3]), Theme::Dark), Theme::Light);
+        assert_eq!(Palette::theme_on(Some([0xff, 0xf8, 0xe8]), Theme::Light), Theme::Light);
+        assert_eq!(Palette::theme_on(None, Theme::Dark), Theme::Dark);
+    }
+}

@@ -131,7 +131,7 @@ impl Scene {
             Follow::Height => ", following",
             Follow::Body => ", following the body",
         };
-        let (theme, distance) = (typed(&view.theme), short(view.camera.distance));
+        let (theme, distance) = (typed(&view.look.theme), short(view.camera.distance));
         format!("{width} × {height} px, {theme}, {panels}, seen {from}, {distance} m away{follow}")
     }
 }

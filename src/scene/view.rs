@@ -15,9 +15,7 @@ use std::sync::Arc;
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// Its colours: those asked for, unless its text could not be read on the background.
-    pub theme: Theme,
-    /// What it looks like.
+    /// What it looks like: colours, type and lines.
     pub look: Look,
     /// From where; the same for all panels.
     pub camera: Camera,
@@ -66,7 +64,6 @@ impl Default for View {
     fn default() -> Self {
         Self {
             size: [1280, 720],
-            theme: Theme::default(),
             look: Look::of(Theme::default()),
             camera: Camera {
                 azimuth: 0.0,
@@ -205,6 +202,8 @@ pub enum ColourMap {
 /// What a picture looks like besides what it shows: colours, type and lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
+    /// What the colours come from: the theme asked for, unless its text could not be read on the background.
+    pub theme: Theme,
     /// All colours.
     pub palette: Palette,
     /// Whether the background is left out, so that whatever a picture is laid on shows.
@@ -221,6 +220,7 @@ impl Look {
     /// What pictures of a theme look like where a scene says nothing else.
     pub fn of(theme: Theme) -> Self {
         Self {
+            theme,
             palette: Palette::of(theme),
             transparent: false,
             font: FontFiles::default(),

@@ -7,7 +7,7 @@ use super::field::Field;
 use super::grip::{Grip, Hand};
 use super::integrate::{Integrator, Step, Stepper};
 use super::model::{ElasticModel, ForceModel};
-use super::snapshot::{Divergence, Snapshot, Status};
+use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -143,6 +143,12 @@ impl World {
     /// Whether it goes on.
     pub fn status(&self) -> Status {
         self.status
+    }
+
+    /// The numbers of the present moment alone, without copies of all positions and velocities.
+    pub fn diagnostics(&self) -> Diagnostics {
+        let measure = self.forces_of.measure(&self.state);
+        self.diagnose.state(&self.state, self.surroundings.gravity, measure).0
     }
 
     /// The present moment with its diagnostics.

@@ -29,6 +29,29 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     ([info.width, info.height], bytes)
 }
 
+/// Frames without a background carry opacities; all else about them is as usual.
+#[test]
+fn a_scene_without_a_background_makes_frames_with_opacities() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("clear.toml", &format!("{SMALL}background = \"transparent\"\n"));
+    place.run("render clear.toml --samples 1 --frames 0-2").good();
+    let path = place.path("output/clear/frame_00002.png");
+    let file = std::io::BufReader::new(std::fs::File::open(&path).expect("a frame"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a small picture")];
+    let info = reader.next_frame(&mut bytes).expect("a whole picture");
+    assert_eq!((info.color_type, info.width, info.height), (png::ColorType::Rgba, 96, 64));
+    assert_eq!(bytes[..4], [0; 4], "nothing in the corner");
+    assert!(bytes.chunks_exact(4).any(|pixel| pixel[3] == 255), "and bodies");
+    assert_eq!(tags(&path).frame, 2);
+    let first = std::fs::read(&path).expect("a frame");
+    place.run("render clear.toml --samples 1 --frames 2").good();
+    assert_eq!(std::fs::read(&path).expect("a frame"), first, "the same bytes again");
+}
+
 /// A folder whose frames differ in size or runs would be no sequence.
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
@@ -125,6 +148,51 @@ fn some_frames_of_one_run_in_another_size() {
     // A frame drawn alone is the frame drawn with others.
     place.run("render small.toml --frames 4 --only Mass-spring --size 63x41 -o alone").good();
     assert!(std::fs::read(path).unwrap() == std::fs::read(place.path("alone/frame_00004.png")).unwrap());
+}
+
+/// The small scene with a strip, which needs more height.
+fn with_strip(text: &str) -> String {
+    text.replace("size = [96, 64]", "size = [320, 180]\nstrip = \"shape_error\"")
+}
+
+#[test]
+fn strips_are_the_same_whichever_frames_are_drawn() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.write("strip.toml", &with_strip(SMALL));
+    place.run("render strip.toml --samples 1").good();
+    place.run("render strip.toml --samples 1 --frames 3 -o alone --threads 1").good();
+    let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
+    assert!(bytes("output/strip/frame_00003.png") == bytes("alone/frame_00003.png"));
+    place.run("render small.toml --samples 1 --frames 3 --size 320x180 -o without").good();
+    let [with, without] = ["alone", "without"].map(|folder| pixels(&place.path(folder).join("frame_00003.png")).1);
+    assert!(with != without);
+    // A strip changes no number.
+    place.run("simulate strip.toml -o numbers").good();
+    assert_eq!(place.read("output/strip/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
+
+    place.run("render strip.toml --samples 1 --only Mass-spring -o one").good();
+    place.run("render strip.toml --samples 1 --only Mass-spring --frames 3 -o other").good();
+    assert!(bytes("one/frame_00003.png") == bytes("other/frame_00003.png"));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_while_simulating_ahead() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("long.toml", &with_strip(&lasting("100000")));
+    let child = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
+    crate::interrupt::signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
+    let run = place.json("output/long/run.json");
+    assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));
 }
 
 #[test]

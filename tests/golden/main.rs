@@ -11,7 +11,7 @@
 use image::RgbImage;
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::output::{Tags, encode, read_tags};
-use localshape::picture::Composer;
+use localshape::picture::compose;
 use localshape::render::Renderer;
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
@@ -30,22 +30,22 @@ const AT_LEAST: usize = 8;
 /// The largest golden (bytes): small pictures say as much and keep the store small.
 const LARGEST_FILE: u64 = 40 * 1024;
 
-/// Width and height of the pictures of scenes that ship (px).
-const SMALL: [u32; 2] = [320, 180];
+/// Width of the pictures of scenes that ship (px).
+const SMALL: u32 = 320;
 
-/// A folder of scenes, the folder of their goldens, and the size of these if it is not that of the scene.
+/// A folder of scenes, the folder of their goldens, and the width of these if it is not that of the scene (px).
 struct Set {
     scenes: PathBuf,
     goldens: PathBuf,
-    size: Option<[u32; 2]>,
+    width: Option<u32>,
 }
 
 fn sets() -> [Set; 2] {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let here = root.join("tests/golden");
     [
-        Set { scenes: here.clone(), goldens: here.clone(), size: None },
-        Set { scenes: root.join("scenes"), goldens: here.join("scenes"), size: Some(SMALL) },
+        Set { scenes: here.clone(), goldens: here.clone(), width: None },
+        Set { scenes: root.join("scenes"), goldens: here.join("scenes"), width: Some(SMALL) },
     ]
 }
 
@@ -74,7 +74,7 @@ fn draw(gpu: &Gpu, scene: &Scene) -> (RgbImage, Tags) {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(scene, &runs).frame(scene.last_frame());
     let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a renderer");
-    let image = renderer.draw(&Composer::new(scene).compose(&frame)).expect("a picture");
+    let image = renderer.draw(&compose(scene, &frame)).expect("a picture");
     (image, Tags::new(scene, &frame, &gpu.description().to_string()))
 }
 
@@ -121,11 +121,12 @@ fn every_scene_looks_as_it_did() {
     let failed = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     std::fs::create_dir_all(&failed).expect("a folder for failures");
     let mut complaints = Vec::new();
-    for Set { scenes, goldens, size } in sets() {
+    for Set { scenes, goldens, width } in sets() {
         for stem in stems(&scenes, "toml") {
             let scene = Scene::load(&scenes.join(&stem).with_extension("toml"), &Limits::default());
             let mut scene = scene.unwrap_or_else(|error| panic!("{error}"));
-            scene.view.size = size.unwrap_or(scene.view.size);
+            let [whole, height] = scene.view.size;
+            scene.view.size = width.map_or(scene.view.size, |width| [width, width * height / whole]);
             let (image, tags) = draw(&gpu, &scene);
             let golden = goldens.join(&stem).with_extension("png");
             let Some(complaint) = judge(&golden, &image, &tags) else { continue };

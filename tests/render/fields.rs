@@ -3,7 +3,7 @@
 use super::{fig4b, gpu};
 use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
 use localshape::render::Renderer;
-use localshape::scene::{ColourMap, ColourScale, Scene, Theme, Visible};
+use localshape::scene::{ColourMap, ColourScale, Look, Scene, Theme, Visible};
 use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use localshape::{scene::Limits, sequence::Sequence};
@@ -135,7 +135,7 @@ fn nothing_of_it_is_there_unless_it_is_asked_for() {
 fn the_bar_has_round_numbers_under_its_own_colours() {
     let (mut scene, frame) = with_field(Field::Displacement, [0.0, 0.05], 4);
     for theme in [Theme::Light, Theme::Dark] {
-        scene.view.theme = theme;
+        scene.view.look = Look::of(theme);
         let picture = compose(&scene, &frame);
         let bar = marks(&picture, MarkShape::Blend);
         assert_eq!(bar.len(), SHADES - 1);
@@ -386,7 +386,7 @@ fn the_plane_shows_the_colours_of_the_bar() {
     let Some(gpu) = gpu("the_plane_shows_the_colours_of_the_bar") else { return };
     for theme in [Theme::Light, Theme::Dark] {
         let (mut scene, mut frame) = plane("show = ['surfaces']\ncolour = { by = 'strain', range = [0, 1] }");
-        scene.view.theme = theme;
+        scene.view.look = Look::of(theme);
         scene.view.size = [320, 180];
         frame.runs[0].snapshot.turned_over = vec![false; 2];
         for at in [0, 20, SHADES - 1] {

@@ -4,9 +4,12 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod inside;
+mod look;
 mod obstacles;
 mod pictures;
 mod shown;
+mod strips;
 mod words;
 
 use localshape::gpu::{AdapterChoice, Gpu};

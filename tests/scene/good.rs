@@ -35,7 +35,7 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!(scene.obstacles.len(), 1);
     assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
     assert_eq!(scene.view.camera.follow, Follow::Height);
-    assert_eq!((scene.view.columns, scene.view.side, scene.view.theme), (2, 0.1, Theme::Light));
+    assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (2, 0.1, Theme::Light));
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn a_scene_may_say_everything() {
     assert_eq!((scene.runs[0].step, scene.runs[1].step), (1e-3, cycle / 100.0));
     assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
     let view = &scene.view;
-    assert_eq!((view.theme, view.columns, view.size), (Theme::Dark, 1, [800, 600]));
+    assert_eq!((view.look.theme, view.columns, view.size), (Theme::Dark, 1, [800, 600]));
     assert_eq!((view.camera.target, view.camera.distance), (DVec3::new(2.0, 1.0, 0.0), 30.0));
     assert!((view.side - 0.9).abs() < 0.2, "{}", view.side);
 }

@@ -4,6 +4,7 @@ mod archives;
 mod bodies;
 mod digest;
 mod good;
+mod look;
 mod manipulators;
 mod mistakes;
 mod robust;

@@ -4,7 +4,7 @@ use super::bad;
 use localshape::scene::{Limits, Scene, SceneError};
 
 /// A good scene with an explicit body in the plane, line by line, in which each case changes something.
-const PLANE: &str = "\
+pub(crate) const PLANE: &str = "\
 gravity = [0, -9.8]
 [time]
 duration = 3
@@ -41,7 +41,7 @@ model = { kind = 'shape-based', stiffness = 1e4 }
 
 /// Replaces `from` in a scene, and expects exactly the mistakes listed: line, column, words.
 #[track_caller]
-fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize, &str)]) {
+pub(crate) fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize, &str)]) {
     assert!(scene.contains(from), "the scene has no {from:?}");
     let text = scene.replacen(from, to, 1);
     let error = bad(&text);
@@ -661,6 +661,10 @@ fn mistakes_of_what_is_shown() {
     view(
         "explode = 1\nshow = ['surfaces', 'springs']",
         &[(20, 1, "`view.explode` draws elements apart, where springs have no place")],
+    );
+    view(
+        "explode = 1\nshow = ['surfaces', 'displacements']",
+        &[(20, 1, "`view.explode` draws elements apart, where displacements have no place")],
     );
     view("spring_colour = {}", &[(20, 1, "`view.spring_colour` is given, but springs are not shown")]);
     view(

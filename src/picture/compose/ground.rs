@@ -49,7 +49,7 @@ impl Draft<'_> {
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
-            fade_above: narrow((layout::rooms(&view.labels, view.scale_bar)[1] + FADE_ABOVE) * self.scale.unit),
+            fade_above: narrow((layout::rooms(view)[1] + FADE_ABOVE) * self.scale.unit),
             is_filled: view.floor != FloorStyle::None,
             has_grid: view.floor == FloorStyle::Grid,
             shades: self.shadows(staged, &plane, middle, fade[1]),

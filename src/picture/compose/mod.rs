@@ -17,10 +17,12 @@ use super::plane::LEVEL;
 use super::ramp;
 use super::shell::Shell;
 use super::skin::Skin;
+use super::strip::Strips;
 use super::tally::Tally;
 use super::text::Fonts;
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
+use crate::history::History;
 use crate::scene::{Camera, Follow, Scene, StrainScale};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -78,16 +80,40 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
+    /// The curves below the panels, once the scene's course is known.
+    strips: Option<Strips>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
+///
+/// If the scene asks for strips, the runs of the frame are simulated from start to end for them.
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
-    Composer::new(scene).compose(frame)
+    let mut composer = Composer::new(scene);
+    if scene.view.strip.is_some() {
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        composer.set_history(&History::new(scene, &runs));
+    }
+    composer.compose(frame)
 }
 
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene.
+    /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
+    /// [`Self::on_ground`].
+    ///
+    /// A scene with strips ([`crate::scene::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
+    /// places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
+        Self::with(scene, scene.view.look.palette)
+    }
+
+    /// The same on a ground of one colour, into which the floor goes over without a border and what is far fades; all
+    /// else keeps its colours. Pictures on white and on black are what
+    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs.
+    pub fn on_ground(scene: &'a Scene, ground: Colour) -> Self {
+        Self::with(scene, scene.view.look.palette.on_ground(ground))
+    }
+
+    fn with(scene: &'a Scene, palette: Palette) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
@@ -116,14 +142,14 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
             spring_ramp: scene
                 .view
                 .spring_strain
-                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.theme)),
+                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: scene.view.look.palette,
+            palette,
             fonts: Fonts::new(&scene.view.look.font),
             tally,
             descriptions,
@@ -139,7 +165,14 @@ impl<'a> Composer<'a> {
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             grips,
             exploded,
+            strips: None,
         }
+    }
+
+    /// Takes note of the scene's course for the strips below the panels: that of all runs to be shown, whichever frames
+    /// of them are. Scenes without strips have no use for it.
+    pub fn set_history(&mut self, history: &History) {
+        self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
     }
 
     /// Composes one frame.
@@ -150,11 +183,16 @@ impl<'a> Composer<'a> {
         let caption = self.caption(frame.runs.len());
         let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
         let (scale, framing) = (layout.scale, self.framing(frame));
-        let mut writer =
-            Writer { palette: &self.palette, fonts: &self.fonts, scale, marks: Vec::new(), words: Vec::new() };
+        let (marks, curves, words) = Default::default();
+        let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, &layout, &framing, &mut writer);
+        if let Some(strips) = &self.strips {
+            for (place, run) in layout.panels.iter().zip(&frame.runs) {
+                place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
+            }
+        }
         writer.title(layout.around, f64::from(size[0]), &view.title);
         writer.caption(layout.around, &caption, layout.caption);
         if let Some((legend, place)) = legend.zip(layout.panels.first()) {
@@ -162,7 +200,7 @@ impl<'a> Composer<'a> {
             let bars = self.bars(frame);
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &bars);
         }
-        let Writer { marks: above, mut words, .. } = writer;
+        let Writer { marks: above, curves, mut words, .. } = writer;
         let (mut under, mut marks) = (Vec::new(), hairlines);
         let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
         let viewports = layout.panels.iter().map(|place| place.viewport);
@@ -173,7 +211,7 @@ impl<'a> Composer<'a> {
             word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
         }
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
-        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, words }
+        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
     }
 
     /// The lines of the caption.

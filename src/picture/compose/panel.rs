@@ -267,7 +267,7 @@ impl<'a> Draft<'a> {
     /// The part of the panel that words leave free.
     pub(super) fn clear_of_words(&self) -> Rectangle {
         let view = &self.scene.view;
-        layout::clear_of_words(self.viewport, self.scale, layout::rooms(&view.labels, view.scale_bar))
+        layout::clear_of_words(self.viewport, self.scale, layout::rooms(view))
     }
 
     /// Draws the arrows of what moves.

@@ -4,13 +4,13 @@ use crate::colour::{Colour, Sight, contrast, difference, written};
 use crate::scene::file::{BackgroundFile, ColoursFile, ViewFile};
 use crate::scene::palette::{LEAST_CONTRAST, Palette};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{FontFiles, Look, Theme};
+use crate::scene::view::{FontFiles, Look};
 
 /// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
-/// The look with the theme that it has become, or `None` if there is a mistake in it.
-pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<(Theme, Look)> {
+/// The look, or `None` if there is a mistake in it.
+pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Look> {
     let background = match typed.background {
         Some(BackgroundFile::Colour(colour)) => Some(colour.0),
         Some(BackgroundFile::Transparent) | None => None,
@@ -23,7 +23,7 @@ pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     (report.total() == known).then(|| {
         let transparent = typed.background == Some(BackgroundFile::Transparent);
         let (text_scale, line_scale) = (typed.text_scale, typed.line_scale);
-        (theme, Look { palette, transparent, font, text_scale, line_scale })
+        Look { theme, palette, transparent, font, text_scale, line_scale }
     })
 }
 
@@ -41,7 +41,7 @@ fn check_text(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
             rounded_down(found),
             written(palette.background)
         );
-        let towards = if palette.is_light() { "darker" } else { "lighter" };
+        let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
         report.at(
             &way("text"),
             message,

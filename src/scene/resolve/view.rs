@@ -104,7 +104,7 @@ pub(super) fn resolve(
         },
         None => Visible::usual(dimension, body.body.len()),
     };
-    let (theme, look) = look::resolve(typed, font.unwrap_or_default(), report)?;
+    let look = look::resolve(typed, font.unwrap_or_default(), report)?;
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -126,7 +126,6 @@ pub(super) fn resolve(
     };
     Some(View {
         size: typed.size,
-        theme,
         look,
         camera: chosen,
         clock: typed.clock.clone(),

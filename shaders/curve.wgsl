@@ -1,0 +1,72 @@
+// Flat curves over the finished picture, as straight pieces that fit together. They are blended as sRGB values, like
+// marks and words.
+
+struct Piece {
+    // Both ends (px).
+    @location(0) ends: vec4<f32>,
+    // Normals of the lines that part it from the pieces before and after it; zero where there is none.
+    @location(1) joints: vec4<f32>,
+    // sRGB, and the opacity.
+    @location(2) colour: vec4<f32>,
+    // Its width, how much of the pattern the curve has gone through before, and the length of a dash and of the gap after
+    // it (px). A solid curve has no gap.
+    @location(3) pattern: vec4<f32>,
+}
+
+struct Corner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) @interpolate(flat) ends: vec4<f32>,
+    @location(1) @interpolate(flat) joints: vec4<f32>,
+    @location(2) @interpolate(flat) colour: vec4<f32>,
+    @location(3) @interpolate(flat) pattern: vec4<f32>,
+}
+
+struct Canvas {
+    size: vec2<f32>,
+    unused: vec2<f32>,
+}
+
+@group(0) @binding(0) var<uniform> canvas: Canvas;
+
+// Unit vector from one end to the other; to the right for a dot.
+fn direction(ends: vec4<f32>) -> vec2<f32> {
+    let way = ends.zw - ends.xy;
+    let distance = length(way);
+    return select(vec2(1.0, 0.0), way / max(distance, 1e-9), distance > 0.0);
+}
+
+@vertex
+fn piece(@builtin(vertex_index) index: u32, piece: Piece) -> Corner {
+    let reach = 0.5 * piece.pattern.x + 1.0;
+    let along = direction(piece.ends);
+    let end = select(piece.ends.xy - reach * along, piece.ends.zw + reach * along, (index & 1u) == 1u);
+    let at = end + select(-reach, reach, (index >> 1u) == 1u) * vec2(-along.y, along.x);
+    let place = vec4(at / canvas.size * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.5, 1.0);
+    return Corner(place, piece.ends, piece.joints, piece.colour, piece.pattern);
+}
+
+@fragment
+fn piece_colour(corner: Corner) -> @location(0) vec4<f32> {
+    let from_start = corner.place.xy - corner.ends.xy;
+    let from_end = corner.place.xy - corner.ends.zw;
+    // Each pixel belongs to one of two pieces that meet, so that no joint is covered twice. Both compute the same bits.
+    let before = dot(from_start, corner.joints.xy) < 0.0;
+    let after = any(corner.joints.zw != vec2(0.0)) && dot(from_end, corner.joints.zw) >= 0.0;
+    if before || after {
+        return vec4(0.0);
+    }
+    let along = direction(corner.ends);
+    let gone = clamp(dot(from_start, along), 0.0, length(corner.ends.zw - corner.ends.xy));
+    let off = length(from_start - gone * along);
+    let half_width = 0.5 * corner.pattern.x;
+    // Curves thinner than a pixel are fainter instead.
+    var covered = saturate(half_width + 0.5 - off) - saturate(0.5 - half_width - off);
+    if corner.pattern.w > 0.0 {
+        let period = corner.pattern.z + corner.pattern.w;
+        let place = corner.pattern.y + gone;
+        let phase = place - period * floor(place / period);
+        // How far inside of a dash this is, of the one begun or the one to come.
+        covered *= saturate(0.5 + max(min(phase, corner.pattern.z - phase), phase - period));
+    }
+    return vec4(corner.colour.rgb, corner.colour.a * covered);
+}

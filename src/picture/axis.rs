@@ -1,0 +1,210 @@
+//! Round numbers along the sides of a chart.
+
+use super::number::{prefix, times_ten, with_minus};
+use crate::sim::words::rounded;
+
+/// What an axis shows, and how it may be divided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// Time (s), from end to end and no further.
+    Time,
+    /// Whole things that are counted.
+    Count,
+    /// Anything else.
+    Value,
+}
+
+/// A range with round numbers on it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    /// The ends of the range.
+    pub(super) range: [f64; 2],
+    /// The round numbers, rising.
+    pub(super) ticks: Vec<f64>,
+    /// What stands there.
+    pub(super) texts: Vec<String>,
+    /// The unit of what stands there, with its prefix.
+    pub(super) unit: String,
+}
+
+/// An axis goes on to the next round number if that is no further away than this part of its range, else by the second
+/// part, so that no curve runs along its border.
+const NEAR: f64 = 0.13;
+const BEYOND: f64 = 0.05;
+/// Units that have prefixes: `kkg m/s` is none.
+const WITH_PREFIX: [&str; 2] = ["m", "J"];
+
+impl Axis {
+    /// An axis for values of a unit between two ends, with `most` ticks at most and two at least, if there are such
+    /// round numbers.
+    pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, most: usize) -> Self {
+        let largest = low.abs().max(high.abs());
+        let (factor, prefix) = match kind {
+            // No one counts kiloseconds.
+            Kind::Time if largest >= 1.0 => (1.0, ""),
+            Kind::Time => prefix(largest),
+            _ if WITH_PREFIX.contains(&unit) => prefix(largest),
+            _ => (1.0, ""),
+        };
+        let unit = format!("{prefix}{unit}");
+        let [low, high] = [low / factor, high / factor];
+        let span = high - low;
+        if !(span > 0.0 && span.is_finite()) {
+            // Nothing ever happens.
+            let (ticks, texts) = if low == 0.0 { (vec![0.0], vec!["0".to_owned()]) } else { Default::default() };
+            return Self { range: [low * factor, low * factor + 1.0], ticks, texts, unit };
+        }
+        let division = divide(kind, [low, high], most.max(2));
+        let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
+        let plain = division.decimals <= 4 && largest / factor < 99_999.5;
+        let text = |value: f64| match plain {
+            // Numbers beside each other need no decimals in common.
+            _ if value == 0.0 && kind == Kind::Time => "0".to_owned(),
+            true => with_minus(format!("{value:.*}", division.decimals)),
+            false if value == 0.0 => "0".to_owned(),
+            false => with_minus(format!("{:e}", rounded(value, digits))),
+        };
+        Self {
+            range: division.range.map(|end| end * factor),
+            ticks: division.ticks.iter().map(|tick| tick * factor).collect(),
+            texts: division.ticks.iter().copied().map(text).collect(),
+            unit,
+        }
+    }
+
+    /// Where a value stands: 0 at the low end, 1 at the high one.
+    pub(super) fn share(&self, value: f64) -> f64 {
+        let [low, high] = self.range.map(|end| end / 2.0);
+        (value / 2.0 - low) / (high - low)
+    }
+}
+
+/// A range divided by round numbers.
+struct Division {
+    range: [f64; 2],
+    ticks: Vec<f64>,
+    decimals: usize,
+    /// Ticks, and once more those that are ends.
+    worth: usize,
+}
+
+/// The division with most ticks, preferably with ticks at its ends.
+fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
+    let highest = libm::floor(libm::log10(high - low));
+    let digits: &[f64] = match kind {
+        Kind::Count => &[5.0, 3.0, 2.0, 1.0],
+        Kind::Time | Kind::Value => &[5.0, 2.0, 1.0],
+    };
+    // Of whole things there are no parts.
+    let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
+    let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
+    // On to the next round number where that is near, or not.
+    let ways = steps.flat_map(|(digit, power)| [NEAR, 0.0].map(|near| (digit, power, near)));
+    let divisions = ways.map(|(digit, power, near)| {
+        let step = times_ten(digit, power);
+        let [from, to] = [low / step, high / step];
+        let [mut first, mut last] = [libm::ceil(from - 1e-6), libm::floor(to + 1e-6)];
+        let mut range = [low, high];
+        let [below, above] = [from - (first - 1.0), last + 1.0 - to].map(|parts| parts % 1.0 * step / (high - low));
+        let apart = |parts: f64| (1e-6..1.0 - 1e-6).contains(&parts.rem_euclid(1.0));
+        if kind != Kind::Time {
+            if apart(from) {
+                let near = below <= near;
+                first -= f64::from(u8::from(near));
+                range[0] = if near { first * step } else { low - BEYOND * (high - low) };
+            }
+            if apart(to) {
+                let near = above <= near;
+                last += f64::from(u8::from(near));
+                range[1] = if near { last * step } else { high + BEYOND * (high - low) };
+            }
+        }
+        let count = (last - first + 1.0) as usize;
+        let at_end = |tick: f64, end: f64| usize::from((tick * step - end).abs() <= 1e-6 * (high - low));
+        let worth = count + at_end(first, range[0]) + at_end(last, range[1]);
+        let ticks = (0..count.min(2 * most + 1)).map(|at| (first + at as f64) * step).collect();
+        Division { range, ticks, decimals: (-power).clamp(0.0, 300.0) as usize, worth }
+    });
+    let mut all: Vec<_> = divisions.collect();
+    let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
+    // Of equals rather three ticks than two, then rather those at the ends: 0, 5, 10 and not 0, 3, 6, 9.
+    let rank = |&at: &usize| (all[at].worth, all[at].ticks.len().min(3), all[at].worth - all[at].ticks.len());
+    let best = best.rev().max_by_key(rank);
+    // Some ranges have too many ticks or too few, whatever the step: then every second of too many.
+    let crowded = || (0..all.len()).filter(|&at| all[at].ticks.len() > most).min_by_key(|&at| all[at].ticks.len());
+    let best = best.or_else(crowded).unwrap_or(0);
+    let mut division = all.swap_remove(best);
+    if division.ticks.len() > most {
+        division.ticks = division.ticks.into_iter().step_by(2).take(most).collect();
+    }
+    division
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_few_and_round() {
+        type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
+        let expected: [Case; 14] = [
+            (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
+            (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
+            (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
+            (Kind::Count, [0.0, 27.0], "", 4, &["0", "10", "20", "30"], ""),
+            (Kind::Count, [0.0, 27.0], "", 2, &["0", "30"], ""),
+            (Kind::Value, [0.0, 0.102], "m", 4, &["0", "50", "100"], "mm"),
+            (Kind::Value, [0.0, 3136.0], "J", 4, &["0", "1", "2", "3"], "kJ"),
+            (Kind::Value, [0.62, 1.08], "", 4, &["0.6", "0.8", "1.0"], ""),
+            (Kind::Value, [-35.0, 120.0], "J", 4, &["−50", "0", "50", "100"], "J"),
+            (Kind::Value, [0.0, 4e-7], "kg m/s", 4, &["0", "2e−7", "4e−7"], "kg m/s"),
+            (Kind::Time, [0.0, 3.0], "s", 6, &["0", "1", "2", "3"], "s"),
+            (Kind::Time, [0.0, 0.1], "s", 4, &["0", "50", "100"], "ms"),
+            (Kind::Time, [0.0, 6.5], "s", 5, &["0", "2", "4", "6"], "s"),
+            (Kind::Time, [0.0, 5000.0], "s", 4, &["0", "2000", "4000"], "s"),
+        ];
+        for (kind, range, unit, most, texts, with_prefix) in expected {
+            let axis = Axis::new(kind, range, unit, most);
+            assert_eq!(axis.texts, texts, "{range:?}: {axis:?}");
+            assert_eq!(axis.unit, with_prefix, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn whatever_the_range_it_is_inside_and_ticks_rise() {
+        for step in 0..3000 {
+            let high = 1e-9 * libm::pow(10.0, f64::from(step) * 0.006_13);
+            for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high, 0.95 * high] {
+                for kind in [Kind::Time, Kind::Value] {
+                    for most in 2..=6 {
+                        let axis = Axis::new(kind, [low, high], "m", most);
+                        let told = || format!("{kind:?} {low} {high} {most}: {axis:?}");
+                        assert!((2..=most).contains(&axis.ticks.len()), "{}", told());
+                        assert!(axis.ticks.windows(2).all(|two| two[0] < two[1]), "{}", told());
+                        assert!(axis.ticks.iter().all(|&tick| (-1e-6..=1.0 + 1e-6).contains(&axis.share(tick))));
+                        assert!((-1e-6..=0.2).contains(&axis.share(low)), "{}", told());
+                        assert!((0.8..=1.0 + 1e-6).contains(&axis.share(high)), "{}", told());
+                        let distinct: std::collections::BTreeSet<_> = axis.texts.iter().collect();
+                        assert_eq!(distinct.len(), axis.texts.len(), "{}", told());
+                    }
+                }
+            }
+        }
+        for count in 1..500 {
+            let axis = Axis::new(Kind::Count, [0.0, f64::from(count)], "", 4);
+            assert!((2..=4).contains(&axis.ticks.len()), "{count}: {axis:?}");
+            assert!(axis.ticks.iter().all(|tick| tick.fract() == 0.0), "{count}: {axis:?}");
+        }
+    }
+
+    #[test]
+    fn odd_ranges_do_no_harm() {
+        for odd in [[0.0, 0.0], [3.0, 3.0], [-f64::MAX, f64::MAX], [0.0, 5e-324], [1.0, 1.0 + 1e-15]] {
+            for kind in [Kind::Time, Kind::Count, Kind::Value] {
+                let axis = Axis::new(kind, odd, "J", 4);
+                assert!(axis.ticks.len() <= 4 && axis.ticks.len() == axis.texts.len(), "{odd:?} {axis:?}");
+            }
+        }
+        assert_eq!(Axis::new(Kind::Value, [0.0, 0.0], "m", 4).texts, ["0"]);
+    }
+}

@@ -1,0 +1,242 @@
+//! Diagnostics over time below the panels.
+
+use super::{fig4b, gpu};
+use localshape::history::History;
+use localshape::picture::{Composer, Curve, Mark, Picture, TextRun, compose};
+use localshape::render::Renderer;
+use localshape::scene::{Limits, Scene, Theme};
+use localshape::sequence::Sequence;
+use localshape::sim::snapshot::{Diagnostic, Frame, Status};
+
+/// The scene of Fig. 4(b) with a strip, and some of its frames.
+fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
+    let (mut scene, _) = fig4b(0);
+    scene.view.strip = Some(strip);
+    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let frames = frames.map(|index| sequence.frame(index));
+    (scene, frames)
+}
+
+/// Pictures of frames by one composer that knows the scene's course.
+fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Picture; N] {
+    let runs: Vec<_> = frames[0].runs.iter().map(|run| run.run).collect();
+    let mut composer = Composer::new(scene);
+    composer.set_history(&History::new(scene, &runs));
+    frames.each_ref().map(|frame| composer.compose(frame))
+}
+
+/// Upright straight lines: the present moment in each strip.
+fn moments(picture: &Picture) -> Vec<&Curve> {
+    let upright = |curve: &&Curve| matches!(curve.points[..], [[left, top], [right, bottom]] if left == right && bottom - top > 30.0);
+    picture.curves.iter().filter(upright).collect()
+}
+
+fn dots(picture: &Picture) -> Vec<&Curve> {
+    picture.curves.iter().filter(|curve| curve.points.len() == 1).collect()
+}
+
+/// How far a point lies from a segment.
+fn off_segment(point: [f32; 2], ends: &[[f32; 2]]) -> f32 {
+    let [point, from, to] = [point, ends[0], ends[1]].map(glam::Vec2::from);
+    let way = to - from;
+    let share = ((point - from).dot(way) / way.length_squared().max(1e-12)).clamp(0.0, 1.0);
+    point.distance(from + share * way)
+}
+
+#[test]
+fn nothing_but_the_present_moment_moves() {
+    for strip in [Diagnostic::TurnedOver, Diagnostic::Kinetic, Diagnostic::Residual] {
+        let (scene, frames) = with_strip(strip, [0, 3, 40, 180]);
+        let pictures = pictures(&scene, &frames);
+        let still = |picture: &Picture| {
+            let moving = [moments(picture), dots(picture)].concat();
+            let curves: Vec<_> = picture.curves.iter().filter(|curve| !moving.contains(curve)).cloned().collect();
+            // Below the captions of the panels.
+            let marks: Vec<Mark> = picture.marks.iter().filter(|mark| mark.rectangle[1] > 590.0).copied().collect();
+            let words: Vec<TextRun> = picture.words.iter().filter(|run| run.baseline > 590.0).cloned().collect();
+            (curves, marks, words)
+        };
+        let first = still(&pictures[0]);
+        assert!(first.0.len() >= 2 && first.1.len() > 10 && first.2.len() > 10, "{strip:?}");
+        let mut places = Vec::new();
+        for picture in &pictures {
+            assert_eq!(still(picture), first, "{strip:?}");
+            assert_eq!(moments(picture).len(), 2);
+            places.push(moments(picture)[0].points[0][0]);
+        }
+        assert!(places.windows(2).all(|two| two[0] < two[1]), "{places:?}");
+    }
+}
+
+#[test]
+fn the_present_moment_is_on_the_curve() {
+    let (scene, frames) = with_strip(Diagnostic::ShapeError, [0, 4, 57, 180]);
+    for (frame, picture) in frames.iter().zip(pictures(&scene, &frames)) {
+        // For each panel the other run's curve, the moment, the own curve, a halo and a dot.
+        assert_eq!(picture.curves.len(), 10);
+        for (run, curves) in frame.runs.iter().zip(picture.curves.chunks(5)) {
+            let [_, moment, own, _, dot] = curves else { panic!("five curves") };
+            let ends = [own.points[0][0], own.points[own.points.len() - 1][0]];
+            let expected = ends[0] + (ends[1] - ends[0]) * (run.snapshot.time / scene.duration) as f32;
+            assert!((moment.points[0][0] - expected).abs() < 0.3, "{} for {expected}", moment.points[0][0]);
+            let [x, y] = dot.points[0];
+            assert_eq!(x, moment.points[0][0]);
+            let off = own.points.windows(2).map(|two| off_segment([x, y], two)).fold(f32::MAX, f32::min);
+            assert!(off < 0.15, "{off}");
+            // A shape model is solid, one with springs dashed.
+            assert_eq!((own.dash.is_some(), own.colour), (run.run == 1, picture.palette.arrows[run.run]));
+        }
+    }
+}
+
+#[test]
+fn the_present_moment_is_at_its_pixel() {
+    let Some(gpu) = gpu("the_present_moment_is_at_its_pixel") else { return };
+    for theme in [Theme::Light, Theme::Dark] {
+        let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
+        scene.view.theme = theme;
+        let [picture] = pictures(&scene, &frames);
+        let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+        let image = renderer.draw(&picture).expect("the device works");
+        let ground = picture.palette.background;
+        let off = |x: u32, y: u32| -> u32 {
+            image.get_pixel(x, y).0.iter().zip(ground).map(|(&a, b)| u32::from(a.abs_diff(b))).sum()
+        };
+        for moment in moments(&picture) {
+            let [[x, top], [_, bottom]] = moment.points[..] else { panic!("two ends") };
+            let column = x.floor() as u32;
+            let rows = (top as u32 + 2)..(bottom as u32 - 1);
+            let seen = |column: u32| rows.clone().filter(|&row| off(column, row) > 150).count();
+            // Two neighbours share a line between them; elsewhere only other curves and hairlines are crossed.
+            let here = rows.clone().filter(|&row| (column - 1..=column + 1).map(|x| off(x, row)).sum::<u32>() > 300);
+            assert!(here.count() > rows.len() / 2, "{theme:?}");
+            for beside in [column - 12, column + 12] {
+                assert!(seen(beside) < rows.len() / 4, "{theme:?}: {}", seen(beside));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_frame_composed_alone_has_the_same_strips() {
+    let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 9]);
+    let pictures = pictures(&scene, &frames);
+    assert_eq!(compose(&scene, &frames[1]), pictures[1]);
+    // Of one run alone, without the other behind it and by its own scale.
+    let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
+    let [own, halo, dot] = &compose(&scene, &alone).curves[1..] else { panic!("a moment, a curve and a dot") };
+    assert!(own.points.len() == 2 && own.dash.is_none() && halo.points == dot.points);
+    // Nobody who says nothing of the scene's course gets one made up.
+    assert!(Composer::new(&scene).compose(&frames[1]).curves.is_empty());
+}
+
+#[test]
+fn any_size_has_room_for_strips_or_none() {
+    let (mut scene, [frame]) = with_strip(Diagnostic::ShapeError, [4]);
+    let history = History::new(&scene, &[0, 1]);
+    let sizes = [
+        ([1, 1], Some(false)),
+        ([64, 64], Some(false)),
+        ([333, 77], Some(false)),
+        ([65, 1025], None),
+        ([240, 240], None),
+        ([640, 360], Some(true)),
+        ([480, 720], Some(true)),
+        ([1280, 720], Some(true)),
+        ([3840, 2160], Some(true)),
+    ];
+    for (size, any) in sizes {
+        for columns in [1, 2] {
+            scene.view.size = size;
+            scene.view.columns = columns;
+            let mut composer = Composer::new(&scene);
+            composer.set_history(&history);
+            let picture = composer.compose(&frame);
+            assert!(any.is_none_or(|any| any != picture.curves.is_empty()), "{size:?} {columns}");
+            for run in &picture.words {
+                assert!(run.span[0] >= 0.0 && run.span[1] <= size[0] as f32, "{size:?} {columns}: {run:?}");
+                assert!(run.baseline <= size[1] as f32, "{size:?} {columns}: {run:?}");
+            }
+            for (at, one) in picture.words.iter().enumerate() {
+                for other in &picture.words[..at] {
+                    let beside = one.span[1] <= other.span[0] || other.span[1] <= one.span[0];
+                    let apart = (one.baseline - other.baseline).abs() >= 0.85 * one.size.min(other.size);
+                    assert!(beside || apart, "{size:?} {columns}: `{}` and `{}`", one.text, other.text);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_model_does_not_have_is_said() {
+    let (scene, [frame]) = with_strip(Diagnostic::Residual, [4]);
+    let picture = compose(&scene, &frame);
+    let notes: Vec<_> = picture.words.iter().filter(|run| run.text.contains("rad/s²")).collect();
+    let [shape, springs] = notes[..] else { panic!("two notes") };
+    assert_eq!((shape.text.as_str(), springs.text.as_str()), (" (rad/s²)", " (rad/s²): none"));
+    // The other run's curve is still behind it.
+    assert_eq!(picture.curves.iter().filter(|curve| curve.points.len() > 2).count(), 2);
+
+    let springs = Frame { runs: vec![frame.runs[1].clone()], ..frame };
+    let picture = compose(&scene, &springs);
+    assert!(picture.words.iter().any(|run| run.text == ": none"));
+    assert_eq!(picture.curves.len(), 1);
+}
+
+#[test]
+fn a_run_that_blows_up_ends_with_a_cross() {
+    let text = include_str!("../../scenes/explicit-euler.toml").replace("[view]", "[view]\nstrip = 'energy'");
+    let scene = Scene::parse(&text, "explicit-euler.toml", &Limits::default()).expect("sound");
+    let mut sequence = Sequence::new(&scene, &[1, 2]);
+    let frame = sequence.frame(scene.last_frame());
+    let Status::Diverged(divergence) = frame.runs[1].snapshot.status else { panic!("this one blows up") };
+    let picture = compose(&scene, &frame);
+    let is_arm =
+        |curve: &&Curve| matches!(curve.points[..], [[left, _], [right, _]] if (2.0..20.0).contains(&(right - left)));
+    let arms: Vec<_> = picture.curves.iter().filter(is_arm).collect();
+    assert_eq!(arms.len(), 4, "two in each strip");
+    let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
+    let of_calm = picture.curves.iter().rfind(|curve| curve.points.len() > 1 && curve.colour == arms[0].colour);
+    let of_calm = of_calm.expect("a curve");
+    assert!(middle(arms[0]) == middle(arms[1]) && !of_calm.points.is_empty());
+    // It says when: as a part of the way from the first moment to the last, which the line of the moment now shows.
+    let now = moments(&picture)[0].points[0][0];
+    let [start] = [picture.curves[0].points[0][0]];
+    let expected = start + (now - start) * (divergence.time / frame.time) as f32;
+    assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
+    // The one that goes on is not flattened, and ends with a dot.
+    assert_eq!(dots(&picture).len(), 2);
+    assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=720.0).contains(y)));
+}
+
+/// However many pieces a curve has, it looks like one.
+#[test]
+fn joints_do_not_show() {
+    let Some(gpu) = gpu("joints_do_not_show") else { return };
+    let (mut scene, frame) = fig4b(0);
+    scene.view.size = [200, 100];
+    let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
+    let mut draw = |points: Vec<[f32; 2]>, dash| {
+        let mut picture = compose(&scene, &frame);
+        picture.panels.clear();
+        picture.marks.clear();
+        picture.words.clear();
+        picture.curves = vec![Curve { points, width: 2.2, dash, colour: [0, 0, 0], alpha: 0.5 }];
+        renderer.draw(&picture).expect("the device works")
+    };
+    for (from, to) in [([10.0, 20.3], [190.0, 20.3]), ([10.0, 10.0], [190.0, 77.0]), ([99.7, 95.0], [102.0, 5.0])] {
+        for dash in [None, Some([7.0, 4.0])] {
+            let at = |share: f32| [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
+            let whole = draw(vec![from, to], dash);
+            let pieces = draw((0..=60).map(|at_piece| at(at_piece as f32 / 60.0)).collect(), dash);
+            let off = whole.iter().zip(pieces.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(off <= Some(3), "{from:?} {to:?} {dash:?}: {off:?}");
+            assert!(whole.pixels().any(|pixel| pixel[0] < 160));
+        }
+    }
+    // Nowhere is it darker than its own opacity, also where it turns sharply.
+    let zigzag = (0..30).map(|at| [10.0 + 3.0 * at as f32, if at % 2 == 0 { 20.0 } else { 80.0 }]).collect();
+    let darkest = draw(zigzag, None).pixels().map(|pixel| pixel[0]).min();
+    assert!(darkest >= Some(124), "{darkest:?}");
+}

@@ -1,0 +1,293 @@
+//! Colours, type and lines: good ones mean what they say, and every mistake is explained.
+
+use super::mistakes::{PLANE, case};
+use super::{WORLD, good};
+use localshape::colour::{Sight, contrast, difference};
+use localshape::scene::{ColourMap, Limits, Look, Palette, Scene, SceneError, Theme};
+
+const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
+const SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
+
+/// A scene whose view says something.
+fn with(view: &str) -> String {
+    format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[view]\n{view}\n")
+}
+
+fn look(view: &str) -> Look {
+    good(&with(view)).view.look
+}
+
+#[test]
+fn a_scene_that_says_nothing_has_the_look_of_its_theme() {
+    assert_eq!(look(""), Look::of(Theme::Light));
+    assert_eq!(look("theme = 'dark'"), Look::of(Theme::Dark));
+    assert_eq!(look("theme = 'dark'\ncolours = {}\ntext_scale = 1"), Look::of(Theme::Dark));
+}
+
+#[test]
+fn colours_are_taken_as_typed() {
+    let look =
+        look("colours = { body = 'DarkSeaGreen', turned_over = '#82f', text = '#102030', arrow = 'rgb(9 8 7)' }");
+    let Palette { sound, alarm, text, arrows, .. } = look.palette;
+    assert_eq!((sound, alarm, text), ([143, 188, 143], [0x88, 0x22, 0xff], [0x10, 0x20, 0x30]));
+    assert_eq!(arrows, [[9, 8, 7]; 2]);
+    assert!(!look.transparent);
+}
+
+#[test]
+fn a_background_takes_the_theme_whose_text_can_be_read_on_it() {
+    for (view, theme, background) in [
+        ("background = 'black'", Theme::Dark, [0; 3]),
+        ("background = '#102040'\ntheme = 'light'", Theme::Dark, [0x10, 0x20, 0x40]),
+        ("background = 'ivory'\ntheme = 'dark'", Theme::Light, [255, 255, 240]),
+        ("background = 'ivory'", Theme::Light, [255, 255, 240]),
+    ] {
+        let look = look(view);
+        assert_eq!((look.theme, look.palette.background), (theme, background), "{view}");
+        for text in [look.palette.text, look.palette.second_text, look.palette.alarm_text] {
+            assert!(contrast(text, background) >= 4.5, "{view}: {text:x?}");
+        }
+    }
+    let transparent = look("background = 'transparent'");
+    assert_eq!(transparent, Look { transparent: true, ..Look::of(Theme::Light) });
+}
+
+#[test]
+fn scales_have_named_colours_and_factors() {
+    let scene = good(&with("colour = { by = 'speed', map = 'viridis' }\ntext_scale = 1.5\nline_scale = 0.5"));
+    assert_eq!(scene.view.colour.map(|colour| colour.map), Some(ColourMap::Viridis));
+    assert_eq!((scene.view.look.text_scale, scene.view.look.line_scale), (1.5, 0.5));
+    let usual = good(&with("colour = { by = 'speed' }"));
+    assert_eq!(usual.view.colour.map(|colour| colour.map), Some(ColourMap::MintIndigo));
+}
+
+#[test]
+fn the_digest_follows_what_colours_mean() {
+    let digest = |view: &str| good(&with(view)).digest;
+    let plain = digest("");
+    for same in ["colours = {}", "text_scale = 1", "line_scale = 1.0"] {
+        assert_eq!(digest(same), plain, "{same}");
+    }
+    assert_eq!(digest("colours.body = 'steelblue'"), digest("colours = { body = '#4682B4' }"));
+    assert_eq!(digest("background = 'white'"), digest("background = '#fff'"));
+    assert_eq!(digest("colour.by = 'speed'"), digest("colour = { by = 'speed', map = 'mint-indigo' }"));
+    let mut all: Vec<_> = [
+        "",
+        "background = 'white'",
+        "background = 'transparent'",
+        "colours.body = 'white'",
+        "colours.node = 'white'",
+        "text_scale = 1.1",
+        "line_scale = 1.1",
+        "colour.by = 'speed'",
+        "colour = { by = 'speed', map = 'greys' }",
+    ]
+    .map(digest)
+    .to_vec();
+    all.sort();
+    all.dedup();
+    assert_eq!(all.len(), 9);
+}
+
+#[track_caller]
+fn view(to: &str, expected: &[(usize, usize, &str)]) {
+    case(PLANE, "size = [640, 360]", to, expected);
+}
+
+#[test]
+fn mistakes_of_colours() {
+    view(
+        "background = 'transparant'",
+        &[(20, 14, "`view.background` is \"transparant\"; expected digits such as \"#93a5ba\" or a name of CSS")],
+    );
+    view("background = 'transparant'", &[(20, 14, "or \"transparent\" did you mean \"transparent\"?")]);
+    view("background = '#ffffff00'", &[(20, 14, "neither opaque nor nothing; expected \"transparent\" or an opaque")]);
+    view("background = 7", &[(20, 14, "is the whole number 7; expected a string What is behind everything")]);
+    view(
+        "colours = { body = 'stelblue' }",
+        &[(
+            20,
+            20,
+            "`view.colours.body` is \"stelblue\"; expected digits such as \"#93a5ba\" or a name of CSS such as",
+        )],
+    );
+    view("colours = { body = 'stelblue' }", &[(20, 20, "did you mean \"steelblue\"?")]);
+    view("colours = { body = '93a5ba' }", &[(20, 20, "write \"#93a5ba\"")]);
+    view("colours = { body = '#93a5b' }", &[(20, 20, "expected three or six digits, such as \"#93a5ba\"")]);
+    view("colours = { body = '#93a5ba80' }", &[(20, 20, ", which something shows through; expected an opaque colour")]);
+    view("colours = { grid = 'transparent' }", &[(20, 20, "only `view.background` can be \"transparent\"")]);
+    view("colours = { grid = '' }", &[(20, 20, "`view.colours.grid` is \"\"; expected digits")]);
+    view("colours = { bodi = 'red' }", &[(20, 13, "unknown key `bodi` in `view.colours` did you mean `body`?")]);
+    view("colours = { turnedover = 'red' }", &[(20, 13, "did you mean `turned_over`?")]);
+    view("colours = ['red']", &[(20, 11, "`view.colours` is an array of 1; expected a table")]);
+    view("color = 'red'", &[(20, 1, "unknown key `color` in `view` did you mean `colour`?")]);
+    // All of them at once.
+    view("colours = { body = 'x', edge = 'y' }", &[(20, 20, "`view.colours.body`"), (20, 32, "`view.colours.edge`")]);
+}
+
+#[test]
+fn words_that_cannot_be_read_are_refused() {
+    view(
+        "colours = { text = '#aab' }",
+        &[(
+            20,
+            20,
+            "`view.colours.text` has a contrast of 2.2 to 1 with the background #fbfbfa; expected at least 4.5",
+        )],
+    );
+    view(
+        "colours = { text = '#aab' }",
+        &[(20, 20, "make the text darker, or leave it out: it follows the background")],
+    );
+    view("background = '#203040'\ncolours = { text = '#333' }", &[(21, 20, "make the text lighter")]);
+    view("background = 'white'\ncolours = { text = 'ivory' }", &[(21, 20, "a contrast of 1 to 1 with the background")]);
+}
+
+#[test]
+fn turned_over_elements_that_anybody_could_overlook_are_refused() {
+    view(
+        "colours = { turned_over = '#8fa0c0' }",
+        &[(20, 27, "`view.colours.turned_over` is too like the body's #93a5ba in space: to eyes")],
+    );
+    view("colours = { turned_over = '#8fa0c0' }", &[(20, 27, "(CIEDE2000); expected at least 20 choose another hue")]);
+    view(
+        "colours = { body = 'coral' }",
+        &[(20, 20, "`view.colours.body` is too like that of turned-over elements, #e2661c")],
+    );
+    // A red and a green that most can tell.
+    let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
+    let [body, alarm] = [[0x7c, 0x8c, 0x40], [0xb8, 0x70, 0x3c]];
+    assert!(difference(body, alarm, Sight::Usual) > 25.0);
+    assert!(difference(body, alarm, Sight::Deuteranopia) < 20.0);
+    view(colours, &[(20, 45, "to eyes without green cones (deuteranopia) they differ by")]);
+}
+
+#[test]
+fn mistakes_of_maps_and_factors() {
+    view(
+        "colour = { by = 'speed', map = 'jet' }",
+        &[(
+            20,
+            32,
+            "is \"jet\"; expected \"mint-indigo\", \"viridis\", \"cividis\", \"magma\", \"greys\" or \"purple-green\"",
+        )],
+    );
+    view("colour = { by = 'speed', map = 'viridiss' }", &[(20, 32, "did you mean \"viridis\"?")]);
+    view("text_scale = 0.4", &[(20, 14, "`view.text_scale` is 0.4; expected a number from 0.5 to 3")]);
+    view("text_scale = 3.1", &[(20, 14, "expected a number from 0.5 to 3")]);
+    view("text_scale = '2'", &[(20, 14, "is the string \"2\"; expected a number")]);
+    view("line_scale = 0", &[(20, 14, "`view.line_scale` is 0; expected a number from 0.25 to 4")]);
+    view("line_scale = 5", &[(20, 14, "expected a number from 0.25 to 4")]);
+}
+
+/// A folder with a scene that names fonts, and files beside it.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder"))
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) -> &Self {
+        std::fs::write(self.0.path().join(name), bytes).expect("a file");
+        self
+    }
+
+    fn load(&self, font: &str) -> Result<Scene, SceneError> {
+        let text = with(&format!("font = {{ {font} }}"));
+        self.file("scene.toml", text.as_bytes());
+        Scene::load(&self.0.path().join("scene.toml"), &Limits::default())
+    }
+
+    #[track_caller]
+    fn bad(&self, font: &str, column: usize, words: &[&str]) {
+        let error = self.load(font).expect_err("a mistake");
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        assert_eq!((mistake.line, mistake.column), (10, column), "{error}");
+        let told = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        words.iter().for_each(|words| assert!(told.contains(words), "{words:?} is not in\n{error}"));
+    }
+}
+
+#[test]
+fn fonts_are_found_beside_the_scene_and_count_by_what_is_in_them() {
+    let place = Place::new();
+    place.file("a.otf", FONT).file("b.otf", SEMI_BOLD);
+    let one = place.load("regular = 'a.otf'").unwrap();
+    assert_eq!(one.view.look.font.regular.as_deref(), Some(FONT));
+    assert_eq!(one.view.look.font.semi_bold, None);
+    let both = place.load("regular = 'a.otf', semi_bold = 'b.otf'").unwrap();
+    assert_eq!(both.view.look.font.semi_bold.as_deref(), Some(SEMI_BOLD));
+    let absolute = format!("regular = '{}'", place.0.path().join("a.otf").display());
+    let copied = place.file("c.otf", FONT).load("regular = 'c.otf'").unwrap();
+    assert_eq!(one.digest, copied.digest);
+    assert_eq!(one.digest, place.load(&absolute).unwrap().digest);
+    assert_ne!(one.digest, both.digest);
+    assert_ne!(one.digest, place.load("regular = 'b.otf'").unwrap().digest);
+    assert_ne!(one.digest, good(&with("")).digest);
+    // Nobody wants to read a font in a log.
+    assert!(format!("{:?}", one.view).len() < 5000);
+}
+
+#[test]
+fn mistakes_of_fonts() {
+    let place = Place::new();
+    place
+        .file("sans.otf", FONT)
+        .file("empty.ttf", b"")
+        .file("web.woff2", b"wOF2abcd")
+        .file("text.ttf", b"no font at all");
+    std::fs::create_dir(place.0.path().join("folder.ttf")).unwrap();
+    place.bad("regular = 'absent.ttf'", 20, &["`absent.ttf` is not there (looked for ", "absent.ttf)"]);
+    place.bad("regular = 'sanz.otf'", 20, &["`sanz.otf` is not there", "did you mean \"sans.otf\"?"]);
+    place.bad("regular = 'folder.ttf'", 20, &["`folder.ttf` is a folder; expected a TrueType or OpenType font"]);
+    place.bad("regular = 'empty.ttf'", 20, &["`empty.ttf` is empty; expected"]);
+    place.bad(
+        "regular = 'text.ttf'",
+        20,
+        &["`text.ttf` is no font; expected a TrueType or OpenType font (.ttf, .otf, .ttc)"],
+    );
+    place.bad("regular = 'web.woff2'", 20, &["`web.woff2` is a font packed for web pages (WOFF)"]);
+    place.bad("regular = 'sans.otf', semi_bold = 'text.ttf'", 44, &["`text.ttf` is no font"]);
+    place.bad("regular = ''", 20, &["`view.font.regular` is empty; expected at least 1"]);
+    place.bad("semi_bold = 'sans.otf'", 8, &["`view.font` has no `regular`"]);
+    place.bad("regular = 'sans.otf', bold = 'sans.otf'", 32, &["unknown key `bold` in `view.font`", "`semi_bold`"]);
+    let long = std::fs::File::create(place.0.path().join("long.ttf")).unwrap();
+    long.set_len((64 << 20) + 1).unwrap();
+    place.bad("regular = 'long.ttf'", 20, &["`long.ttf` is larger than 64 MiB, the most that a font may have"]);
+    view("font = 'sans.otf'", &[(20, 8, "`view.font` is the string \"sans.otf\"; expected a table")]);
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn fonts_that_are_damaged_or_lack_letters_are_refused() {
+    let place = Place::new();
+    place.file("cut.otf", &FONT[..300]).file("blank.otf", &without_letters());
+    place.bad("regular = 'cut.otf'", 20, &["`cut.otf` begins like a font but is damaged or cut short"]);
+    place.bad(
+        "regular = 'blank.otf'",
+        20,
+        &["`blank.otf` has no outline for 62 of the digits and Latin letters, '0' among them"],
+    );
+}
+
+/// The built-in font with a table of characters that knows none.
+#[cfg(feature = "render")]
+fn without_letters() -> Vec<u8> {
+    let mut bytes = FONT.to_vec();
+    let tables = usize::from(u16::from_be_bytes([bytes[4], bytes[5]]));
+    let entry = (0..tables).map(|at| 12 + 16 * at).find(|&at| &bytes[at..at + 4] == b"cmap").expect("a font has one");
+    let word = |bytes: &[u8], at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let start = word(&bytes, entry + 8);
+    // No subtable.
+    bytes[start + 2..start + 4].fill(0);
+    bytes
+}
+
+#[test]
+fn fonts_may_lie_in_a_folder_of_their_own() {
+    let place = Place::new();
+    std::fs::create_dir(place.0.path().join("fonts")).unwrap();
+    place.file("fonts/sans.otf", FONT);
+    assert!(place.load("regular = 'fonts/sans.otf'").is_ok());
+}
