@@ -121,8 +121,7 @@ mod tests {
             let body = Body::new(Dimension::Space, rest.clone(), mass, elements.clone(), Solids::Ordered, faces);
             let shell = Shell::new(&body);
             for seed in 0..40u64 {
-                let over: Vec<_> =
-                    (0..27).map(|at| (seed * seed * 0x9e37_79b9 >> at & 3) * u64::from(seed > 0) == 1).collect();
+                let over: Vec<_> = (0..27).map(|at| ((seed * seed * 0x9e37_79b9) >> at) & 3 == 1).collect();
                 let [sound, turned] = shell.boundaries(&body, &over);
                 assert_eq!(sound, by_definition(&body, &over, false), "{seed}");
                 assert_eq!(turned, by_definition(&body, &over, true), "{seed}");

@@ -209,11 +209,10 @@ impl Surroundings<'_> {
 
     /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
     fn cut(&self, faces: &[Side], total: usize) -> usize {
-        let affordable = match total {
-            ..=MANY_FACES => FINEST_CUT,
-            ..=VERY_MANY_FACES => 2,
-            _ => return 1,
-        };
+        if total > VERY_MANY_FACES {
+            return 1;
+        }
+        let affordable = if total > MANY_FACES { 2 } else { FINEST_CUT };
         let (mut nodes, mut largest) = (Vec::new(), 0.0_f64);
         for side in faces {
             self.corners(side, &mut nodes);

@@ -4,6 +4,7 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod inside;
 mod look;
 mod obstacles;
 mod pictures;

@@ -662,6 +662,10 @@ fn mistakes_of_what_is_shown() {
         "explode = 1\nshow = ['surfaces', 'springs']",
         &[(20, 1, "`view.explode` draws elements apart, where springs have no place")],
     );
+    view(
+        "explode = 1\nshow = ['surfaces', 'displacements']",
+        &[(20, 1, "`view.explode` draws elements apart, where displacements have no place")],
+    );
     view("spring_colour = {}", &[(20, 1, "`view.spring_colour` is given, but springs are not shown")]);
     view(
         "show = ['springs']\nspring_colour = { range = [1, 1] }",
