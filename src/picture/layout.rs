@@ -34,7 +34,7 @@ pub(super) fn cut(panel: Rectangle, scale: Scale, with_strip: bool) -> (Rectangl
     if !with_strip {
         return (panel, [left, top, 0, 0]);
     }
-    let strip = ((110.0 * scale.unit).round() as u32).min(height - 1);
+    let strip = ((110.0 * scale.unit).round() as u32).min(height.saturating_sub(1));
     let margin = (scale.margin().round() as u32).min(width / 2);
     let above = ((16.0 * scale.unit).round() as u32).min(height - strip);
     ([left, top, width, height - strip], [left + margin, top + height - strip - above, width - 2 * margin, strip])
