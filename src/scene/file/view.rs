@@ -171,7 +171,7 @@ impl Default for SpringColourFile {
 #[serde(deny_unknown_fields, default)]
 pub(in crate::scene) struct LightFile {
     /// Turn to the left around the vertical, from straight behind the viewer (rad); negative to the right. Default: 62°.
-    #[schemars(range(min = -3.1416, max = 3.1416))]
+    #[schemars(range(min = -3.15, max = 3.15))]
     pub(in crate::scene) azimuth: f64,
     /// Height above the horizon (rad). Default: 50°. It falls more steeply on bodies that fly high, or their shadows would
     /// leave the picture.
