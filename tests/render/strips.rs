@@ -4,7 +4,7 @@ use super::{fig4b, gpu};
 use localshape::history::History;
 use localshape::picture::{Composer, Curve, Mark, Picture, TextRun, compose};
 use localshape::render::Renderer;
-use localshape::scene::{Limits, Scene, Theme};
+use localshape::scene::{Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 
@@ -94,7 +94,7 @@ fn the_present_moment_is_at_its_pixel() {
     let Some(gpu) = gpu("the_present_moment_is_at_its_pixel") else { return };
     for theme in [Theme::Light, Theme::Dark] {
         let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
-        scene.view.theme = theme;
+        scene.view.look = Look::of(theme);
         let [picture] = pictures(&scene, &frames);
         let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
         let image = renderer.draw(&picture).expect("the device works");
