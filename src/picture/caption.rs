@@ -207,6 +207,10 @@ impl Writer<'_> {
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) -> f64 {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
+        // A number of which nobody says what it is says nothing.
+        if !Scale::legible(caption) && !number.is_loud {
+            return room.right;
+        }
         let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
         let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
         let value = self.fonts.width(&number.widest, weight, title).max(self.fonts.width(&number.value, weight, title));

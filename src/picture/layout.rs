@@ -34,6 +34,8 @@ const BELOW_STRIP: f64 = 22.0;
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
+/// Strips are no smaller than this part of the reference: they are read by their numbers.
+pub(super) const LEAST_STRIP_UNIT: f64 = 0.5;
 /// A strip takes at most this part of its panel.
 const STRIP_SHARE: f64 = 0.34;
 

@@ -3,7 +3,7 @@
 
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
-use super::layout::{Rectangle, Scale};
+use super::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::Colour;
 use super::text::{Fonts, Weight};
@@ -13,8 +13,6 @@ use crate::history::{Course, History};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
 
-/// Type is no smaller than this part of the reference: a strip is read by its numbers.
-const LEAST_UNIT: f64 = 0.5;
 /// Sizes of type (px in the reference picture).
 const NAME: f64 = 16.0;
 const NUMBERS: f64 = 14.0;
@@ -117,7 +115,7 @@ impl Strips {
 
     /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, rectangle: Rectangle, shown: &RunFrame) {
-        let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_UNIT));
+        let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_STRIP_UNIT));
         let [left, top, width, height] = rectangle.map(f64::from);
         let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
         let chart = Chart { left, right: left + width, top, bottom, unit };
