@@ -32,6 +32,8 @@ const FLAT_STRIPE = 0.19;
 const THROUGH_DEPTH = 0.6;
 // The highest opacity stored of what one sees through: solid obstacles are told from surfaces by a higher one.
 const MOST_OPACITY = 252.0 / 255.0;
+// What lies behind with a higher alpha is no turned-over element but a solid obstacle.
+const SOLID_BEHIND = 0.99;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
 
@@ -126,14 +128,14 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     var colour = panel.sound * light.diffuse + light.gloss;
     let at = vec2<i32>(corner.place.xy);
     let behind = textureLoad(alarm_depth, at, 0);
-    let is_clear = panel.opacity < 1.0;
-    if is_clear && behind <= 0.0 {
-        return see_through(colour);
-    }
-    if is_clear {
+    if panel.opacity < 1.0 {
         let stored = textureLoad(alarm_colour, at, 0);
-        if stored.a > 0.99 {
+        if behind > 0.0 && stored.a > SOLID_BEHIND {
             return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity))), 1.0);
+        }
+        // In the plane, turned-over elements lie before sound ones.
+        if behind <= 0.0 || panel.flatness > 0.5 {
+            return see_through(colour);
         }
     }
     if behind > 0.0 && panel.flatness < 0.5 {

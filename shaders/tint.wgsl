@@ -72,12 +72,13 @@ fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = textureLoad(alarm_depth, at, 0);
     if panel.opacity < 1.0 {
-        if behind <= 0.0 {
+        let stored = textureLoad(alarm_colour, at, 0);
+        let is_solid = stored.a > SOLID_BEHIND;
+        if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
             return see_through(colour);
         }
         // Turned-over elements keep their own opacity: a little of the surface shows that it lies before them.
-        let stored = textureLoad(alarm_colour, at, 0);
-        let covering = select(panel.opacity * panel.opacity, panel.opacity, stored.a > 0.99);
+        let covering = select(panel.opacity * panel.opacity, panel.opacity, is_solid);
         return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, covering))), 1.0);
     }
     if behind > 0.0 && panel.flatness < 0.5 {

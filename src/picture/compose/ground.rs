@@ -115,7 +115,7 @@ impl Draft<'_> {
 
     /// The distance of the grid's lines (sides).
     pub(super) fn cell(&self) -> f64 {
-        cell(self.composer.extent / self.side)
+        cell(self.composer.extent * self.composer.spread / self.side)
     }
 }
 
