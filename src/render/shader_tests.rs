@@ -80,7 +80,8 @@ fn structs_are_laid_out_alike_on_both_sides() {
             outline,
             soft,
             region,
-            place
+            place,
+            opacity
         ]
     );
     same_layout!(

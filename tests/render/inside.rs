@@ -69,8 +69,9 @@ fn solids_are_seen_through_clear_surfaces_only() {
     // The ball is behind the plate of cubes and much smaller.
     let scene = |ball: &str, opacity: f64| {
         let text = format!(
-            "body.lattice = {{ cells = [4, 4, 1], side = 0.1 }}
-            run = [{{ model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            "time = {{ duration = 0.1 }}
+            body.lattice = {{ cells = [4, 4, 1], side = 0.1 }}
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
             obstacle = [{{ kind = 'floor' }}{ball}]
             [view]
             opacity = {opacity}
