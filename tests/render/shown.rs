@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 /// A scene with other cells, runs and view.
 fn scene(change: impl Fn(String) -> String) -> (Scene, Frame) {
-    let text = change(include_str!("../../scenes/fig4b.toml").to_owned());
+    let text = change(super::plain());
     let scene = Scene::parse(&text, "changed.toml", &Limits::default()).expect("the change keeps the scene sound");
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let frame = Sequence::new(&scene, &runs).frame(0);
