@@ -311,7 +311,9 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
         let top = if mark.along[0] < 0.0 { top - height } else { top };
         ([left, top, left + width, top + height], format!("{:?}", mark.shape))
     });
-    let key = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow && mark.colour == picture.palette.text);
+    // Below all panels there are no other arrows than that of the key.
+    let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max().unwrap_or(0) as f32;
+    let key = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow && mark.rectangle[1] > lowest);
     let key = key.map(|arrow| {
         let ([start, tip], half) = (ends(arrow), 0.5 * arrow.rectangle[3]);
         ([start.x, start.y - half, tip.x, tip.y + half], "key arrow".to_owned())
