@@ -96,7 +96,7 @@ impl Layout {
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(&view.look));
         let strip = |panel: Rectangle| {
             let [width, height] = [panel[2], panel[3]].map(f64::from);
-            let room = (STRIP * scale.type_unit()).min(STRIP_SHARE * height).round();
+            let room = (STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT))).min(STRIP_SHARE * height).round();
             let (side, below) = (scale.margin().min(width / 2.0), (BELOW_STRIP * scale.unit).min(room));
             let top = f64::from(title + panel[1]) + height - room;
             [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
