@@ -14,6 +14,7 @@ const EDGE = 0u;
 const ALARM_EDGE = 1u;
 const CONTOUR = 2u;
 const ALARM_CONTOUR = 3u;
+const BAR = 4u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
@@ -22,6 +23,9 @@ const OBSTACLE_CONTOUR = 9u;
 const HIDDEN = vec2<f32>(0.16, 0.62);
 const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
 
+// Half the width of the widest line (px in the reference picture). Strips that are as narrow as each line leave a drawing
+// driver (llvmpipe of Mesa 22.3) with a megabyte a frame that it does not free, and are no quicker.
+const REACH = 1.25;
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
@@ -30,6 +34,8 @@ const OFFSET = 0.0016;
 const STEP = 0.22;
 // By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
 const ROUND_STEP = 0.8;
+// Width of an element that is nothing but lines (px in the reference picture).
+const BAR_WIDTH = 2.2;
 // Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
 const SMALL_ELEMENT = 26.0;
 // Towards this size (px) edges fade out: so close together they would only flicker.
@@ -54,7 +60,7 @@ fn segment(
     let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
     let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    let place = strip_corner(corner, from_pixel, to_pixel, 0.5 * max(widest(kind), 1.0) + 0.5, size);
+    let place = strip_corner(corner, from_pixel, to_pixel, REACH * panel.line_scale + 1.0, size);
     return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind, strength);
 }
 
@@ -67,18 +73,6 @@ fn covered(distance: f32, width: f32) -> f32 {
     // Lines thinner than a pixel are fainter instead.
     let drawn = max(width, 1.0);
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
-}
-
-// The widest line of a kind (px).
-fn widest(kind: u32) -> f32 {
-    if panel.flatness > 0.5 {
-        return panel.line_scale * select(1.5, 2.5, kind == CONTOUR || kind == ALARM_CONTOUR);
-    }
-    switch kind {
-        case EDGE, OBSTACLE_EDGE: { return 1.15 * panel.line_scale; }
-        case ALARM_EDGE: { return 1.5 * panel.line_scale; }
-        default: { return 2.2 * panel.line_scale; }
-    }
 }
 
 // How much is seen of an edge, and how much of it lies behind a body.
@@ -170,6 +164,10 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
         let behind = mix(0.15, hidden_alpha.y, visible_share(at.depth * (1.0 + OFFSET), alarm));
         let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
         return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
+    }
+    if kind == BAR {
+        let seen = select(shares.x, 1.0, panel.flatness > 0.5);
+        return vec4((0.85 * seen + hidden_alpha.x * (1.0 - seen)) * covered(at.distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0);
     }
     if panel.flatness > 0.5 {
         return vec4(0.75 * strength * covered(at.distance, 1.5 * scale), 0.0, 0.0, 0.0);

@@ -52,7 +52,7 @@ impl Axis {
         if !(span > 0.0 && span.is_finite()) {
             // Nothing ever happens.
             let (ticks, texts) = if low == 0.0 { (vec![0.0], vec!["0".to_owned()]) } else { Default::default() };
-            return Self { range: [low * factor, low * factor + 1.0], ticks, texts, unit };
+            return Self { range: [low * factor, low * factor + (low * factor).abs().max(1.0)], ticks, texts, unit };
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;

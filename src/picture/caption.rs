@@ -7,8 +7,10 @@ use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
 use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
-use crate::sim::snapshot::{Snapshot, Status};
+use crate::sim::snapshot::{Divergence, Snapshot};
 
+/// What is said of a run that blew up.
+const DIVERGED: &str = "diverged";
 /// The widest times that a clock shows: room is kept for them, so that nothing moves when the digits change.
 const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
@@ -88,10 +90,10 @@ pub(super) struct Number {
 impl Writer<'_> {
     /// The title above all panels.
     pub(super) fn title(&mut self, around: Scale, width: f64, title: &str) {
-        let room = width - 2.0 * around.margin();
-        let title = self.fonts.shortened(title, Weight::SemiBold, TITLE * around.title(), room);
-        let size = TITLE * around.title();
-        self.left(&title, Weight::SemiBold, size, self.palette.text, around.margin(), around.row(TITLE_BASELINE));
+        // Its left edge is that of the panels' words.
+        let (margin, size) = (self.scale.margin(), TITLE * around.title());
+        let title = self.fonts.shortened(title, Weight::SemiBold, size, width - 2.0 * margin);
+        self.left(&title, Weight::SemiBold, size, self.palette.text, margin, around.row(TITLE_BASELINE));
     }
 
     /// The caption below all panels, with its first baseline at a height (px).
@@ -99,7 +101,7 @@ impl Writer<'_> {
         for (at, line) in lines.iter().enumerate() {
             let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.type_unit();
             let colour = self.palette.second_text;
-            self.left(line, Weight::Regular, around.caption(), colour, around.margin(), baseline);
+            self.left(line, Weight::Regular, around.caption(), colour, self.scale.margin(), baseline);
         }
     }
 
@@ -130,6 +132,7 @@ impl Writer<'_> {
     fn sample(&mut self, [left, middle]: [f64; 2], (colour, is_dashed): (Colour, bool)) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
+        let thickness = thickness * self.scale.line_factor;
         let mut piece = |from: f64, to: f64| {
             let thickness = thickness.round().max(1.0);
             let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness].map(narrow);
@@ -202,27 +205,36 @@ impl Writer<'_> {
         left + widest.max(self.fonts.width(&explained, Weight::Regular, caption))
     }
 
-    /// A number with what it is, lower right, if there is room for it right of `taken` (px). Says where it begins at the
-    /// widest (px).
-    pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) -> f64 {
+    /// Where numbers at the lower right begin at the widest (px), whatever becomes of the run.
+    pub(super) fn left_of_numbers(&self, panel: Rectangle, usual: &Number) -> f64 {
+        let room = Room::new(panel, self.scale);
+        let [title, caption] = [self.scale.title(), self.scale.caption()];
+        let wide = |text: &str, weight, size| self.fonts.width(text, weight, size);
+        let widest = [
+            wide(&usual.widest, Weight::Regular, title),
+            wide(&usual.wordings[0], Weight::Regular, caption),
+            wide(DIVERGED, Weight::SemiBold, title),
+        ];
+        room.right - widest.into_iter().fold(0.0, f64::max)
+    }
+
+    /// A number with what it is, lower right, if there is room for it right of `taken` (px).
+    pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         // A number of which nobody says what it is says nothing.
         if !Scale::legible(caption) && !number.is_loud {
-            return room.right;
+            return;
         }
         let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
         let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
         let value = self.fonts.width(&number.widest, weight, title).max(self.fonts.width(&number.value, weight, title));
         let fonts = self.fonts;
         let wide = |text: &str| fonts.width(text, Weight::Regular, caption);
-        let Some(wording) = number.wordings.iter().find(|text| wide(text).max(value) <= free) else {
-            return room.right;
-        };
+        let Some(wording) = number.wordings.iter().find(|text| wide(text).max(value) <= free) else { return };
         self.right(&number.value, weight, title, self.palette.text, room.right, room.top + lines.count);
         let colour = self.palette.second_text;
         self.right(wording, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
-        room.right - wide(wording).max(value)
     }
 
     /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
@@ -237,7 +249,7 @@ impl Writer<'_> {
             return;
         }
         let middle = between[0].midpoint(between[1]);
-        let [length, thickness] = [pixels.min(free), 2.0 * unit].map(|length| length.round().max(1.0));
+        let [length, thickness] = [pixels, 2.0 * self.scale.line()].map(|length| length.round().max(1.0));
         let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - BAR_HEIGHT * unit).round());
         let tick = (BAR_TICK * unit).round().max(thickness);
         let [first, last] = [left, left + length - thickness];
@@ -275,12 +287,14 @@ impl Writer<'_> {
                     shape: MarkShape::Filled,
                 });
             };
-            if left > 0.0 && height > 2.0 * inset {
+            // Beside strips it goes as far down as these.
+            let above_bottom = if place.strip.is_some() { 0.0 } else { inset };
+            if left > 0.0 && height > inset + above_bottom {
                 line([
                     left - (thickness / 2.0).floor(),
                     top + inset.round(),
                     thickness,
-                    (height - 2.0 * inset).round(),
+                    (height - inset - above_bottom).round(),
                 ]);
             }
             if top > first && width > 2.0 * inset {
@@ -302,17 +316,26 @@ impl Writer<'_> {
     }
 }
 
-/// Lines of a text that are at most `room` wide (px) at a size; longer words stand on lines of their own.
+/// Lines of a text that are at most `room` wide (px) at a size; longer words are cut.
 pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {
         let mut line = String::new();
         for word in paragraph.split_whitespace() {
             let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if line.is_empty() || fonts.width(&longer, Weight::Regular, size) <= room {
+            if fonts.width(&longer, Weight::Regular, size) <= room {
                 line = longer;
-            } else {
-                lines.push(std::mem::replace(&mut line, word.to_owned()));
+                continue;
+            }
+            if !line.is_empty() {
+                lines.push(std::mem::take(&mut line));
+            }
+            for character in word.chars() {
+                line.push(character);
+                if fonts.width(&line, Weight::Regular, size) > room && line.chars().count() > 1 {
+                    line.pop();
+                    lines.push(std::mem::replace(&mut line, character.to_string()));
+                }
             }
         }
         lines.push(line);
@@ -326,14 +349,16 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// The number at the lower right.
+/// What is said of a run that blew up.
+pub(super) fn divergence(divergence: &Divergence) -> Number {
+    let at = format!("at {}", number::time(divergence.time));
+    let value = DIVERGED.to_owned();
+    Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true }
+}
+
+/// The number at the lower right of a run that goes on.
 pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
     let words = |long: &str, short: &str| [long.to_owned(), short.to_owned()];
-    if let Status::Diverged(divergence) = snapshot.status {
-        let at = format!("at {}", number::time(divergence.time));
-        let value = "diverged".to_owned();
-        return Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true };
-    }
     if let Some(ratio) = area_ratio {
         let widest = "−0.00".to_owned();
         let wordings = words("smallest area ratio", "area ratio");
@@ -359,10 +384,11 @@ mod tests {
         let fonts = Fonts::default();
         let text = "One two three four five.\nA new line, anunusuallylongwordthatfitsnowhere end";
         let lines = wrapped(&fonts, text, 16.0, 120.0);
-        assert_eq!(lines.join(" "), text.replace('\n', " "));
+        let letters = |text: &str| text.split_whitespace().collect::<String>();
+        assert_eq!(letters(&lines.concat()), letters(text));
         assert!(lines.len() > 4 && lines.iter().any(|line| line.starts_with("A new")));
-        let fits = |line: &&String| fonts.width(line, Weight::Regular, 16.0) > 120.0;
-        assert_eq!(lines.iter().filter(fits).count(), 1, "{lines:?}");
+        let fits = |line: &String| fonts.width(line, Weight::Regular, 16.0) <= 120.0;
+        assert!(lines.iter().all(fits), "{lines:?}");
         assert!(wrapped(&fonts, "", 16.0, 120.0).is_empty());
     }
 }

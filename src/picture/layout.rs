@@ -36,6 +36,8 @@ const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
 /// Strips are no smaller than this part of the reference: they are read by their numbers.
 pub(super) const LEAST_STRIP_UNIT: f64 = 0.5;
+/// The words above and below a body take at most this part of its panel.
+const MOST_WORDS: f64 = 0.62;
 /// A strip takes at most this part of its panel.
 const STRIP_SHARE: f64 = 0.34;
 
@@ -68,6 +70,11 @@ pub(super) struct Layout {
     pub(super) panels: Vec<Place>,
     /// The part of the picture that the panels cover.
     pub(super) ground: Rectangle,
+    /// Whether there is room for the title, and for the keys of colours and arrows.
+    pub(super) has_title: bool,
+    pub(super) has_legend: bool,
+    /// For how many lines of the caption there is room.
+    pub(super) caption_lines: usize,
     /// Where the keys of colours and arrows begin (px from the top).
     pub(super) legend: u32,
     /// Height of the caption's first baseline (px from the top).
@@ -82,21 +89,32 @@ impl Layout {
         let rows = |length: f64| (length * around.unit).round() as u32;
         let title =
             if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(around.of_type(TITLE)) };
-        let caption = match caption_lines {
+        let caption_height = |lines: usize| match lines {
             0 => 0,
             lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION),
         };
-        // Whatever stands around them, panels keep half of the picture.
-        let [title, legend, caption] = match title + legend + caption <= size[1] / 2 {
-            true => [title, legend, caption],
-            false => [0; 3],
-        };
+        // Whatever stands around them, panels keep half of the picture: the title comes first, then the keys, and the
+        // caption has what is left.
+        let most = size[1] / 2;
+        let title = if title <= most { title } else { 0 };
+        let legend = if title + legend <= most { legend } else { 0 };
+        let fits = |lines: &usize| title + legend + caption_height(*lines) <= most;
+        let caption_lines = (0..=caption_lines).rev().find(fits).unwrap_or(0);
+        let caption = caption_height(caption_lines);
         let height = size[1] - title - legend - caption;
         let panels = panels([size[0], height], runs, view.columns);
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(&view.look));
+        let strip_height = |height: f64| match view.strip {
+            Some(_) => (STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT))).min(STRIP_SHARE * height).round(),
+            None => 0.0,
+        };
+        // However large the type is, bodies have some of their panel for themselves.
+        let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
+        let room = MOST_WORDS * (lowest - strip_height(lowest)) / rooms(view).iter().sum::<f64>();
+        let scale = Scale { unit: scale.unit.min(room), ..scale };
         let strip = |panel: Rectangle| {
             let [width, height] = [panel[2], panel[3]].map(f64::from);
-            let room = (STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT))).min(STRIP_SHARE * height).round();
+            let room = strip_height(height);
             let (side, below) = (scale.margin().min(width / 2.0), (BELOW_STRIP * scale.unit).min(room));
             let top = f64::from(title + panel[1]) + height - room;
             [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
@@ -114,6 +132,9 @@ impl Layout {
             around,
             panels: panels.into_iter().map(place).collect(),
             ground: [0, title, size[0], height],
+            has_title: title > 0,
+            has_legend: legend > 0,
+            caption_lines,
             legend: title + height,
             caption: f64::from(title + height + legend) + ABOVE_CAPTION * around.type_unit(),
         }
@@ -166,7 +187,7 @@ pub(super) struct Scale {
     /// How many times larger than usual type is, with its rows.
     type_factor: f64,
     /// How many times thicker than usual lines are.
-    line_factor: f64,
+    pub(super) line_factor: f64,
 }
 
 impl Scale {

@@ -260,6 +260,8 @@ pub enum LineKind {
     Contour = 2,
     /// The same of the turned-over set.
     AlarmContour = 3,
+    /// An edge of an element without faces, which nothing else shows.
+    Bar = 4,
     /// An edge of a solid obstacle.
     ObstacleEdge = 8,
     /// A place where the surface of a solid obstacle turns away from the viewer or ends at the floor.

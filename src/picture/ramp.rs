@@ -86,7 +86,7 @@ fn grey(share: f64) -> Oklab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::oklab;
+    use crate::colour::{Sight, contrast, difference, oklab};
     use crate::scene::Palette;
 
     const USUAL: ColourMap = ColourMap::MintIndigo;
@@ -161,10 +161,27 @@ mod tests {
         assert!(oklab(ramp[SHADES / 2]).chroma() < 0.02);
     }
 
+    #[test]
+    fn all_eyes_tell_shortened_springs_from_lengthened_ones() {
+        for theme in [Theme::Light, Theme::Dark] {
+            let ramp = ramp(ColourMap::VioletGreen, theme);
+            let [low, middle, high] = [0, SHADES / 2, SHADES - 1].map(|at| ramp[at]);
+            for sight in Sight::ALL {
+                for (one, other) in [(low, high), (low, middle), (middle, high)] {
+                    let found = difference(one, other, sight);
+                    assert!(found >= 15.0, "{theme:?} {}: {one:x?} and {other:x?} differ by {found}", sight.name());
+                }
+            }
+            // The middle is seen on the ground of its theme.
+            assert!(contrast(middle, Palette::of(theme).background) >= 1.8);
+        }
+    }
+
     /// `magma` is the one exception, and its description says so.
     #[test]
     fn nothing_is_taken_for_turned_over() {
-        let maps = [USUAL, ColourMap::Viridis, ColourMap::Cividis, ColourMap::Greys, ColourMap::PurpleGreen];
+        use ColourMap::{Cividis, Greys, PurpleGreen, VioletGreen, Viridis};
+        let maps = [USUAL, Viridis, Cividis, Greys, PurpleGreen, VioletGreen];
         for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
             let alarm = Palette::of(theme).alarm;
             for shade in ramp(map, theme) {

@@ -11,6 +11,7 @@ use super::{Curve, Mark, MarkShape};
 use crate::colour::mixed;
 use crate::history::{Course, History};
 use crate::scene::Scene;
+use crate::sim::body::Dimension;
 use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
 
 /// Sizes of type (px in the reference picture).
@@ -30,6 +31,8 @@ const GAP: f64 = 8.0;
 const TICK: f64 = 4.0;
 const ROWS_APART: f64 = 21.0;
 const COLUMNS_APART: f64 = 30.0;
+/// Where there are more other runs than this, they would only be a thicket, and take their time.
+const MOST_OTHERS: usize = 8;
 /// Ticks of values and of time, at most.
 const MOST_TICKS: usize = 4;
 const MOST_TIMES: usize = 6;
@@ -52,10 +55,7 @@ const OUTSIDE: f64 = 5.0;
 /// Curves are simplified as long as no point moves by more than this (px).
 const EXACT: f64 = 0.08;
 
-/// A run is wild if it blew up, or if its largest value is this many times that of an ordinary run and that of its own
-/// first half.
-const WILD: f64 = 20.0;
-/// What a wild run shows beyond this many times the largest value of the others sets no scale and leaves the chart.
+/// What a run that blew up shows beyond this many times the largest value of the others sets no scale and leaves the chart.
 const BEYOND: f64 = 3.0;
 /// The range holds zero unless zero is farther away than this many times its width.
 const NEAR_ZERO: f64 = 1.5;
@@ -66,6 +66,8 @@ const LEAST_RANGE: f64 = 0.02;
 #[derive(Debug)]
 pub(super) struct Strips {
     diagnostic: Diagnostic,
+    /// What a reader calls it.
+    name: &'static str,
     /// The last time shown (s).
     end: f64,
     lines: Vec<Line>,
@@ -92,8 +94,10 @@ struct Chart {
     right: f64,
     top: f64,
     bottom: f64,
-    /// Pixels for one pixel of the reference picture.
+    /// Pixels for one pixel of type in the reference picture.
     unit: f64,
+    /// Thickness of lines, in parts of that in the reference picture.
+    line: f64,
 }
 
 impl Strips {
@@ -110,7 +114,13 @@ impl Strips {
             }
         };
         let lines: Vec<_> = history.courses.iter().map(line).collect();
-        Self { diagnostic, end: history.end, range: range(&lines), lines }
+        // Counts blow up to the number of elements at the most, and all of them are shown.
+        let range = range(&lines, diagnostic != Diagnostic::TurnedOver);
+        let name = match (diagnostic, scene.body.dimension) {
+            (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
+            _ => diagnostic.name(),
+        };
+        Self { diagnostic, name, end: history.end, range, lines }
     }
 
     /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
@@ -118,7 +128,14 @@ impl Strips {
         let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_STRIP_UNIT));
         let [left, top, width, height] = rectangle.map(f64::from);
         let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
-        let chart = Chart { left, right: left + width, top, bottom, unit };
+        let chart = Chart {
+            left,
+            right: left + width,
+            top,
+            bottom,
+            unit,
+            line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
+        };
         let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_HEIGHT && Scale::legible(NUMBERS * unit);
         if !enough || self.end <= 0.0 {
             return;
@@ -134,7 +151,6 @@ impl Strips {
             (unit_text, Some(_)) => format!(" ({unit_text})"),
             (unit_text, None) => format!(" ({unit_text}): none"),
         };
-        self.name(writer, [left, top - (ABOVE - NAME_BASELINE) * unit, width], &note, unit);
         let numbers =
             values.iter().flat_map(|axis| &axis.texts).map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
         let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
@@ -142,6 +158,7 @@ impl Strips {
         if chart.right - chart.left < LEAST_WIDTH {
             return;
         }
+        self.write_name(writer, [left, top - (ABOVE - NAME_BASELINE) * unit, width], &note, unit);
         let times = chart.times(writer.fonts, self.end);
         if let Some(values) = &values {
             if let Some(own) = own.filter(|_| self.is_count()) {
@@ -152,7 +169,8 @@ impl Strips {
         chart.columns(writer, &times, values.is_none());
         let palette = writer.palette;
         if let Some(values) = &values {
-            for line in self.lines.iter().filter(|line| line.run != shown.run) {
+            let others = self.lines.iter().filter(|line| line.run != shown.run);
+            for line in others.filter(|_| self.lines.len() <= MOST_OTHERS + 1) {
                 let look = Look::new(OTHER, palette.arrows[usize::from(line.has_springs)], line.has_springs, FAINT);
                 self.line(writer, chart, [&times, values], line, look);
             }
@@ -176,13 +194,13 @@ impl Strips {
     }
 
     /// The name with a note behind it.
-    fn name(&self, writer: &mut Writer<'_>, [left, baseline, room]: [f64; 3], note: &str, unit: f64) {
+    fn write_name(&self, writer: &mut Writer<'_>, [left, baseline, room]: [f64; 3], note: &str, unit: f64) {
         let size = NAME * unit;
         let fonts = writer.fonts;
-        let name = fonts.shortened(self.diagnostic.name(), Weight::SemiBold, size, room);
+        let name = fonts.shortened(self.name, Weight::SemiBold, size, room);
         let after = left + fonts.width(&name, Weight::SemiBold, size);
         writer.words.push(writer.fonts.lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
-        if fonts.width(note, Weight::Regular, size) <= left + room - after {
+        if !note.is_empty() && fonts.width(note, Weight::Regular, size) <= left + room - after {
             // What is shortened would lose its space, so it is all or nothing.
             writer.words.push(writer.fonts.lay_out(
                 note,
@@ -202,8 +220,7 @@ impl Strips {
         if self.is_count() {
             points = steps(&points);
         }
-        let borders =
-            [chart.top, chart.bottom].map(|y| if y == chart.top { y - chart.outside() } else { y + chart.outside() });
+        let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
         let thickness = chart.thickness();
         let curve = |points: &[[f64; 2]], width: f64, dash: Option<[f32; 2]>| Curve {
             points: points.iter().map(|point| point.map(narrow)).collect(),
@@ -255,7 +272,7 @@ impl Chart {
 
     /// How thick lines are, in parts of those in the reference picture.
     fn thickness(self) -> f64 {
-        self.unit
+        self.line
     }
 
     /// Thickness of hairlines, in whole pixels.
@@ -333,7 +350,7 @@ impl Chart {
         }
         for [from, to, value] in pieces.into_iter().filter(|&[_, _, value]| value > 0.0) {
             let [left, right] = [from, to].map(|time| self.x(times, time).round());
-            let [top, bottom] = [value, 0.0].map(|value| self.y(values, value).round());
+            let [top, bottom] = [value, 0.0].map(|value| self.y(values, value).clamp(self.top, self.bottom).round());
             if right > left && bottom > top {
                 writer.marks.push(filled([left, top, right - left, bottom - top], colour));
             }
@@ -375,18 +392,10 @@ fn peak(points: &[[f64; 2]]) -> f64 {
     points.iter().fold(0.0, |most, [_, value]| value.abs().max(most))
 }
 
-/// The values that strips show: all of ordinary runs, and of wild ones what is not far beyond those.
-fn range(lines: &[Line]) -> Option<[f64; 2]> {
+/// The values that strips show: all of runs that go on, and of those that blew up what is not far beyond those.
+fn range(lines: &[Line], may_blow_up: bool) -> Option<[f64; 2]> {
     let with_values = || lines.iter().filter(|line| !line.points.is_empty());
-    let mut peaks: Vec<_> =
-        with_values().filter(|line| line.diverged.is_none()).map(|line| peak(&line.points)).collect();
-    peaks.sort_by(f64::total_cmp);
-    let ordinary = peaks.get(peaks.len().saturating_sub(1) / 2).copied();
-    let is_wild = |line: &Line| {
-        let grows = |most: f64| peak(&line.points) > WILD * most;
-        let first_half = &line.points[..line.points.len().div_ceil(2)];
-        line.diverged.is_some() || (ordinary.is_some_and(grows) && grows(peak(first_half)))
-    };
+    let is_wild = |line: &Line| may_blow_up && line.diverged.is_some();
     let calm = with_values().filter(|line| !is_wild(line)).map(|line| peak(&line.points)).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
@@ -500,7 +509,7 @@ mod tests {
 
     #[test]
     fn one_range_holds_all_runs_and_zero() {
-        let range = |lines: &[&[f64]]| range(&lines.iter().map(|values| line(values, false)).collect::<Vec<_>>());
+        let range = |lines: &[&[f64]]| range(&lines.iter().map(|values| line(values, false)).collect::<Vec<_>>(), true);
         assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
         assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
         // A short peak is no blow-up, and neither is one run that does much more than the other.
@@ -518,14 +527,16 @@ mod tests {
     fn what_blows_up_flattens_nothing() {
         let calm = line(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
         let blown = line(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
-        assert_eq!(range(&[calm, blown]), Some([0.0, 5.0]));
-        let growing = || line(&[1.0, 1.5, 2.0, 30.0, 1e3, 1e5], false);
-        assert_eq!(range(&[line(&[1.0, 2.0, 1.5], false), growing()]), Some([0.0, 2.0]));
+        assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
+        // What goes on is shown as it is, however late it begins.
+        let late = line(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
+        assert_eq!(range(&[line(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
+        // Counts are bounded by themselves.
+        let counted = line(&[0.0, 0.0, 8.0], true);
+        assert_eq!(range(&[line(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
         // Alone, half of its values count.
         let alone = line(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
-        assert_eq!(range(&[alone]), Some([0.0, 2.0]));
-        // Something happens late, but to all.
-        assert_eq!(range(&[growing(), growing()]), Some([0.0, 1e5]));
+        assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
     }
 
     #[test]

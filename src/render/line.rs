@@ -125,7 +125,7 @@ impl Way {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
         let reading = super::reading_shader(samples);
         let places = super::samples_shader(samples);
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, places, reading, obstacles, ALARM_SHADER, SHADER];
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, places, reading, obstacles, ALARM_SHADER, SHADER];
         let module = shader(gpu, "line", &parts);
         let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
         if among {

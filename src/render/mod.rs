@@ -40,7 +40,7 @@ use panel::Panels;
 use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
-const STRIP_SHADER: &str = include_str!("../../shaders/strip.wgsl");
+const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
 const ONE_SAMPLE_SHADER: &str = include_str!("../../shaders/one_sample.wgsl");
 const FOUR_SAMPLES_SHADER: &str = include_str!("../../shaders/four_samples.wgsl");
 const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");

@@ -194,7 +194,7 @@ impl Slabs {
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
         let reading = [super::samples_shader(samples), super::reading_shader(samples)];
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading[0], reading[1], PANE_SHADER];
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, reading[0], reading[1], PANE_SHADER];
         let module = shader(gpu, "pane", &parts);
         let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
         let group = group_layout(gpu, "pane", &entries);

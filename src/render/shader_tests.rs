@@ -4,8 +4,8 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SINGLE_SHADER, STRIP_SHADER, composite,
-    curve, ground, line, obstacle, overlay, stroke, surface, tint,
+    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SEGMENT_SHADER, SINGLE_SHADER,
+    composite, curve, ground, line, obstacle, overlay, stroke, surface, tint,
 };
 use std::mem::offset_of;
 
@@ -29,11 +29,11 @@ fn shaders_are_valid() {
     for [places, reading] in [[ONE_SAMPLE_SHADER, SINGLE_SHADER], [FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER]] {
         parse(&[PANEL_SHADER, places, surface::SHADER, obstacle::SHADER]);
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
+            parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
         }
-        parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, obstacle::PANE_SHADER]);
+        parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
-        parse(&[PANEL_SHADER, STRIP_SHADER, places, reading, stroke::SHADER]);
+        parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, stroke::SHADER]);
     }
 }
 

@@ -45,7 +45,7 @@ impl Strokes {
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
         let reading = [super::samples_shader(samples), super::reading_shader(samples)];
-        let parts = [super::PANEL_SHADER, super::STRIP_SHADER, reading[0], reading[1], SHADER];
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, reading[0], reading[1], SHADER];
         let module = shader(gpu, "stroke", &parts);
         let layout = group_layout(gpu, "depth of bodies", &[texture_entry(1, true, samples)]);
         let recipe = Recipe {

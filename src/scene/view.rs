@@ -53,7 +53,7 @@ pub struct View {
     pub light: Light,
     /// Whether there are shadows.
     pub shadow: bool,
-    /// How the floor is drawn in space.
+    /// How floors are drawn.
     pub floor: FloorStyle,
     /// Whether edges in front, and edges behind the body, are drawn.
     pub edges: [bool; 2],
@@ -130,11 +130,11 @@ impl Default for Light {
     }
 }
 
-/// How the floor is drawn in space.
+/// How floors are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FloorStyle {
-    /// With a grid of one cell for each edge of an element.
+    /// In space with a grid of one cell for each edge of an element.
     #[default]
     Grid,
     /// Without a grid.

@@ -40,14 +40,15 @@ fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
     let outside =
         ["std::fs", "std::io", "std::time", "std::env", "std::net", "std::process", "std::thread", "println!"];
     assert_eq!(offenders("sim", &outside), [""; 0]);
-    let rooms = ["scene", "sequence", "picture", "gpu", "render", "output", "cli"].map(|room| format!("crate::{room}"));
+    let rooms = ["scene", "sequence", "history", "colour", "picture", "gpu", "render", "output", "cli"]
+        .map(|room| format!("crate::{room}"));
     assert_eq!(offenders("sim", &rooms.each_ref().map(String::as_str)), [""; 0]);
     assert_eq!(offenders("sim", &["wgpu", "ThreadPoolBuilder"]), [""; 0]);
 }
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["sim", "scene", "picture", "output", "cli"] {
+    for room in ["sim", "colour", "scene", "picture", "output", "cli"] {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
@@ -67,6 +68,7 @@ fn nothing_flows_back() {
         offenders("scene", &["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"]),
         [""; 0]
     );
+    assert_eq!(offenders("colour", &["crate::"]), [""; 0]);
     assert_eq!(offenders("picture", &["crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);

@@ -390,6 +390,6 @@ fn an_element_without_faces_is_drawn_from_its_middle() {
     let (_, picture) = one_element(nodes, 7);
     let panel = &picture.panels[0];
     assert_eq!(panel.lines.len(), 7);
-    assert!(panel.lines.iter().all(|line| line.kind == LineKind::Edge && line.from == panel.lines[0].from));
+    assert!(panel.lines.iter().all(|line| line.kind == LineKind::Bar && line.from == panel.lines[0].from));
     assert!(panel.region[2] > 50 && panel.region[3] > 50);
 }

@@ -199,7 +199,7 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
     let of_calm = picture.curves.iter().rfind(|curve| curve.points.len() > 1 && curve.colour == arms[0].colour);
     let of_calm = of_calm.expect("a curve");
-    assert!(middle(arms[0]) == middle(arms[1]) && !of_calm.points.is_empty());
+    assert_eq!(middle(arms[0]), middle(arms[1]));
     // It says when: as a part of the way from the first moment to the last, which the line of the moment now shows.
     let now = moments(&picture)[0].points[0][0];
     let [start] = [picture.curves[0].points[0][0]];
@@ -207,6 +207,9 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
     // The one that goes on is not flattened, and ends with a dot.
     assert_eq!(dots(&picture).len(), 2);
+    let heights = of_calm.points.iter().map(|[_, y]| *y);
+    let [low, high] = heights.fold([f32::MAX, f32::MIN], |[low, high], y| [low.min(y), high.max(y)]);
+    assert!(high - low > 5.0, "the calm curve is {} px high", high - low);
     assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=720.0).contains(y)));
 }
 

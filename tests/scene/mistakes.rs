@@ -655,6 +655,8 @@ fn mistakes_of_what_is_shown() {
     view("colour = { range = [0, 1] }", &[(20, 10, "`view.colour` has no `by`")]);
     view("colour = { by = 'speed', range = [3, 1] }", &[(20, 34, "runs from 3 to 1; expected a rising range")]);
     view("colour = { by = 'speed', range = [0, inf] }", &[(20, 38, "is inf; expected a finite number")]);
+    view("title = \"a\\nb\"", &[(20, 9, "holds the control character")]);
+    view("caption = \"a\\tb\"", &[(20, 11, "holds the control character '\\t'; it is lines of text")]);
     view("strip = 'turned over'", &[(20, 9, "did you mean \"turned_over\"?")]);
     view("opacity = 0", &[(20, 11, "expected a number from 0.1 to 1")]);
     view("explode = -1", &[(20, 11, "expected a number from 0 to 3")]);
@@ -672,7 +674,8 @@ fn mistakes_of_what_is_shown() {
         &[(21, 27, "`view.spring_colour.range` runs from 1 to 1; expected a rising range")],
     );
     view("labels = ['title']", &[(20, 11, "expected \"name\", \"model\", \"clock\", \"count\" or \"number\"")]);
-    view("light = { elevation = 0 }", &[(20, 23, "expected a number from 0.1 to 1.57")]);
+    view("light = { elevation = 0 }", &[(20, 23, "expected a number from 0.2 to 1.57")]);
+    view("colours = { floor = '#333' }", &[(20, 21, "words on `view.colours.floor` would have a contrast of")]);
     view("floor = 'tiles'", &[(20, 9, "expected \"grid\", \"plain\" or \"none\"")]);
     view("edges = 'none'", &[(20, 9, "expected \"all\", \"visible\" or \"outline\"")]);
     view("show = []", &[(20, 8, "`view.show` is empty; expected at least 1")]);
@@ -680,4 +683,17 @@ fn mistakes_of_what_is_shown() {
     view("arrow_scale = 0", &[(20, 15, "expected a number greater than 0")]);
     view("panels = 'rows'", &[(20, 10, "did you mean \"row\"?")]);
     view("panels = 'row'\ncolumns = 2", &[(21, 1, "exclude each other")]);
+}
+
+#[test]
+fn cameras_that_see_nothing() {
+    let camera = |to: &str, expected: &[(usize, usize, &str)]| {
+        case(SPACE, "stiffness = 1e4 }", &format!("stiffness = 1e4 }}\n[view]\ncamera = {{ {to} }}"), expected);
+    };
+    camera(
+        "target = [0, 0.01, 0], distance = 0.02",
+        &[(10, 10, "inside the body at its start move it out with a larger `view.camera.distance`")],
+    );
+    camera("elevation = 1.5708", &[(10, 24, "is 1.5708; expected a number between -1.57 and 1.57")]);
+    camera("elevation = -1.6", &[(10, 24, "or the camera would look along its up-axis")]);
 }

@@ -47,7 +47,7 @@ impl Draft<'_> {
         for &element in &self.composer.bare {
             let nodes = &self.body.elements[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
-            let kind = if over { LineKind::AlarmEdge } else { LineKind::Edge };
+            let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
             let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind, strength: 1.0 });
             let at = |node: u32| self.position[node as usize];
             let edges = self.body.topology().edges_of(element);

@@ -35,6 +35,8 @@ use std::borrow::Cow;
 /// Bodies of more elements than this along a side have softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
 
+/// Captions are never longer than this (lines).
+const MOST_LINES: usize = 200;
 /// The scale bar is at most this long (px in the reference picture).
 const SCALE_BAR: f64 = 120.0;
 
@@ -182,6 +184,7 @@ impl<'a> Composer<'a> {
         let legend = self.legend(frame.runs.len());
         let caption = self.caption(frame.runs.len());
         let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
+        let legend = legend.filter(|_| layout.has_legend);
         let (scale, framing) = (layout.scale, self.framing(frame));
         let (marks, curves, words) = Default::default();
         let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
@@ -193,8 +196,10 @@ impl<'a> Composer<'a> {
                 place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
             }
         }
-        writer.title(layout.around, f64::from(size[0]), &view.title);
-        writer.caption(layout.around, &caption, layout.caption);
+        if layout.has_title {
+            writer.title(layout.around, f64::from(size[0]), &view.title);
+        }
+        writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
         if let Some((legend, place)) = legend.zip(layout.panels.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
             let bars = self.bars(frame);
@@ -221,7 +226,10 @@ impl<'a> Composer<'a> {
         if !Scale::legible(around.caption()) {
             return Vec::new();
         }
-        wrapped(&self.fonts, &view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin())
+        // Panels' margins are no wider than those around them.
+        let lines =
+            wrapped(&self.fonts, &view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin());
+        lines.into_iter().take(MOST_LINES).collect()
     }
 
     /// What the camera of all panels looks at.
@@ -258,10 +266,13 @@ impl<'a> Composer<'a> {
             if labels.count {
                 from = writer.count(viewport, &self.tally, &run.snapshot);
             }
-            if labels.number || matches!(run.snapshot.status, Status::Diverged(_)) {
-                let area_ratio = self.smallest_area_ratio(&run.snapshot);
-                to = writer.number(viewport, from, &caption::number(self.scene, &run.snapshot, area_ratio));
+            let usual = caption::number(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
+            match run.snapshot.status {
+                Status::Diverged(divergence) => writer.number(viewport, from, &caption::divergence(&divergence)),
+                Status::Ok if labels.number => writer.number(viewport, from, &usual),
+                Status::Ok => {}
             }
+            to = to.min(writer.left_of_numbers(viewport, &usual));
             // One camera for all panels, and so one bar.
             if view.scale_bar && at == 0 {
                 let room = to - from - 2.0 * writer.scale.gap();
@@ -346,6 +357,17 @@ impl<'a> Composer<'a> {
         let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
+}
+
+/// As many lines as there is room for; if that is not all of them, the last one ends in an ellipsis.
+fn cut(mut lines: Vec<String>, room: usize) -> Vec<String> {
+    let is_cut = lines.len() > room;
+    lines.truncate(room);
+    if let Some(last) = lines.last_mut().filter(|_| is_cut) {
+        last.pop();
+        last.push('…');
+    }
+    lines
 }
 
 /// The nodes that get arrows: those on the surface and those of elements without faces.

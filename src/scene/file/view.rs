@@ -26,10 +26,11 @@ pub(in crate::scene) struct ViewFile {
     pub(in crate::scene) colours: ColoursFile,
     /// The files of the font. Default: the font that is built in, which has Latin and Greek letters.
     pub(in crate::scene) font: Option<FontFile>,
-    /// How many times larger than usual all type is, with the rows it stands in.
+    /// How many times larger than usual all type is, with the rows it stands in. What has no room, or would be too small to
+    /// be read, is left out.
     #[schemars(range(min = 0.5, max = 3.0))]
     pub(in crate::scene) text_scale: f64,
-    /// How many times thicker than usual lines are, and how many times larger nodes and the signs on elements in the
+    /// How many times thicker than usual the lines of bodies, obstacles, strips and the scale bar are, and how many times larger nodes and the signs on elements in the
     /// plane.
     #[schemars(range(min = 0.25, max = 4.0))]
     pub(in crate::scene) line_scale: f64,
@@ -58,8 +59,9 @@ pub(in crate::scene) struct ViewFile {
     /// A title above all panels. Default: none.
     #[schemars(length(max = 200))]
     pub(in crate::scene) title: String,
-    /// A caption below all panels, set in lines as wide as the picture; `\n` begins a new line. Default: none.
-    #[schemars(length(max = 2000))]
+    /// A caption below all panels, set in lines as wide as the picture; `\n` begins a new line. Panels keep half of the
+    /// picture: what has no room is cut off and ends in an ellipsis. Default: none.
+    #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub(in crate::scene) caption: String,
     /// Whether each panel bears a letter before its name, a, b, c and so on, to speak of it in a text.
     pub(in crate::scene) letters: bool,
@@ -67,10 +69,10 @@ pub(in crate::scene) struct ViewFile {
     pub(in crate::scene) labels: Vec<LabelFile>,
     /// Whether a bar says how long a round length is (m): in space, at the distance of the point looked at.
     pub(in crate::scene) scale_bar: bool,
-    /// Whether keys say what colours and arrows mean, where there are any.
+    /// Whether keys say what colours and arrows mean, where there are any and room for them.
     pub(in crate::scene) legend: bool,
     /// A diagnostic drawn over time below each panel, with the present moment marked. The scene is then simulated once
-    /// before the first frame is drawn, so that every frame shows the whole course. Default: none.
+    /// before the first frame is drawn, so that every frame shows the whole course. Up to 8 other runs are drawn faintly behind. Default: none.
     pub(in crate::scene) strip: Option<Diagnostic>,
     /// Opacity of sound elements: below 1, what lies behind and within the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
@@ -82,11 +84,11 @@ pub(in crate::scene) struct ViewFile {
     /// Colours springs by their strain, the change of their length over their length at rest, instead of drawing them
     /// all alike. Default: no. Needs `"springs"` in `show`.
     pub(in crate::scene) spring_colour: Option<SpringColourFile>,
-    /// From where the light falls.
+    /// From where the light falls, in space.
     pub(in crate::scene) light: LightFile,
     /// Whether bodies and obstacles throw shadows on the floor.
     pub(in crate::scene) shadow: bool,
-    /// How the floor is drawn in space.
+    /// How floors are drawn: with a grid in space, without one, or not at all. In the plane none has a grid.
     pub(in crate::scene) floor: FloorStyle,
     /// Which lines are drawn on surfaces.
     pub(in crate::scene) edges: EdgesFile,
@@ -175,7 +177,7 @@ pub(in crate::scene) struct LightFile {
     pub(in crate::scene) azimuth: f64,
     /// Height above the horizon (rad). Default: 50°. It falls more steeply on bodies that fly high, or their shadows would
     /// leave the picture.
-    #[schemars(range(min = 0.1, max = 1.57))]
+    #[schemars(range(min = 0.2, max = 1.57))]
     pub(in crate::scene) elevation: f64,
 }
 

@@ -31,8 +31,19 @@ fn way(role: &str) -> [Way<'_>; 3] {
     [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
 }
 
-/// Words must be readable.
+/// Words must be readable, on the floor, too.
 fn check_text(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
+    if let Some(floor) = typed.floor.map(|floor| floor.0) {
+        let texts = [palette.text, palette.second_text, palette.alarm_text];
+        let found = texts.map(|text| contrast(text, floor)).into_iter().fold(f64::INFINITY, f64::min);
+        if found < LEAST_CONTRAST {
+            let message = format!(
+                "words on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
+                rounded_down(found)
+            );
+            report.at(&way("floor"), message, "bring the floor nearer to the background".to_owned());
+        }
+    }
     let Some(text) = typed.text.map(|text| text.0) else { return };
     let found = contrast(text, palette.background);
     if found < LEAST_CONTRAST {

@@ -117,6 +117,11 @@ pub(super) fn resolve(
             report.at_key(&at("spring_colour"), message, "add `\"springs\"` to `show`".to_owned());
             None
         }
+        Some(_) if scene.runs.iter().all(|run| run.model.springs().is_empty()) => {
+            let message = "`view.spring_colour` is given, but no run has springs".to_owned();
+            report.at_key(&at("spring_colour"), message, "take it out, or add a run with springs".to_owned());
+            None
+        }
         Some(springs) => {
             let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
             let range = rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?;
