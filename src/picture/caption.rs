@@ -189,7 +189,7 @@ impl Writer<'_> {
             &snapshot.turned_over,
             self.palette,
             self.scale,
-            0.42 * room.width(),
+            0.36 * room.width(),
             [room.left, bottom],
             &mut self.marks,
         );

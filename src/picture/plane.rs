@@ -19,8 +19,13 @@ pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 const NODE: f64 = 5.2;
 /// Radius of a ring arrow, and of the disc behind one of a turned-over element (px in the reference picture).
 const RING: [f64; 2] = [13.0, 17.0];
-/// Elements whose middle is nearer to a side than this get no arrow (px in the reference picture).
-const LEAST_ROOM: f64 = 18.0;
+/// Elements whose middle is nearer to a side than this get smaller arrows (px in the reference picture), down to this part
+/// of their size.
+const ROOMY: f64 = 18.0;
+const SMALLEST_SIGN: f64 = 0.35;
+const SMALLEST_ALARM: f64 = 0.7;
+/// Bodies of more elements than this have signs on turned-over ones alone.
+const MOST_SIGNS: usize = 16;
 /// Bodies of more nodes than this are drawn without arrows.
 const MANY_NODES: usize = 150;
 /// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
@@ -183,7 +188,9 @@ impl Flat<'_> {
                 if over { turned_over.push((corners, place)) } else { sound.push(place) }
             }
         }
-        for &place in &sound {
+        // Among many, only what is wrong is worth a sign.
+        let few = self.body.elements.len() <= MOST_SIGNS;
+        for &place in sound.iter().filter(|_| few) {
             self.sound_arrow(place, &turned_over, marks);
         }
         for &(_, place) in &turned_over {
@@ -217,20 +224,24 @@ impl Flat<'_> {
         let covered = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
             is_inside(polygon, middle) || disc.distance(middle) < (RING[0] + RING[1]) * unit
         };
-        if room > LEAST_ROOM * unit && !turned_over.iter().any(covered) {
+        // Where there is less room it is smaller, so that it does not come at once when the camera draws near.
+        let size = (room / (ROOMY * unit)).min(1.0);
+        if size > SMALLEST_SIGN && !turned_over.iter().any(covered) {
             let colour = self.palette.sign();
-            self.round(middle, RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
+            self.round(middle, size * RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
         }
     }
 
     /// The arrow of a turned-over element, on a disc of its own.
     fn alarm_arrow(&self, (middle, room): Place, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
-        if room > 0.55 * disc {
+        // A disc must not hide the element that it stands on.
+        let size = (room / (0.55 * disc)).min(1.0);
+        if size > SMALLEST_ALARM {
             let white = [255; 3];
-            self.round(middle, disc, white, white, MarkShape::Node, marks);
+            self.round(middle, size * disc, white, white, MarkShape::Node, marks);
             let colour = self.palette.alarm_on_white;
-            self.round(middle, ring, colour, colour, MarkShape::Clockwise, marks);
+            self.round(middle, size * ring, colour, colour, MarkShape::Clockwise, marks);
         }
     }
 
