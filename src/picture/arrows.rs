@@ -99,8 +99,8 @@ impl Arrows<'_> {
         marks.extend(arrows);
     }
 
-    /// The part of an arrow that lies where arrows may be, and how opaque it is: the shortest fade. The largest reach beyond that first, and without them the
-    /// small ones would tell a wrong tale.
+    /// The part of an arrow that lies where arrows may be, and how opaque it is: the shortest fade. The largest reach
+    /// beyond that first, and without them the small ones would tell a wrong tale.
     fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
         let [left, top, width, height] = self.room.map(f64::from);
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);

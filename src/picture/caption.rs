@@ -4,7 +4,7 @@ use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::{Colour, Palette};
 use super::tally::Tally;
-use super::text::{Fonts, TextRun, Weight};
+use super::text::{Fonts, TextRun, Weight, is_invisible};
 use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Divergence, Snapshot};
@@ -319,6 +319,7 @@ impl Writer<'_> {
 /// Lines of a text that are at most `room` wide (px) at a size; longer words are cut.
 pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
+    let text: String = text.chars().filter(|&character| !is_invisible(character)).collect();
     for paragraph in text.lines() {
         let mut line = String::new();
         for word in paragraph.split_whitespace() {

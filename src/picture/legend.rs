@@ -81,8 +81,8 @@ impl Legend {
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
 
-    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that the arrow
-    /// stands for (m), its own (px), and how large it is beside those of the reference picture.
+    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that
+    /// the arrow stands for (m), its own (px), and how large it is beside those of the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,

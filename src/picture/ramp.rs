@@ -7,8 +7,8 @@ use colorous::Gradient;
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
 pub const SHADES: usize = 64;
 
-/// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent colours of
-/// Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
+/// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent
+/// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
 ///
 /// Why these: lightness alone falls evenly over the scale, so that it reads in grey and by colour-blind eyes; hue turns
 /// with it, so that mild shading is not taken for another value; nowhere is there more red than green or blue together,
@@ -134,6 +134,7 @@ mod tests {
         assert_eq!([colour(&ramp, -3.0), colour(&ramp, 9.0)], [ramp[0], ramp[SHADES - 1]]);
         assert_eq!(colour(&[], 0.5), [0; 3]);
     }
+
     #[test]
     fn published_scales_begin_and_end_as_published() {
         for (map, low, high) in [

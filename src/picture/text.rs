@@ -90,6 +90,14 @@ impl PartialEq for Fonts {
 static REGULAR: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
 static SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
 
+/// Marks of direction and of joining, which no reader ever sees by themselves.
+pub(super) fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}'
+    )
+}
+
 /// Stands for what was cut off.
 const ELLIPSIS: char = '…';
 
@@ -177,7 +185,8 @@ impl Fonts {
     /// The text itself if it is at most `room` wide (px), else its beginning and an ellipsis; nothing if even that is
     /// too wide. Characters that take no place of their own, such as line breaks, become spaces.
     pub fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
-        let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let seen = text.chars().filter(|&c| !is_invisible(c));
+        let text: String = seen.map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = text.trim();
         if self.width(text, weight, size) <= room {
             return text.to_owned();
@@ -282,6 +291,7 @@ mod tests {
             assert!(short.is_empty() || short.ends_with('…'));
         }
         assert_eq!(fonts.shortened("Short", Weight::SemiBold, 26.0, 300.0), "Short");
+        assert_eq!(fonts.shortened("in\u{200b}vis\u{fe0f}ible", Weight::Regular, 16.0, 300.0), "invisible");
         assert_eq!(fonts.shortened("two\nlines", Weight::Regular, 16.0, 300.0), "two lines");
     }
 

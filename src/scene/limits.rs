@@ -20,8 +20,8 @@ const GIB: u64 = 1 << 30;
 
 impl Default for Limits {
     /// Eight million nodes, a block of 200 × 200 × 200: it takes some 15 GiB with a run of each model, which a
-    /// workstation has, and its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three
-    /// counts is beyond it. A scene file may have 256 MiB, some four million listed nodes.
+    /// workstation has, and its steps take seconds, which somebody may still want to wait for. A slip of one digit in
+    /// each of three counts is beyond it. A scene file may have 256 MiB, some four million listed nodes.
     fn default() -> Self {
         Self { nodes: 8_200_000, memory: 16 * GIB, file: GIB / 4 }
     }

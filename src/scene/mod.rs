@@ -6,8 +6,8 @@
 //!
 //! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
 //! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`. Bodies
-//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font` reads,
-//! lie beside it, too.
+//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font`
+//! reads, lie beside it, too.
 
 mod beside;
 mod digest;

@@ -29,8 +29,8 @@ pub(in crate::scene) struct KeyFile {
     pub(in crate::scene) time: f64,
     /// The shift (m). Default: no shift, whatever the key before has.
     pub(in crate::scene) shift: Option<Coordinates>,
-    /// The turn, about the middle unless `about` says otherwise. Angles beyond a whole turn go round more than once. Default: no turn, whatever the
-    /// key before has.
+    /// The turn, about the middle unless `about` says otherwise. Angles beyond a whole turn go round more than once.
+    /// Default: no turn, whatever the key before has.
     pub(in crate::scene) rotation: Option<RotationFile>,
 }
 

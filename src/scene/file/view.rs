@@ -30,8 +30,8 @@ pub(in crate::scene) struct ViewFile {
     /// be read, is left out.
     #[schemars(range(min = 0.5, max = 3.0))]
     pub(in crate::scene) text_scale: f64,
-    /// How many times thicker than usual the lines of bodies, obstacles, strips and the scale bar are, and how many times larger nodes and the signs on elements in the
-    /// plane.
+    /// How many times thicker than usual the lines of bodies, obstacles, strips and the scale bar are, and how many
+    /// times larger nodes and the signs on elements in the plane.
     #[schemars(range(min = 0.25, max = 4.0))]
     pub(in crate::scene) line_scale: f64,
     /// What the clock counts from, in the words shown under the time.
@@ -72,7 +72,8 @@ pub(in crate::scene) struct ViewFile {
     /// Whether keys say what colours and arrows mean, where there are any and room for them.
     pub(in crate::scene) legend: bool,
     /// A diagnostic drawn over time below each panel, with the present moment marked. The scene is then simulated once
-    /// before the first frame is drawn, so that every frame shows the whole course. Up to 8 other runs are drawn faintly behind. Default: none.
+    /// before the first frame is drawn, so that every frame shows the whole course. Up to 8 other runs are drawn
+    /// faintly behind. Default: none.
     pub(in crate::scene) strip: Option<Diagnostic>,
     /// Opacity of sound elements: below 1, what lies behind and within the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
