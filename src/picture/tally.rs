@@ -13,6 +13,8 @@ const MOST_SQUARES: usize = 200;
 const HEIGHT: f64 = 36.0;
 /// The widest tally (px in the reference picture).
 const WIDTH: f64 = 200.0;
+/// Squares smaller than this (px in the reference picture) say less than a bar.
+const LEAST_SQUARE: f64 = 4.0;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];
 
@@ -84,7 +86,7 @@ impl Tally {
         let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(17.0);
         let pixels = side * scale.type_unit();
         // Whole pixels keep all squares alike.
-        (pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
+        (side >= LEAST_SQUARE && pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
     }
 
     fn draw_squares(
