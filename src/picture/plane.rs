@@ -24,9 +24,9 @@ const RING: [f64; 2] = [13.0, 17.0];
 const ROOMY: f64 = 18.0;
 const SMALLEST_SIGN: f64 = 0.35;
 const SMALLEST_ALARM: f64 = 0.7;
-/// Bodies of more elements than this have signs on turned-over ones alone.
+/// Bodies of more elements than this have no signs, which would hide what they stand for.
 const MOST_SIGNS: usize = 16;
-/// Bodies of more nodes than this are drawn without arrows.
+/// Bodies of more nodes than this have smaller ones.
 const MANY_NODES: usize = 150;
 /// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
 const CROWDED: f64 = 0.14;
@@ -175,7 +175,7 @@ impl Flat<'_> {
 
     /// Arrows that say which way round elements are, above the body.
     pub(super) fn signs(&self, marks: &mut Vec<Mark>) {
-        if self.body.len() > MANY_NODES || self.position.is_empty() {
+        if self.body.elements.len() > MOST_SIGNS || self.position.is_empty() {
             return;
         }
         let mut sound = Vec::new();
@@ -188,9 +188,7 @@ impl Flat<'_> {
                 if over { turned_over.push((corners, place)) } else { sound.push(place) }
             }
         }
-        // Among many, only what is wrong is worth a sign.
-        let few = self.body.elements.len() <= MOST_SIGNS;
-        for &place in sound.iter().filter(|_| few) {
+        for &place in &sound {
             self.sound_arrow(place, &turned_over, marks);
         }
         for &(_, place) in &turned_over {
