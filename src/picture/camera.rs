@@ -41,6 +41,14 @@ pub struct Framing {
     pub rise: f64,
 }
 
+impl Framing {
+    /// What a camera looks at that follows nothing.
+    pub fn still(camera: &Camera) -> Self {
+        let Camera { target, distance, rise, .. } = *camera;
+        Self { target, base: target, distance, rise }
+    }
+}
+
 /// Where the middles of the bodies shown are in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Middles {
@@ -76,14 +84,13 @@ impl Middles {
 /// the bodies of the panels part.
 pub fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing {
     let Camera { target, distance, rise, .. } = *camera;
-    let still = Framing { target, base: target, distance, rise };
     let heights = [middles.low.y, middles.high.y];
     let pull = |length: f64, gentle: f64, most: f64| {
         let length = length.min(most * distance);
         if length > 0.0 { length * length / (length + gentle * distance) } else { 0.0 }
     };
     let (gone, apart) = match camera.follow {
-        Follow::Nothing => return still,
+        Follow::Nothing => return Framing::still(camera),
         Follow::Height => (DVec3::ZERO, 0.0),
         Follow::Body => middles.level().unwrap_or_default(),
     };

@@ -26,7 +26,7 @@ const X_HEIGHT: f64 = 0.55;
 /// in the reference picture).
 const SAMPLE_GAP: f64 = 14.0;
 const SAMPLE: [f64; 2] = [40.0, 2.6];
-const DASHES: [f64; 2] = [7.0, 4.0];
+pub(super) const DASHES: [f64; 2] = [7.0, 4.0];
 /// How far the scale bar lies above the baseline of counts, and the length of its ticks (px in the reference picture).
 const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
@@ -321,11 +321,14 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<St
     let mut lines = Vec::new();
     let text: String = text.chars().filter(|&character| !is_invisible(character)).collect();
     for paragraph in text.lines() {
-        let mut line = String::new();
+        let (mut line, mut wide) = (String::new(), 0.0);
         for word in paragraph.split_whitespace() {
-            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if fonts.width(&longer, Weight::Regular, size) <= room {
-                line = longer;
+            let space = if line.is_empty() { "" } else { " " };
+            let added = fonts.width(space, Weight::Regular, size) + fonts.width(word, Weight::Regular, size);
+            if wide + added <= room {
+                line.push_str(space);
+                line.push_str(word);
+                wide += added;
                 continue;
             }
             if !line.is_empty() {
@@ -338,6 +341,7 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<St
                     lines.push(std::mem::replace(&mut line, character.to_string()));
                 }
             }
+            wide = fonts.width(&line, Weight::Regular, size);
         }
         lines.push(line);
     }

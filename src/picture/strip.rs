@@ -2,7 +2,7 @@
 //! present moment. All strips of a picture have the same scales, and nothing in them moves but that moment.
 
 use super::axis::{Axis, Kind};
-use super::caption::Writer;
+use super::caption::{DASHES, Writer};
 use super::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::Colour;
@@ -36,13 +36,12 @@ const MOST_OTHERS: usize = 8;
 /// Ticks of values and of time, at most.
 const MOST_TICKS: usize = 4;
 const MOST_TIMES: usize = 6;
-/// Widths of the panel's own curve and of the others, of the line of the present moment and of a cross; dash and gap;
+/// Widths of the panel's own curve and of the others, of the line of the present moment and of a cross;
 /// radius of the dot, its halo, and the arms of a cross (px in the reference picture).
 const OWN: f64 = 2.2;
 const OTHER: f64 = 1.4;
 const MOMENT: f64 = 1.3;
 const CROSS: f64 = 1.8;
-const DASH: [f64; 2] = [7.0, 4.0];
 const DOT: f64 = 4.5;
 const HALO: f64 = 2.2;
 const ARM: f64 = 4.0;
@@ -229,7 +228,7 @@ impl Strips {
             colour: look.colour,
             alpha: narrow(look.alpha),
         };
-        let dash = look.dashed.then(|| DASH.map(|length| narrow(length * thickness)));
+        let dash = look.dashed.then(|| DASHES.map(|length| narrow(length * thickness)));
         for part in within(&points, borders) {
             writer.curves.push(curve(&simplified(&part, EXACT), look.width, dash));
         }

@@ -23,7 +23,7 @@ use super::text::Fonts;
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
 use crate::history::History;
-use crate::scene::{Camera, Follow, Scene, StrainScale};
+use crate::scene::{Scene, StrainScale};
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
@@ -306,8 +306,7 @@ impl<'a> Composer<'a> {
             let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
             lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
         };
-        let still = Camera { follow: Follow::Nothing, ..scene.view.camera.clone() };
-        [pixels(framing), pixels(&camera::framing(&still, &Middles::new([], DVec3::ZERO), false))]
+        [pixels(framing), pixels(&Framing::still(&scene.view.camera))]
     }
 
     /// The key of colours and arrows, if there are any.

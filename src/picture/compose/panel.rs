@@ -3,7 +3,7 @@
 use super::Composer;
 use super::ground::key_light;
 use crate::picture::arrows::{self, Arrows};
-use crate::picture::camera::{Lens, Middles, framing};
+use crate::picture::camera::Lens;
 use crate::picture::field::{NOWHERE, Shades};
 use crate::picture::grip::Hands;
 use crate::picture::layout::{self, Rectangle, Scale};
@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
 use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
-use crate::scene::{Camera, FloorStyle, Follow, Scene};
+use crate::scene::{FloorStyle, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::field::Support;
@@ -158,9 +158,13 @@ impl<'a> Draft<'a> {
     /// The camera of the panel before it follows anything.
     fn still(&self) -> Lens {
         let view = &self.scene.view;
-        let camera = Camera { follow: Follow::Nothing, ..view.camera.clone() };
-        let framing = framing(&camera, &Middles::new([], DVec3::ZERO), false);
-        Lens::new(view, &framing, self.body.dimension, self.viewport.map(f64::from), self.scale.unit)
+        Lens::new(
+            view,
+            &Framing::still(&view.camera),
+            self.body.dimension,
+            self.viewport.map(f64::from),
+            self.scale.unit,
+        )
     }
 
     /// Floors, nodes and ring arrows of the plane.

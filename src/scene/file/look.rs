@@ -140,7 +140,7 @@ pub(in crate::scene) struct ColoursFile {
     pub(in crate::scene) node: Option<TypedColour>,
     /// Springs, and edges that take their place where surfaces are not shown.
     pub(in crate::scene) spring: Option<TypedColour>,
-    /// Arrows of displacements, of all models alike.
+    /// Arrows of displacements and curves of strips, of all models alike; curves of springs stay dashed.
     pub(in crate::scene) arrow: Option<TypedColour>,
     /// Arrows of what moves, and marks of what is held.
     pub(in crate::scene) pointer: Option<TypedColour>,
@@ -151,7 +151,7 @@ pub(in crate::scene) struct ColoursFile {
     /// Names and numbers. Smaller words, ticks, the line of the floor in the plane and lines between panels follow: they
     /// stand between it and the background. With the background it has a contrast of at least 4.5.
     pub(in crate::scene) text: Option<TypedColour>,
-    /// The floor in space. It is not drawn on a transparent background.
+    /// The floor in space. Words have a contrast of at least 4.5 with it. It is not drawn on a transparent background.
     pub(in crate::scene) floor: Option<TypedColour>,
     /// The lines on floors and walls in space.
     pub(in crate::scene) grid: Option<TypedColour>,
