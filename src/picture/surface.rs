@@ -28,6 +28,9 @@ const VERY_MANY_FACES: usize = 12_000;
 const SMALLEST_ELEMENT: f64 = 1.5;
 /// Edges of elements smaller than this (px) are not seen through the body.
 const SEEN_THROUGH: f64 = 6.5;
+/// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
+/// small ones would cover everything.
+const OWN_LINES: [f64; 2] = [5.0, 10.0];
 
 /// What is needed to turn faces into what a panel shows.
 pub(super) struct Surroundings<'a> {
@@ -49,6 +52,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) shades: Option<&'a Shades>,
     /// Whether edges of sound elements are drawn in front, and behind surfaces.
     pub(super) edges: [bool; 2],
+    /// Whether each element has a closed surface of its own.
+    pub(super) apart: bool,
 }
 
 /// Kinds of lines on a surface.
@@ -158,13 +163,20 @@ impl Surroundings<'_> {
         mesh.vertices.reserve(faces.len() * per_face);
         mesh.triangles.reserve(faces.len() * 2 * cut * cut);
         mesh.shades.reserve(if self.shades.is_some() { faces.len() * per_face } else { 0 });
+        let hides_back = self.apart && self.opacity == 1.0 && total > VERY_MANY_FACES && !self.lens.orthographic;
         let (mut patch, mut borders) = (Patch::default(), Borders::default());
         borders.sides.reserve(4 * faces.len());
         borders.facing.reserve(4 * cut * faces.len());
         for side in faces {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears.of(&patch.nodes);
+            let before = [mesh.vertices.len(), mesh.shades.len(), mesh.triangles.len()];
             self.emit(side, ears, &grid, &mut patch, mesh);
+            if hides_back && self.is_hidden(side, &patch) {
+                mesh.vertices.truncate(before[0]);
+                mesh.shades.truncate(before[1]);
+                mesh.triangles.truncate(before[2]);
+            }
             self.inner_contours(&patch, kinds, lines);
             note_borders(&patch, ears, cut, &mut borders);
         }
@@ -182,10 +194,18 @@ impl Surroundings<'_> {
             |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
         // Edges of turned-over elements are drawn in any case.
-        let [in_front, behind] = if kinds.edge == LineKind::Edge { self.edges } else { [true; 2] };
+        let share = self.own_lines();
+        let [in_front, behind] = match kinds.edge {
+            LineKind::Edge if share == 0.0 => return,
+            LineKind::Edge => self.edges,
+            _ => [true; 2],
+        };
         let is_large = self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT };
         if is_large && if is_hidden { behind } else { in_front } {
             lines.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
+        }
+        if share == 0.0 {
+            return;
         }
         let along = (end - start) / cut as f64;
         for piece in 0..cut {
@@ -194,12 +214,24 @@ impl Surroundings<'_> {
             };
             let (least, most) =
                 sides.iter().map(seen).fold((1.0, 0.0), |(a, b): (f64, f64), at| (a.min(at), b.max(at)));
-            let strength = if sides.len() == 1 { 1.0 } else { contour(least, most) };
+            let strength = share * if sides.len() == 1 { 1.0 } else { contour(least, most) };
             if strength > 0.0 {
                 let [from, to] = [piece, piece + 1].map(|at| start + at as f64 * along);
                 lines.push(self.line(from, to, kinds.contour, strength));
             }
         }
+    }
+
+    /// Whether a face of an element of its own is turned away from the viewer: the element hides it.
+    fn is_hidden(&self, side: &Side, patch: &Patch) -> bool {
+        let is_solid = side.element.is_some_and(|element| self.body.elements[element as usize].len() > 3);
+        is_solid && patch.facing.iter().all(|&seen| seen == 0.0)
+    }
+
+    /// How much is drawn of the contours of elements that are apart. Where nothing of them is drawn, neither are edges of
+    /// sound ones: gaps tell them from each other.
+    fn own_lines(&self) -> f64 {
+        if self.apart { own_lines(self.element) } else { 1.0 }
     }
 
     fn line(&self, from: DVec3, to: DVec3, kind: LineKind, strength: f64) -> Line {
@@ -290,7 +322,8 @@ impl Surroundings<'_> {
     /// Contours between the triangles of one patch.
     fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut Vec<Line>) {
         let Patch { points, triangles, facing, .. } = patch;
-        if facing.windows(2).all(|two| two[0] == two[1]) {
+        let share = self.own_lines();
+        if share == 0.0 || facing.windows(2).all(|two| two[0] == two[1]) {
             return;
         }
         let mut sides: HashMap<[u32; 2], f64> = HashMap::new();
@@ -300,7 +333,7 @@ impl Surroundings<'_> {
                     && other != seen
                 {
                     let [a, b] = side.map(|at| points[at as usize]);
-                    lines.push(self.line(a, b, kinds.contour, contour(other, seen)));
+                    lines.push(self.line(a, b, kinds.contour, share * contour(other, seen)));
                 }
             }
         }
@@ -328,6 +361,12 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &
         };
         borders.facing.extend(std::iter::repeat_n(seen, cut));
     }
+}
+
+/// How much is drawn of the lines of elements of a size (px) that are apart.
+pub(super) fn own_lines(element: f64) -> f64 {
+    let [none, all] = OWN_LINES;
+    ((element - none) / (all - none)).clamp(0.0, 1.0)
 }
 
 /// How much of a contour lies between two triangles that show their outsides so much. Of the lines around one that is

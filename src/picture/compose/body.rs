@@ -24,6 +24,7 @@ impl Draft<'_> {
             side: self.side,
             soft: self.composer.soft * self.side,
             edges: self.scene.view.edges,
+            apart: self.composer.exploded.is_some(),
             element: self.element,
             opacity: self.scene.view.opacity,
             shades: self.shades.as_ref(),

@@ -12,6 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
+use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::{FloorStyle, Scene};
 use crate::sim::body::{Body, Dimension};
@@ -144,7 +145,8 @@ impl<'a> Draft<'a> {
             flat: self.flat,
             line_scale: narrow(self.scale.line()),
             soft: narrow(self.composer.soft),
-            element: narrow(self.element),
+            // Lines of elements that are apart fade with this.
+            element: narrow(self.element * if self.composer.exploded.is_some() { own_lines(self.element) } else { 1.0 }),
             middle: self.middle(),
         }
     }
