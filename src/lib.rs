@@ -46,6 +46,7 @@ pub mod colour;
 #[cfg(feature = "render")]
 pub mod gpu;
 pub mod history;
+pub mod moments;
 pub mod output;
 pub mod paper;
 #[cfg(feature = "render")]

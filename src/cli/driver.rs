@@ -15,7 +15,7 @@ pub fn settle(words: &[std::ffi::OsString]) {
     let [program, command, rest @ ..] = words else { return };
     let [variable, width] = VECTOR_WIDTH;
     // A process environment can be changed safely only from outside, so a new image of the program gets it.
-    if command != "render" || std::env::var_os(variable).is_some() {
+    if (command != "render" && command != "figure") || std::env::var_os(variable).is_some() {
         return;
     }
     let Ok(image) = std::env::current_exe() else { return };

@@ -10,6 +10,8 @@ mod console;
 #[cfg(feature = "render")]
 mod driver;
 mod failure;
+#[cfg(feature = "render")]
+mod figure;
 mod frames;
 mod info;
 mod interrupt;
@@ -52,7 +54,8 @@ const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
   localshape simulate scenes/fig4b.toml        the same without pictures
-  localshape check scenes/*.toml               what scenes hold, or every mistake in them";
+  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape figure all                        the paper's figures in output/figures/";
 
 /// Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models
 #[derive(Debug, Parser)]
@@ -67,6 +70,8 @@ enum Command {
     #[cfg(feature = "render")]
     Render(render::Render),
     Simulate(simulate::Simulate),
+    #[cfg(feature = "render")]
+    Figure(figure::FigureCommand),
     Check(check::Check),
     Info(info::Info),
     Schema(schema::Schema),
@@ -96,6 +101,8 @@ impl Command {
             #[cfg(feature = "render")]
             Self::Render(render) => render.run(words),
             Self::Simulate(simulate) => simulate.run(words),
+            #[cfg(feature = "render")]
+            Self::Figure(figure) => figure.run(),
             Self::Check(check) => check.run(),
             Self::Info(info) => info.run(),
             Self::Schema(schema) => schema.run(),

@@ -166,14 +166,14 @@ fn failed(error: RenderError) -> Failure {
     Failure::adapter(&error)
 }
 
-fn samples() -> impl TypedValueParser<Value = u32> {
+pub(super) fn samples() -> impl TypedValueParser<Value = u32> {
     PossibleValuesParser::new(["1", "4"]).map(|typed| typed.parse().expect("one of the numbers above"))
 }
 
 /// Sides of a picture that a scene may have, too (px).
 const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
 
-fn size(typed: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(typed: &str) -> Result<[u32; 2], String> {
     let sides = typed.split_once(['x', 'X', '×']).and_then(|(width, height)| {
         let side = |digits: &str| digits.trim().parse::<u32>().ok();
         Some([side(width)?, side(height)?])

@@ -21,7 +21,7 @@ pub use digest::state_digest;
 pub use error::OutputError;
 pub use folder::{FRAME_FILES, Folder, Look, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
-pub use png::{Tags, encode, read_frame, read_tags};
+pub use png::{FigureTags, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
 pub use states::{STATES_FILE, StatesWriter};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};
 pub(crate) use timing::thread_time;

@@ -72,6 +72,55 @@ impl Tags {
 /// # Panics
 /// If `pixels` has neither of the lengths that `size`, width and height (px), asks for, or the size is zero.
 pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
+    encode_with(size, pixels, &tags.chunks())
+}
+
+/// What a figure says about itself, in text chunks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureTags {
+    /// `localshape:figure`: its name.
+    pub figure: String,
+    /// `localshape:scene`: the digests of its scenes, one line each.
+    pub scenes: Vec<String>,
+    /// `localshape:version`: the version of this crate that drew it.
+    pub version: String,
+    /// `localshape:adapter`: the graphics adapter that drew it.
+    pub adapter: String,
+}
+
+impl FigureTags {
+    /// The tags of a figure of some scenes drawn by `adapter`.
+    pub fn new(figure: &str, scenes: Vec<String>, adapter: &str) -> Self {
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Self { figure: figure.to_owned(), scenes, version, adapter: adapter.to_owned() }
+    }
+}
+
+/// A figure of 8-bit red, green and blue as a PNG file in sRGB, with its tags. See [`encode`].
+///
+/// # Panics
+/// As [`encode`].
+pub fn encode_figure(size: [u32; 2], pixels: &[u8], tags: &FigureTags) -> Vec<u8> {
+    let FigureTags { figure, scenes, version, adapter } = tags.clone();
+    let chunks = [("figure", figure), ("scene", scenes.join("\n")), ("version", version), ("adapter", adapter)];
+    encode_with(size, pixels, &chunks)
+}
+
+/// Whether a file is a figure that this crate drew.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn is_figure(path: &Path) -> Result<bool, OutputError> {
+    let file = File::open(path).map_err(OutputError::reading(path))?;
+    let Ok(reader) = png::Decoder::new(BufReader::new(file)).read_info() else { return Ok(false) };
+    let info = reader.info();
+    let names = info.uncompressed_latin1_text.iter().map(|chunk| &chunk.keyword);
+    let names = names.chain(info.utf8_text.iter().map(|chunk| &chunk.keyword));
+    Ok(names.into_iter().any(|name| name == "localshape:figure"))
+}
+
+/// A picture as a PNG file in sRGB with text chunks.
+fn encode_with(size: [u32; 2], pixels: &[u8], chunks: &[(&'static str, String)]) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
     let colour = match pixels.len() as u64 {
@@ -85,11 +134,12 @@ pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    for (name, text) in tags.chunks() {
+    for (name, text) in chunks {
         let name = format!("localshape:{name}");
         // The plain text chunk knows Latin-1 only, without control characters.
         let plain = text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
-        let added = if plain { encoder.add_text_chunk(name, text) } else { encoder.add_itxt_chunk(name, text) };
+        let added =
+            if plain { encoder.add_text_chunk(name, text.clone()) } else { encoder.add_itxt_chunk(name, text.clone()) };
         added.expect("the header is not written yet");
     }
     let written = encoder.write_header().and_then(|mut writer| {

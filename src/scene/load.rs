@@ -6,6 +6,7 @@ use super::report::{Report, mistake};
 use super::resolve::{self, Parts};
 use super::schema::SCHEMA;
 use super::source::Source;
+use super::structure::Checked;
 use super::words::{nearest, quoted};
 use super::{Scene, digest, file::SceneFile, structure};
 use serde::Deserialize;
@@ -21,13 +22,8 @@ impl Scene {
     /// # Errors
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        let bytes = read(path, limits)?;
-        if path.file_name().is_some_and(|name| stem(Path::new(name)).is_none()) {
-            return Err(SceneError::Nameless { path: path.into() });
-        }
-        let file = path.display().to_string();
-        let text = as_text(&bytes, &file)?;
-        Self::read(text, &file, path.parent().unwrap_or(Path::new("")), limits)
+        let text = text_of(path, limits)?;
+        Self::read(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), limits)
     }
 
     /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's
@@ -59,36 +55,57 @@ impl Scene {
 
     /// Reads a scene from a text; a body's own file and fonts are looked for in `folder`.
     fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let file = || name.to_owned();
-        if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
-            return Err(SceneError::Empty { file: file() });
-        }
-        let source = Source::new(text);
-        let (root, errors) = DeTable::parse_recoverable(text);
-        if !errors.is_empty() {
-            return Err(SceneError::Syntax(syntax(&source, &errors, name)));
-        }
-        let mut report = Report::new(&source, root.get_ref());
-        let checked = structure::check(&SCHEMA, root.get_ref(), &mut report);
-        let parts = Parts::new(&checked, folder, limits, &mut report);
-        let digest = match report.total() {
-            0 => SceneFile::deserialize(Value::Object(checked.sound))
-                .map(|scene| digest::digest(scene, parts.digests_of_files()))
-                .unwrap_or_default(),
-            _ => String::new(),
-        };
-        let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
-        let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, &mut report);
-        match (scene, report) {
-            (Some(scene), report) if report.total() == 0 => Ok(scene),
-            (_, report) => Err(SceneError::Mistakes(report.finish(name))),
-        }
+        checked(text, name, &SCHEMA, |checked, report| {
+            let parts = Parts::new(&checked, folder, limits, report);
+            let digest = match report.total() {
+                0 => SceneFile::deserialize(Value::Object(checked.sound))
+                    .map(|scene| digest::digest(scene, parts.digests_of_files()))
+                    .unwrap_or_default(),
+                _ => String::new(),
+            };
+            let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
+            Ok(resolve::resolve(parts, &name_of_scene, &digest, limits, report))
+        })
     }
 }
 
+/// Reads a text of TOML, checks it against a schema and gives it its meaning; all mistakes that anyone reports on the way
+/// are told together.
+pub(super) fn checked<T>(
+    text: &str,
+    name: &str,
+    schema: &Value,
+    resolve: impl FnOnce(Checked, &mut Report<'_>) -> Result<Option<T>, SceneError>,
+) -> Result<T, SceneError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let file = || name.to_owned();
+    if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
+        return Err(SceneError::Empty { file: file() });
+    }
+    let source = Source::new(text);
+    let (root, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        return Err(SceneError::Syntax(syntax(&source, &errors, name)));
+    }
+    let mut report = Report::new(&source, root.get_ref());
+    let checked = structure::check(schema, root.get_ref(), &mut report);
+    match resolve(checked, &mut report)? {
+        Some(meaning) if report.total() == 0 => Ok(meaning),
+        _ => Err(SceneError::Mistakes(report.finish(name))),
+    }
+}
+
+/// The text of a file.
+pub(super) fn text_of(path: &Path, limits: &Limits) -> Result<String, SceneError> {
+    let bytes = read(path, limits)?;
+    if path.file_name().is_some_and(|name| stem(Path::new(name)).is_none()) {
+        return Err(SceneError::Nameless { path: path.into() });
+    }
+    Ok(as_text(&bytes, &path.display().to_string())?.to_owned())
+}
+
 /// The name of a scene from that of its file; none if a folder could not have it.
-fn stem(file: &Path) -> Option<String> {
+pub(super) fn stem(file: &Path) -> Option<String> {
     let stem = file.file_stem()?.to_string_lossy().into_owned();
     (!["", ".", ".."].contains(&stem.trim())).then_some(stem)
 }

@@ -12,6 +12,7 @@
 mod beside;
 mod digest;
 mod error;
+pub mod figure;
 mod file;
 mod font;
 mod generate;
@@ -38,6 +39,7 @@ pub use view::{
     Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
     Visible,
 };
+pub(crate) use words::nearest as nearest_name;
 
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;

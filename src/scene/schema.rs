@@ -29,7 +29,7 @@ pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
 
 /// Fits the generated schema to TOML: there is no null, a description is one line, an alternative of one is none,
 /// and every `kind` says what it is.
-fn tidy(schema: &mut Value) {
+pub(super) fn tidy(schema: &mut Value) {
     match schema {
         Value::Array(items) => items.iter_mut().for_each(tidy),
         Value::Object(table) => {

@@ -32,7 +32,7 @@ pub(super) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str)
 }
 
 /// The known name nearest to what was typed, if it is near enough to have been meant: one slip in three letters.
-pub(super) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     // A quadratic comparison, so nothing long is compared.
     if typed.len() > 100 {
         return None;

@@ -1,6 +1,7 @@
 //! Putting a picture together. Each of its panels is a [`Draft`] first, whose parts have files of their own.
 
 mod body;
+mod figure;
 mod ground;
 mod panel;
 mod region;
@@ -28,6 +29,7 @@ use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
+pub use figure::compose_figure;
 use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;

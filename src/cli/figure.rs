@@ -1,0 +1,225 @@
+//! `figure`: the paper's figures, and figures of a user's own.
+
+use super::console;
+use super::driver;
+use super::failure::{Failure, Status};
+use super::interrupt;
+use super::options::processors;
+use super::render::{samples, size};
+use crate::gpu::{AdapterChoice, Gpu};
+use crate::moments::{Moments, Taking};
+use crate::output::{self, OutputError};
+use crate::picture::compose_figure;
+use crate::render::Renderer;
+use crate::scene::figure::{Figure, NAMES};
+use crate::scene::{Limits, Theme, nearest_name};
+use clap::{Args, ValueEnum, ValueHint};
+use rayon::ThreadPoolBuilder;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape figure                              the names of the figures
+  localshape figure all                          every figure of the paper into output/figures/
+  localshape figure fig1 fig4 -o paper --theme dark
+  localshape figure my-sheet.toml                a figure of your own
+
+A figure file names scenes and says which runs and moments of them stand where; those of the paper are in figures/ and \
+are a good start for your own.";
+
+/// Where figures go if nothing else is said.
+const FOLDER: &str = "output/figures";
+/// Steps of each simulation after which the user is listened to.
+const SLICE: u64 = 200;
+
+/// Draw the paper's figures, or figures of your own, as single pictures
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct FigureCommand {
+    /// Names (fig1, fig2, fig3, fig4 or fig4a, fig4b, fig4c, restore, all) or figure files (TOML); without any, the names
+    /// are listed
+    #[arg(value_name = "FIGURE", value_hint = ValueHint::FilePath)]
+    figures: Vec<String>,
+
+    /// Output folder, for one file NAME.png for each figure
+    #[arg(short, long, value_name = "DIR", default_value = FOLDER, value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+
+    /// Replace pictures of that name that are no figures of this program
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Width and height (px) [default: that of each figure]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+
+    /// The colours: light for papers, dark for talks [default: those of each figure]
+    #[arg(long, value_name = "THEME")]
+    theme: Option<ThemeOption>,
+
+    /// Samples per pixel: 4 for smooth edges, 1 for speed
+    #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
+    samples: u32,
+
+    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
+    #[arg(long, value_name = "ADAPTER", default_value = "auto")]
+    adapter: AdapterChoice,
+
+    /// Threads to work with [default: one for each processor]; the results are the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Neither progress nor summary; only errors
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Print what was made as one JSON document
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// A theme by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ThemeOption {
+    Light,
+    Dark,
+}
+
+impl FigureCommand {
+    pub(super) fn run(self) -> Result<Status, Failure> {
+        if self.figures.is_empty() {
+            console::print(&format!("figures: {}, fig4 (all of Fig. 4), all\n", NAMES.join(", ")))?;
+            return Ok(Status::Done);
+        }
+        let mut figures = self.load()?;
+        for figure in &mut figures {
+            figure.size = self.size.unwrap_or(figure.size);
+            if let Some(theme) = self.theme {
+                figure.set_theme(match theme {
+                    ThemeOption::Light => Theme::Light,
+                    ThemeOption::Dark => Theme::Dark,
+                });
+            }
+        }
+        let paths = self.paths(&figures)?;
+        let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
+        if let Some(figure) = figures.iter().find(|figure| figure.size.iter().any(|&side| side > gpu.longest_side())) {
+            let ([width, height], adapter, longest) = (figure.size, gpu.description(), gpu.longest_side());
+            let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
+            return Err(Failure::usage(message));
+        }
+        interrupt::listen();
+        let threads = self.threads.map_or_else(processors, usize::from);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| {
+            Failure::usage(format!("--threads: the system does not start so many threads ({error})"))
+        })?;
+        std::fs::create_dir_all(&self.out)
+            .map_err(|source| Failure::from(OutputError::Write { path: self.out.clone(), source }))?;
+        output::remove_leftovers(&self.out)?;
+        let mut made = Vec::new();
+        for (figure, path) in figures.iter().zip(&paths) {
+            let Some(moments) = pool.install(|| self.take(figure)) else {
+                self.tell(&made)?;
+                return Ok(Status::Interrupted);
+            };
+            let picture = compose_figure(figure, &moments);
+            let drawn = Renderer::new(&gpu, figure.size, self.samples).and_then(|mut one| one.draw(&picture));
+            let image = drawn.map_err(|error| Failure::adapter(&error))?;
+            let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
+            let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
+            output::write_whole(path, &output::encode_figure(figure.size, image.as_raw(), &tags))?;
+            made.push((figure, path));
+        }
+        self.tell(&made)?;
+        Ok(Status::Done)
+    }
+
+    /// All figures that are asked for, each once.
+    fn load(&self) -> Result<Vec<Figure>, Failure> {
+        let mut figures: Vec<Figure> = Vec::new();
+        let mut add = |figure: Figure| {
+            if !figures.iter().any(|known| known.name == figure.name) {
+                figures.push(figure);
+            }
+        };
+        for asked in &self.figures {
+            let meant = NAMES
+                .iter()
+                .filter(|name| asked == "all" || *name == asked || asked == "fig4" && name.starts_with("fig4"));
+            let meant: Vec<_> = meant.filter_map(|name| Figure::built_in(name)).collect();
+            if !meant.is_empty() {
+                meant.into_iter().for_each(&mut add);
+                continue;
+            }
+            let is_path = asked.contains(['/', '\\']) || asked.ends_with(".toml") || Path::new(asked).exists();
+            if !is_path {
+                return Err(Failure::usage(unknown(asked)));
+            }
+            let figure = Figure::load(Path::new(asked), &Limits::default());
+            add(figure.map_err(|error| {
+                if error.is_unreadable() {
+                    Failure::files(super::failure::with_causes(&error))
+                } else {
+                    Failure::usage(error.to_string())
+                }
+            })?);
+        }
+        Ok(figures)
+    }
+
+    /// Where each figure goes; nothing of others is replaced.
+    fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
+        let path = |figure: &Figure| {
+            let path = self.out.join(format!("{}.png", figure.name));
+            if !self.overwrite && path.exists() && !output::is_figure(&path)? {
+                let what = "a file of that name that is no figure of this program".to_owned();
+                return Err(Failure::from(OutputError::Occupied { path, what }));
+            }
+            Ok(path)
+        };
+        figures.iter().map(path).collect()
+    }
+
+    /// What a figure shows of its simulations; `None` if the user asked to stop.
+    fn take(&self, figure: &Figure) -> Option<Moments> {
+        let mut taking = Taking::new(figure);
+        let bar = console::progress(&figure.name, taking.steps()[1], self.quiet || self.json);
+        let mut is_there = false;
+        while !is_there && !interrupt::requested() {
+            is_there = taking.advance(SLICE);
+            bar.set_position(taking.steps()[0]);
+        }
+        bar.finish_and_clear();
+        (is_there && !interrupt::requested()).then(|| taking.finish())
+    }
+
+    /// Tells what was made.
+    fn tell(&self, made: &[(&Figure, &PathBuf)]) -> Result<(), Failure> {
+        if self.json {
+            let figures: Vec<_> = made
+                .iter()
+                .map(|(figure, path)| json!({ "name": figure.name, "file": path.to_string_lossy(), "size": figure.size }))
+                .collect();
+            return console::print_json(&json!({ "figures": figures }));
+        }
+        if !self.quiet {
+            for (figure, path) in made {
+                let [width, height] = figure.size;
+                console::print(&format!("{}  {width}×{height}\n", path.display()))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is said of a name that no figure has.
+fn unknown(asked: &str) -> String {
+    let names: Vec<_> = NAMES.iter().copied().chain(["fig4", "all"]).collect();
+    let hint = nearest_name(asked, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    format!(
+        "there is no figure `{asked}`{hint} The figures are {}; a figure of your own is a .toml file",
+        names.join(", ")
+    )
+}

@@ -1,0 +1,19 @@
+//! Diagrams of forces.
+
+use crate::picture::Picture;
+use crate::picture::text::Fonts;
+use crate::scene::figure::{Figure, Forces};
+
+pub(super) fn compose(figure: &Figure, _forces: &Forces) -> Picture {
+    Picture {
+        size: figure.size,
+        palette: figure.look.palette,
+        fonts: Fonts::new(&figure.look.font),
+        ramp: Vec::new(),
+        panels: Vec::new(),
+        under: Vec::new(),
+        marks: Vec::new(),
+        curves: Vec::new(),
+        words: Vec::new(),
+    }
+}

@@ -1,0 +1,63 @@
+//! The figures that come with the program, and the scenes they name: so they are there wherever it is called.
+
+use std::path::{Component, Path, PathBuf};
+
+/// The names of the figures that come with the program, in the paper's order.
+pub const NAMES: [&str; 7] = ["fig1", "fig2", "fig3", "fig4a", "fig4b", "fig4c", "restore"];
+
+/// Makes the list of texts by their paths.
+macro_rules! texts {
+    ($($path:literal,)*) => {
+        const TEXTS: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../../", $path))),)*];
+    };
+}
+
+texts! {
+    "figures/fig1.toml",
+    "figures/fig2.toml",
+    "figures/fig3.toml",
+    "figures/fig4a.toml",
+    "figures/fig4b.toml",
+    "figures/fig4c.toml",
+    "figures/restore.toml",
+    "scenes/fig4a.toml",
+    "scenes/fig4b.toml",
+    "scenes/fig4c.toml",
+    "scenes/elements/triangle-pushed-in.toml",
+    "scenes/elements/triangle-turned-over.toml",
+    "scenes/elements/square.toml",
+    "scenes/elements/polygon.toml",
+    "scenes/elements/cube.toml",
+}
+
+/// The path of a figure's text.
+pub(super) fn path(name: &str) -> Option<PathBuf> {
+    NAMES.contains(&name).then(|| PathBuf::from(format!("figures/{name}.toml")))
+}
+
+/// A text by its path.
+pub(super) fn text(path: &Path) -> Option<&'static str> {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(parts.pop()),
+            Component::Normal(name) => parts.push(name.to_str()?),
+            _ => {}
+        }
+    }
+    let path = parts.join("/");
+    TEXTS.iter().find(|(known, _)| *known == path).map(|(_, text)| *text)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::figure::{Figure, NAMES};
+
+    #[test]
+    fn every_figure_of_the_program_is_sound() {
+        for name in NAMES {
+            assert_eq!(Figure::built_in(name).map(|figure| figure.name), Some(name.to_owned()));
+        }
+        assert!(Figure::built_in("fig5").is_none());
+    }
+}

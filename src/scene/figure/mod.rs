@@ -1,0 +1,184 @@
+//! Figures: scenes put together on one sheet. A figure file names scenes and says which runs and moments of them stand
+//! where; what they look like is said by the scenes themselves.
+
+mod built_in;
+mod file;
+mod resolve;
+
+pub use built_in::NAMES;
+
+use super::error::SceneError;
+use super::limits::Limits;
+use super::load::{self, stem};
+use super::{Look, Scene, Theme};
+use crate::sim::snapshot::Diagnostic;
+use schemars::generate::SchemaSettings;
+use serde_json::Value;
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// A figure, resolved: every scene is read, every run is there, every moment is within its scene.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Name of its file without the ending, for output.
+    pub name: String,
+    /// The title; empty for none.
+    pub title: String,
+    /// A line below it; empty for none.
+    pub caption: String,
+    /// Width and height (px).
+    pub size: [u32; 2],
+    /// Colours, type and lines of the whole figure.
+    pub look: Look,
+    /// What it shows.
+    pub content: Content,
+}
+
+/// What a figure shows.
+#[derive(Clone, Debug)]
+pub enum Content {
+    /// Runs at chosen moments.
+    Sheet(Sheet),
+    /// Forces at the start.
+    Forces(Forces),
+}
+
+/// A contact sheet: rows of runs, columns of moments.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// The scenes that columns show.
+    pub scenes: Vec<Scene>,
+    /// From left to right.
+    pub columns: Vec<Column>,
+    /// From top to bottom.
+    pub rows: Vec<Row>,
+    /// Diagnostics over time below the pictures. If there are any, all columns show the first scene.
+    pub strips: Vec<Diagnostic>,
+    /// Where the axis of time changes its scale (s).
+    pub split: Option<f64>,
+}
+
+/// A column of a contact sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its place among the scenes.
+    pub scene: usize,
+    /// The moment shown (s); `None` if the rows say it.
+    pub time: Option<f64>,
+    /// What stands above it, if not the moment.
+    pub label: Option<String>,
+}
+
+/// A row of a contact sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The name of the run shown, which all scenes have.
+    pub run: String,
+    /// The moment shown (s), before that of the column.
+    pub time: Option<f64>,
+    /// What stands beside it.
+    pub label: String,
+    /// A second line beside it; empty for none.
+    pub note: String,
+}
+
+impl Sheet {
+    /// Which run of which scene a cell shows, and when (s).
+    pub fn cell(&self, row: usize, column: usize) -> (usize, usize, f64) {
+        let (row, column) = (&self.rows[row], &self.columns[column]);
+        let run = self.scenes[column.scene].runs.iter().position(|run| run.name == row.run);
+        (column.scene, run.expect("a run of all scenes"), row.time.or(column.time).expect("one of them says it"))
+    }
+}
+
+/// A diagram of forces.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// The scenes: rows if they have several runs, else columns.
+    pub scenes: Vec<Scene>,
+    /// A line below the name of each run; empty for none.
+    pub notes: Vec<String>,
+    /// The run whose forces are outlined beside those of all others.
+    pub compare: Option<usize>,
+    /// Whether the vectors from the centre are shown, too.
+    pub vectors: bool,
+    /// Whether the size of each force is written beside it.
+    pub numbers: bool,
+}
+
+impl Figure {
+    /// One of the figures of the paper that come with the program; `None` if there is none of that name. [`NAMES`] lists
+    /// them.
+    pub fn built_in(name: &str) -> Option<Self> {
+        let path = built_in::path(name)?;
+        let text = built_in::text(&path).expect("listed");
+        let scene = |path: &Path| {
+            let text = built_in::text(path).expect("figures name scenes that come with the program");
+            Scene::parse(text, &path.display().to_string(), &Limits::default())
+        };
+        let figure = Self::read(text, &path.display().to_string(), Path::new("figures"), &scene);
+        Some(figure.unwrap_or_else(|error| panic!("{error}")))
+    }
+
+    /// Reads a figure from a file.
+    ///
+    /// # Errors
+    /// Whatever keeps the file, or a scene that it names, from being one, with all mistakes in it.
+    pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
+        let text = load::text_of(path, limits)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::read(&text, &path.display().to_string(), folder, &|path| Scene::load(path, limits))
+    }
+
+    /// The scenes that it shows.
+    pub fn scenes(&self) -> &[Scene] {
+        match &self.content {
+            Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => scenes,
+        }
+    }
+
+    /// Gives it the colours of a theme, unless it has these.
+    pub fn set_theme(&mut self, theme: Theme) {
+        self.look = look(&self.scenes()[0], Some(theme));
+    }
+
+    /// Reads a figure from a text; scenes are looked for from `folder` on.
+    fn read(
+        text: &str,
+        name: &str,
+        folder: &Path,
+        scene: &dyn Fn(&Path) -> Result<Scene, SceneError>,
+    ) -> Result<Self, SceneError> {
+        let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
+        load::checked(text, name, &SCHEMA, |checked, report| resolve::resolve(checked, &stem, folder, scene, report))
+    }
+}
+
+/// The JSON Schema of figure files.
+///
+/// ```
+/// let schema = localshape::scene::figure::schema();
+/// assert_eq!(schema["properties"]["title"]["type"], "string");
+/// ```
+pub fn schema() -> Value {
+    SCHEMA.clone()
+}
+
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    let mut schema = settings.into_generator().into_root_schema_for::<file::FigureFile>().to_value();
+    super::schema::tidy(&mut schema);
+    schema["title"] = "Figure file of localshape".into();
+    schema
+});
+
+/// The look of a figure: that of its first scene, in another theme if it says so.
+fn look(first: &Scene, theme: Option<Theme>) -> Look {
+    match theme {
+        Some(theme) if theme != first.view.look.theme => {
+            let Look { font, text_scale, line_scale, .. } = first.view.look.clone();
+            Look { font, text_scale, line_scale, ..Look::of(theme) }
+        }
+        _ => first.view.look.clone(),
+    }
+}

@@ -1,0 +1,225 @@
+//! What a figure means: its scenes are read, and each run and moment that it names is found in them.
+
+use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
+use super::{Column, Content, Figure, Forces, Row, Sheet, look};
+use crate::scene::report::{Report, Way};
+use crate::scene::structure::Checked;
+use crate::scene::words::{list, nearest};
+use crate::scene::{Scene, SceneError};
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Reads a scene from a path.
+type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
+
+/// The figure that a checked file means.
+pub(super) fn resolve(
+    checked: Checked,
+    name: &str,
+    folder: &Path,
+    scene: Reader<'_>,
+    report: &mut Report<'_>,
+) -> Result<Option<Figure>, SceneError> {
+    if report.total() > 0 {
+        return Ok(None);
+    }
+    let Ok(file) = FigureFile::deserialize(Value::Object(checked.sound)) else { return Ok(None) };
+    let scenes = Scenes { folder, read: scene, report, scenes: Vec::new(), places: HashMap::new() };
+    let content = match (file.sheet, file.forces) {
+        (Some(sheet), None) => scenes.sheet(sheet)?.map(Content::Sheet),
+        (None, Some(forces)) => scenes.forces(forces)?.map(Content::Forces),
+        (found, _) => {
+            let message = match found {
+                Some(_) => "both `sheet` and `forces` are given; keep one of them",
+                None => "the figure shows nothing: expected a table `[sheet]` or `[forces]`",
+            };
+            report.at(&[], message, None);
+            return Ok(None);
+        }
+    };
+    let Some(content) = content else { return Ok(None) };
+    let first = match &content {
+        Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
+    };
+    let look = look(first, file.theme);
+    Ok(Some(Figure {
+        name: name.to_owned(),
+        title: file.title.unwrap_or_default(),
+        caption: file.caption.unwrap_or_default(),
+        size: file.size,
+        look,
+        content,
+    }))
+}
+
+/// The scenes of a figure, each read once.
+struct Scenes<'a, 'r, 't> {
+    folder: &'a Path,
+    read: Reader<'a>,
+    report: &'r mut Report<'t>,
+    scenes: Vec<Scene>,
+    places: HashMap<PathBuf, usize>,
+}
+
+impl Scenes<'_, '_, '_> {
+    /// The place of a scene named at `path` in the file; `None` if there is none, which is said.
+    fn scene(&mut self, named: &str, path: &[Way<'_>]) -> Result<Option<usize>, SceneError> {
+        let file = self.folder.join(named);
+        if let Some(&place) = self.places.get(&file) {
+            return Ok(Some(place));
+        }
+        match (self.read)(&file) {
+            Ok(scene) => {
+                self.scenes.push(scene);
+                self.places.insert(file, self.scenes.len() - 1);
+                Ok(Some(self.scenes.len() - 1))
+            }
+            // What is wrong inside a scene is shown with its place there.
+            Err(error @ (SceneError::Mistakes(_) | SceneError::Syntax(_))) => Err(error),
+            Err(error) => {
+                self.report.at(path, error.to_string(), None);
+                Ok(None)
+            }
+        }
+    }
+
+    fn sheet(mut self, file: SheetFile) -> Result<Option<Sheet>, SceneError> {
+        let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
+        let before = self.report.total();
+        let columns = match file.moments {
+            Some(_) if !file.column.is_empty() => {
+                self.report.at_key(&at("moments"), "both `moments` and `column` are given; keep one of them", None);
+                return Ok(None);
+            }
+            Some(moments) => {
+                moments.iter().map(|&time| ColumnFile { scene: None, time: Some(time), label: None }).collect()
+            }
+            None => file.column,
+        };
+        if columns.is_empty() {
+            self.report.at(&at(""), "the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
+            return Ok(None);
+        }
+        let usual = match &file.scene {
+            Some(named) => self.scene(named, &at("scene"))?,
+            None => None,
+        };
+        let mut resolved = Vec::new();
+        for (index, column) in columns.into_iter().enumerate() {
+            let path = [Way::Key("sheet"), Way::Key("column"), Way::Index(index), Way::Key("scene")];
+            let scene = match (&column.scene, &file.scene) {
+                (Some(named), _) => self.scene(named, &path)?,
+                (None, Some(_)) => usual,
+                (None, None) => {
+                    self.report.at(&path, "the column has no scene: expected `scene` here or in `[sheet]`", None);
+                    None
+                }
+            };
+            resolved.extend(scene.map(|scene| Column { scene, time: column.time, label: column.label }));
+        }
+        if self.report.total() > before {
+            return Ok(None);
+        }
+        let rows = if file.row.is_empty() {
+            let all = self.scenes[0].runs.iter();
+            all.map(|run| RowFile { run: run.name.clone(), time: None, label: None, note: None }).collect()
+        } else {
+            file.row
+        };
+        self.check_cells(&rows, &resolved);
+        if !file.strips.is_empty() && self.scenes.len() > 1 {
+            self.report.at_key(&at("strips"), "strips are of one scene, but the columns show several", None);
+        }
+        if file.split.is_some_and(|split| split >= end(&self.scenes[0])) {
+            let message = format!("the scene ends at {} s; expected an earlier moment", end(&self.scenes[0]));
+            self.report.at(&at("split"), message, None);
+        }
+        let row = |row: RowFile| Row {
+            label: row.label.unwrap_or_else(|| row.run.clone()),
+            run: row.run,
+            time: row.time,
+            note: row.note.unwrap_or_default(),
+        };
+        let rows = rows.into_iter().map(row).collect();
+        let Self { report, scenes, .. } = self;
+        let sheet = Sheet { scenes, columns: resolved, rows, strips: file.strips, split: file.split };
+        Ok((report.total() == before).then_some(sheet))
+    }
+
+    /// Whether each cell has a run and a moment.
+    fn check_cells(&mut self, rows: &[RowFile], columns: &[Column]) {
+        for (index, row) in rows.iter().enumerate() {
+            let path = |key: &'static str| [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key(key)];
+            for scene in &self.scenes {
+                if !scene.runs.iter().any(|run| run.name == row.run) {
+                    let (message, help) = no_run(scene, &row.run);
+                    self.report.at(&path("run"), message, help);
+                }
+                if row.time.is_some_and(|time| time > end(scene)) {
+                    self.report.at(&path("time"), too_late(scene), None);
+                }
+            }
+            if row.time.is_none() && columns.iter().any(|column| column.time.is_none()) {
+                self.report.at(&path("time"), "neither the row nor each column says at which `time`", None);
+            }
+        }
+        for (index, column) in columns.iter().enumerate() {
+            let scene = &self.scenes[column.scene];
+            if column.time.is_some_and(|time| time > end(scene)) {
+                let moments = [Way::Key("sheet"), Way::Key("moments"), Way::Index(index)];
+                self.report.at(&moments, too_late(scene), None);
+            }
+        }
+    }
+
+    fn forces(mut self, file: ForcesFile) -> Result<Option<Forces>, SceneError> {
+        let before = self.report.total();
+        let path = |index: usize| [Way::Key("forces"), Way::Key("scenes"), Way::Index(index)];
+        for (index, named) in file.scenes.iter().enumerate() {
+            self.scene(named, &path(index))?;
+        }
+        if self.report.total() > before {
+            return Ok(None);
+        }
+        let names = |scene: &Scene| scene.runs.iter().map(|run| run.name.clone()).collect::<Vec<_>>();
+        let runs = names(&self.scenes[0]);
+        for (index, scene) in self.scenes.iter().enumerate() {
+            if names(scene) != runs {
+                let all = list(&runs, "and", |name| format!("“{name}”"));
+                self.report.at(&path(index), format!("the runs of this scene are not those of the first: {all}"), None);
+            }
+        }
+        let compare = file.compare.map(|name| {
+            let place = runs.iter().position(|run| *run == name);
+            if place.is_none() {
+                let (message, help) = no_run(&self.scenes[0], &name);
+                self.report.at(&[Way::Key("forces"), Way::Key("compare")], message, help);
+            }
+            place
+        });
+        let mut notes = file.notes;
+        notes.resize(runs.len(), String::new());
+        let numbers = file.numbers == NumbersFile::Force;
+        let Self { report, scenes, .. } = self;
+        let forces = Forces { scenes, notes, compare: compare.flatten(), vectors: file.vectors, numbers };
+        Ok((report.total() == before).then_some(forces))
+    }
+}
+
+/// The last moment of a scene (s).
+fn end(scene: &Scene) -> f64 {
+    scene.frame_time(scene.last_frame())
+}
+
+fn too_late(scene: &Scene) -> String {
+    format!("the scene “{}” ends at {} s; expected a moment up to then", scene.title, end(scene))
+}
+
+fn no_run(scene: &Scene, name: &str) -> (String, Option<String>) {
+    let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
+    let all = list(&names, "and", |name| format!("“{name}”"));
+    let help = nearest(name, &names).map(|near| format!("did you mean “{near}”?"));
+    (format!("the scene “{}” has no run “{name}”; its runs are {all}", scene.title), help)
+}
