@@ -303,7 +303,7 @@ impl Writer<'_> {
         }
     }
 
-    fn left(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, left: f64, baseline: f64) {
+    pub(super) fn left(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, left: f64, baseline: f64) {
         if Scale::legible(size) && !text.is_empty() {
             let run = self.fonts.lay_out(text, weight, size, colour, left, baseline);
             self.words.push(run);

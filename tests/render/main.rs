@@ -4,6 +4,7 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod forces;
 mod inside;
 mod look;
 mod obstacles;
