@@ -322,7 +322,9 @@ impl Chart {
             let line = [self.left, (self.bottom - thickness / 2.0).round(), self.right - self.left, thickness];
             writer.marks.push(filled(line, hairline));
         }
-        for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate() {
+        let mut free = f64::INFINITY;
+        // The last one, which has the unit, comes first: a number for which it leaves no room is not written.
+        for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate().rev() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();
             let length = (TICK * self.unit).round().max(2.0);
@@ -330,8 +332,12 @@ impl Chart {
             let left = x - wide(writer.fonts, text, self.unit) / 2.0;
             let is_last = at + 1 == times.ticks.len();
             let text = if is_last { format!("{text} {}", times.unit) } else { text.clone() };
-            let left = left.min(self.right - wide(writer.fonts, &text, self.unit));
-            self.write(writer, &text, palette.second_text, left, self.bottom + (BELOW - 3.0) * self.unit);
+            let width = wide(writer.fonts, &text, self.unit);
+            let left = left.min(self.right - width);
+            if left + width <= free {
+                self.write(writer, &text, palette.second_text, left, self.bottom + (BELOW - 3.0) * self.unit);
+                free = left;
+            }
         }
     }
 
