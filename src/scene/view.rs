@@ -57,6 +57,10 @@ pub struct View {
     pub floor: FloorStyle,
     /// Whether edges in front, and edges behind the body, are drawn.
     pub edges: [bool; 2],
+    /// Whether the outlines of sound elements and of solid obstacles are drawn.
+    pub outline: bool,
+    /// Whether turned-over elements are hatched, besides having a colour of their own.
+    pub hatch: bool,
 }
 
 impl Default for View {
@@ -93,6 +97,8 @@ impl Default for View {
             shadow: true,
             floor: FloorStyle::default(),
             edges: [true; 2],
+            outline: true,
+            hatch: true,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
-use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
+use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::{FloorStyle, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
@@ -115,6 +115,9 @@ impl<'a> Draft<'a> {
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
         let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        if !self.scene.view.outline {
+            lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));
+        }
         self.hands(above);
         self.arrows(above);
         Panel {
@@ -125,6 +128,7 @@ impl<'a> Draft<'a> {
             sound,
             opacity: narrow(self.scene.view.opacity),
             turned_over,
+            hatch: self.scene.view.hatch,
             lines,
             obstacles,
             strokes: self.strokes(),
@@ -212,7 +216,8 @@ impl<'a> Draft<'a> {
             palette: &self.composer.palette,
         };
         if self.flat {
-            let flat = obstacle::Flat { site, line_scale: self.scale.line() };
+            let outline = self.scene.view.outline;
+            let flat = obstacle::Flat { site, line_scale: self.scale.line(), outline };
             flat.arrows(&self.pointers(), above);
             return flat.draw();
         }

@@ -93,6 +93,12 @@ pub(in crate::scene) struct ViewFile {
     pub(in crate::scene) floor: FloorStyle,
     /// Which lines are drawn on surfaces.
     pub(in crate::scene) edges: EdgesFile,
+    /// Whether silhouettes are drawn: the outlines of sound elements and of solid obstacles, and where folds of these end
+    /// before what is farther away. Those of turned-over elements are drawn in any case.
+    pub(in crate::scene) outline: bool,
+    /// Whether turned-over elements are hatched. Without it their colour tells of them; where a field colours surfaces
+    /// they have it instead of the field's.
+    pub(in crate::scene) hatch: bool,
     /// From where the scene is seen.
     pub(in crate::scene) camera: CameraFile,
 }
@@ -127,6 +133,8 @@ impl Default for ViewFile {
             shadow: true,
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),
+            outline: true,
+            hatch: true,
             camera: CameraFile::default(),
         }
     }
