@@ -97,6 +97,8 @@ struct Chart {
     unit: f64,
     /// Thickness of lines, in parts of that in the reference picture.
     line: f64,
+    /// That of hairlines, which go with the type.
+    thin: f64,
 }
 
 impl Strips {
@@ -134,6 +136,7 @@ impl Strips {
             bottom,
             unit,
             line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
+            thin: writer.scale.line_factor * unit,
         };
         let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_HEIGHT && Scale::legible(NUMBERS * unit);
         if !enough || self.end <= 0.0 {
@@ -276,12 +279,12 @@ impl Chart {
 
     /// Thickness of hairlines, in whole pixels.
     fn hairline(self) -> f64 {
-        self.unit.round().max(1.0)
+        self.thin.round().max(1.0)
     }
 
     /// The colour of a hairline: one that would be thinner than a pixel is fainter instead.
     fn thinned(self, colour: Colour, ground: Colour) -> Colour {
-        mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
+        mixed(ground, colour, (1.25 * self.thin / self.hairline()).min(1.0))
     }
 
     fn outside(self) -> f64 {

@@ -265,6 +265,7 @@ impl<'a> Draft<'a> {
             lens: &self.lens,
             room: self.clear_of_words(),
             size: arrows::size(self.element, self.scale.unit),
+            thickness: self.scale.line_factor,
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
             colour: match view.colour {
