@@ -32,8 +32,9 @@ struct Panel {
     // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // Opacity of sound elements.
+    // Opacity of sound elements; 0 if nothing lies behind them, 1 if something may.
     opacity: f32,
+    behind: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;
