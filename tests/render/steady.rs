@@ -80,26 +80,35 @@ fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
         .collect()
 }
 
-fn film(gpu: &Gpu, scene: &Scene, frames: &[Frame]) -> Vec<RgbImage> {
-    let composer = Composer::new(scene);
-    let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
-    let draw = |frame| {
-        let mut picture = composer.compose(frame);
+/// Draws frames without their words, some of which are numbers.
+struct Camera(Renderer);
+
+impl Camera {
+    fn new(gpu: &Gpu, scene: &Scene) -> Self {
+        Self(Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn"))
+    }
+
+    fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
+        let mut picture = Composer::new(scene).compose(frame);
         picture.words.clear();
-        renderer.draw(&picture).expect("the device works")
-    };
-    frames.iter().map(draw).collect()
+        self.0.draw(&picture).expect("the device works")
+    }
+}
+
+fn film(gpu: &Gpu, scene: &Scene, frames: &[Frame]) -> Vec<RgbImage> {
+    let mut camera = Camera::new(gpu, scene);
+    frames.iter().map(|frame| camera.shot(scene, frame)).collect()
 }
 
 /// A film of an unmoved frame around which the camera turns, no pixel in its panel faster than a twentieth a frame.
 fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
     let width = f64::from(scene.view.size[0]) / frame.runs.len() as f64;
-    let mut images = Vec::new();
-    for _ in 0..FRAMES {
-        images.extend(film(gpu, scene, std::slice::from_ref(frame)));
+    let mut camera = Camera::new(gpu, scene);
+    let mut shot = |_| {
         scene.view.camera.azimuth += 2.0 * SLOW / width;
-    }
-    images
+        camera.shot(scene, frame)
+    };
+    (0..FRAMES).map(&mut shot).collect()
 }
 
 /// The farthest that a node goes between two frames (px), where the body is.
@@ -111,7 +120,6 @@ fn way(scene: &Scene, from: &Frame, to: &Frame) -> f64 {
 
 fn assert_steady(name: &str, film: &[RgbImage]) {
     let unrest = unrest(film);
-    println!("{name}: {unrest:?}");
     assert!(film[0] != film[film.len() - 1], "{name}: nothing moves");
     assert!(unrest.jump <= MOST.jump && unrest.fro <= MOST.fro, "{name}: {unrest:?}");
 }
