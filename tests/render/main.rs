@@ -4,12 +4,14 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod fine;
 mod inside;
 mod look;
 mod obstacles;
 mod pictures;
 mod shown;
 mod smooth;
+mod steady;
 mod strips;
 mod words;
 
