@@ -22,6 +22,8 @@ const FAINTEST: f64 = 0.33;
 const SHORTEST: [f64; 2] = [9.0, 2.5];
 /// They fade over this part of that length above it.
 const FADING: f64 = 0.35;
+/// Depths that differ by less than this part of the largest are equal.
+const EQUALLY_DEEP: f64 = 1e-6;
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 
@@ -64,6 +66,9 @@ pub(super) struct Arrows<'a> {
     pub(super) room: Rectangle,
     /// See [`size`].
     pub(super) size: f64,
+    /// How many times thicker than that they are. A thicker arrow is no longer, and the head of a short one is no larger:
+    /// the same displacements are shown at any thickness.
+    pub(super) thickness: f64,
     /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
     pub(super) node: f64,
     /// How many times longer than the displacements they are.
@@ -90,10 +95,13 @@ impl Arrows<'_> {
             Some((depth, opacity, [from, to].map(DVec2::from)))
         });
         let mut ends: Vec<_> = ends.collect();
-        ends.sort_by(|one, other| other.0.total_cmp(&one.0));
+        // What lies equally deep stays in order, whatever round-off says.
+        let step = EQUALLY_DEEP * ends.iter().map(|(depth, ..)| depth.abs()).fold(0.0, f64::max);
+        let rank = |depth: f64| (depth / step.max(f64::MIN_POSITIVE)).round();
+        ends.sort_by(|one, other| rank(other.0).total_cmp(&rank(one.0)));
         let arrows = ends.into_iter().filter_map(|(_, opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
-            let whole = arrow(ends, self.size, self.colour, self.halo);
+            let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);
             Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })
         });
         marks.extend(arrows);

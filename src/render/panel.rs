@@ -29,7 +29,9 @@ pub(super) struct PanelUniform {
     pub(super) region: Vec4,
     pub(super) place: Vec4,
     pub(super) opacity: f32,
-    pub(super) spare: [f32; 3],
+    pub(super) hatch: f32,
+    pub(super) behind: f32,
+    pub(super) spare: f32,
 }
 
 /// An sRGB colour as linear light.
@@ -78,6 +80,12 @@ fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     )
 }
 
+/// Whether anything may be seen through the sound surfaces of a panel.
+pub(super) fn has_behind(panel: &Panel) -> bool {
+    let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
+    !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
+}
+
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
     let (palette, sight) = (&picture.palette, &panel.sight);
     let [left, top] = [0, 1].map(|axis| panel.region[axis] as f32 - region[axis] as f32);
@@ -95,7 +103,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         alarm: linear(palette.alarm),
         line_scale: sight.line_scale,
         // Beside the dark end of a scale, vermilion is seen better.
-        alarm_line: linear(if picture.ramp.is_empty() { palette.alarm_line } else { palette.alarm }),
+        alarm_line: linear(if picture.ramp.is_empty() || !panel.hatch { palette.alarm_line } else { palette.alarm }),
         outline_alpha: palette.outline_alpha,
         edge: linear(palette.edge),
         focal: sight.focal,
@@ -104,7 +112,9 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
         opacity: panel.opacity,
-        spare: [0.0; 3],
+        hatch: if panel.hatch { 1.0 } else { 0.0 },
+        behind: if has_behind(panel) { 1.0 } else { 0.0 },
+        spare: 0.0,
     }
 }
 

@@ -4,6 +4,7 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod fine;
 mod forces;
 mod inside;
 mod look;
@@ -11,6 +12,7 @@ mod obstacles;
 mod pictures;
 mod shown;
 mod smooth;
+mod steady;
 mod strips;
 mod words;
 

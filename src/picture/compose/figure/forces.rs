@@ -83,7 +83,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Picture {
     // Scenes of one run stand beside each other.
     let (columns, rows) = if runs > 1 { (runs, scenes.len()) } else { (scenes.len(), 1) };
     let [width, height] = figure.size.map(f64::from);
-    let scale = Scale::new(figure.size, [0, 0, figure.size[0] / columns as u32, figure.size[1]]).with(&figure.look);
+    let scale = Scale::new(figure.size, [0, 0, figure.size[0] / columns as u32, figure.size[1]]).with(&scenes[0].view);
     let (marks, curves, words) = Default::default();
     let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
     let Header { bottom: top } = header(&mut writer, figure);
@@ -157,7 +157,7 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let view = &mut scene.view;
     view.look = figure.look.clone();
     (view.colour, view.strip, view.spring_strain, view.explode) = (None, None, None, 0.0);
-    view.visible.displacements = false;
+    (view.visible.displacements, view.margin) = (false, 1.0);
     scene
 }
 
