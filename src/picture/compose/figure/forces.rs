@@ -157,7 +157,7 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let view = &mut scene.view;
     view.look = figure.look.clone();
     (view.colour, view.strip, view.spring_strain, view.explode) = (None, None, None, 0.0);
-    (view.visible.displacements, view.margin) = (false, 1.0);
+    view.visible.displacements = false;
     scene
 }
 
