@@ -21,6 +21,7 @@ mod report;
 mod scenes;
 mod schema;
 mod simulate;
+mod table;
 
 #[cfg(feature = "render")]
 pub use driver::settle;
@@ -44,6 +45,7 @@ const EXAMPLES: &str = "\
 Examples:
   localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
   localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape table                             the paper's numbers beside ours
 
 This program was built without the feature `render`: it draws no pictures.";
 
@@ -52,7 +54,8 @@ const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
   localshape simulate scenes/fig4b.toml        the same without pictures
-  localshape check scenes/*.toml               what scenes hold, or every mistake in them";
+  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape table                             the paper's numbers beside ours";
 
 /// Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models
 #[derive(Debug, Parser)]
@@ -68,6 +71,7 @@ enum Command {
     Render(render::Render),
     Simulate(simulate::Simulate),
     Check(check::Check),
+    Table(table::Table),
     Info(info::Info),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -97,6 +101,7 @@ impl Command {
             Self::Render(render) => render.run(words),
             Self::Simulate(simulate) => simulate.run(words),
             Self::Check(check) => check.run(),
+            Self::Table(table) => table.run(),
             Self::Info(info) => info.run(),
             Self::Schema(schema) => schema.run(),
             Self::Completions(completions) => completions.run(),
