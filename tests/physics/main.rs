@@ -13,4 +13,5 @@ mod grips;
 mod integrators;
 mod readings;
 mod support;
+mod table1;
 mod threads;
