@@ -31,9 +31,7 @@ const FADING_SIGN: f64 = 0.2;
 const FADING_BESIDE: f64 = 6.0;
 /// Bodies of more elements than this have no signs, which would hide what they stand for.
 const MOST_SIGNS: usize = 16;
-/// Bodies of more nodes than this have smaller ones.
-const MANY_NODES: usize = 150;
-/// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
+/// Nodes have at most this part of an element's edge for a radius, and at least this radius (px).
 const CROWDED: f64 = 0.14;
 const SMALLEST_NODE: f64 = 1.4;
 /// Thickness of the floor's line (px in the reference picture).
@@ -206,8 +204,7 @@ impl Flat<'_> {
     /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are those of the nodes if
     /// they have colours of their own.
     pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Mark>) {
-        let usual = NODE * self.scale.line();
-        let radius = if self.body.len() > MANY_NODES { node_radius(self.scale, element) } else { usual };
+        let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
             let Some(pixel) = self.pixel(point) else { continue };
             let colour = colours(node).unwrap_or(self.palette.node);

@@ -3,7 +3,7 @@
 
 use super::axis::{Axis, Kind};
 use super::caption::{DASHES, Writer};
-use super::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
+use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, Rectangle, Scale};
 use super::narrow::narrow;
 use super::palette::Colour;
 use super::text::{Fonts, Weight};
@@ -22,9 +22,8 @@ const NUMBERS: f64 = 14.0;
 const NAME_BASELINE: f64 = 13.0;
 const ABOVE: f64 = 26.0;
 const BELOW: f64 = 20.0;
-/// The smallest chart (px).
+/// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
-const LEAST_HEIGHT: f64 = 14.0;
 /// Between the numbers at the left and the chart, the length of a tick of time, and the least distances between numbers
 /// above and beside each other (px in the reference picture).
 const GAP: f64 = 8.0;
@@ -138,7 +137,7 @@ impl Strips {
             line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
             thin: writer.scale.line_factor * unit,
         };
-        let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_HEIGHT && Scale::legible(NUMBERS * unit);
+        let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_CHART && Scale::legible(NUMBERS * unit);
         if !enough || self.end <= 0.0 {
             return;
         }
