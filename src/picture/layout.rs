@@ -201,6 +201,16 @@ impl Scale {
         Self { unit, ..Self::REFERENCE }
     }
 
+    /// That of a picture of a number of pixels for each of the reference picture.
+    pub(super) fn at(unit: f64) -> Self {
+        Self { unit, ..Self::REFERENCE }
+    }
+
+    /// The same for things of another size.
+    pub(super) fn with_unit(self, unit: f64) -> Self {
+        Self { unit, ..self }
+    }
+
     /// The same with type and lines as a scene asks for.
     pub(super) fn with(self, look: &Look) -> Self {
         Self { type_factor: look.text_scale, line_factor: look.line_scale, ..self }

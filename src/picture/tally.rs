@@ -56,6 +56,11 @@ impl Tally {
         Self { rows, count }
     }
 
+    /// How many rows of squares there are; `None` if there is a bar instead.
+    pub(super) fn rows(&self) -> Option<usize> {
+        (!self.rows.is_empty()).then_some(self.rows.len())
+    }
+
     /// The marks of the tally with its lower left corner at a place (px), and its width (px).
     pub(super) fn draw(
         &self,

@@ -144,7 +144,8 @@ impl Scenes<'_, '_, '_> {
         };
         let rows = rows.into_iter().map(row).collect();
         let Self { report, scenes, .. } = self;
-        let sheet = Sheet { scenes, columns: resolved, rows, strips: file.strips, split: file.split };
+        let sheet =
+            Sheet { scenes, columns: resolved, rows, strips: file.strips, number: file.number, split: file.split };
         Ok((report.total() == before).then_some(sheet))
     }
 

@@ -1,6 +1,7 @@
 //! Figures: pictures of several scenes on one sheet.
 
 mod forces;
+mod header;
 mod sheet;
 
 use crate::moments::Moments;

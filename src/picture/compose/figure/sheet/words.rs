@@ -1,0 +1,296 @@
+//! The words of a contact sheet: headings of columns, names of rows, tallies and counts below bodies.
+
+use super::plan::{HEADING_LINE, Plan, TALLY_RAISED};
+use crate::picture::caption::{self, Writer, wrapped};
+use crate::picture::compose::{Composer, cut};
+use crate::picture::layout::Scale;
+use crate::picture::narrow::narrow;
+use crate::picture::tally::Tally;
+use crate::picture::text::{Fonts, Weight};
+use crate::picture::{course, number};
+use crate::scene::Scene;
+use crate::scene::figure::{Row, Sheet};
+use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
+use crate::sim::words::elements;
+
+/// Names and notes of rows are at most this part of the picture wide, and have at most so many lines.
+const WIDEST: f64 = 0.17;
+const NAME_LINES: usize = 2;
+const NOTE_LINES: usize = 3;
+/// Size of notes, distances of the lines of names and notes, and from a name to the sample of its line and on to the
+/// notes (px in the reference picture).
+const NOTE: f64 = 14.0;
+const NAME_LINE: f64 = 20.0;
+const NOTE_LINE: f64 = 18.0;
+const SAMPLE_BELOW: f64 = 13.0;
+const NOTE_BELOW: f64 = 21.0;
+/// Between the letter of a column and what stands beside it, and between columns (px in the reference picture).
+const LETTER_GAP: f64 = 10.0;
+const HEADINGS_APART: f64 = 14.0;
+/// How large tallies are beside those of panels, and between tally, count and number (px in the reference picture).
+const TALLY: f64 = 0.54;
+const COUNT_GAP: f64 = 10.0;
+const NUMBER_GAP: f64 = 18.0;
+
+/// What the key of turned-over elements may say, from the longest wording to the shortest.
+pub(super) fn key(scenes: &[Scene]) -> Vec<String> {
+    let rows: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side).rows()).collect();
+    let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
+    let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
+    let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
+    let mut wordings = vec!["turned over".to_owned()];
+    let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
+    if several && rows.iter().all(Option::is_some) {
+        wordings.push(format!("turned over (one square per {kind})"));
+        if rows.iter().all(|rows| rows.is_some_and(|rows| rows > 1)) {
+            wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
+        }
+    }
+    wordings.reverse();
+    wordings
+}
+
+/// What stands above a column.
+pub(super) struct Heading {
+    /// Empty for none.
+    letter: String,
+    /// What stands beside the letter.
+    pub(super) lines: Vec<String>,
+}
+
+impl Heading {
+    /// Those of all columns, which are `pitch` apart (px); none if not all have room.
+    pub(super) fn all(sheet: &Sheet, writer: &Writer<'_>, pitch: f64, with_charts: bool) -> Vec<Self> {
+        let (scale, fonts) = (writer.scale, writer.fonts);
+        let size = scale.caption();
+        let apart = HEADINGS_APART * scale.unit;
+        let count = sheet.columns.len();
+        let times = || sheet.columns.iter().filter_map(|column| column.time);
+        let small = times().all(|time| time < 1.0) || times().any(|time| time > 0.0 && time < 1.0);
+        // A moment that every row replaces by its own says nothing.
+        let replaced = sheet.rows.iter().all(|row| row.time.is_some());
+        let text = |at: usize| {
+            let column = &sheet.columns[at];
+            let moment = column.time.filter(|_| !replaced).map(|time| number::moment(time, small));
+            column.label.clone().or(moment).unwrap_or_default()
+        };
+        let letter = |at: usize| if count > 1 || with_charts { caption::letter(at) } else { String::new() };
+        let all = (0..count).map(|at| {
+            let letter = letter(at);
+            let beside = beside_letter(&letter, fonts, scale);
+            let room = pitch - apart - beside;
+            let lines = wrapped(fonts, &text(at), Weight::Regular, size, room.max(0.0));
+            let lines = lines.into_iter().filter(|line| !line.is_empty()).collect();
+            Self { letter, lines }
+        });
+        let mut all: Vec<_> = all.collect();
+        let wide = |text: &str| fonts.width(text, Weight::Regular, size);
+        let fits = |heading: &Self| {
+            let room = pitch - apart - beside_letter(&heading.letter, fonts, scale);
+            let whole = |line: &String| wide(line) <= room && line.chars().count() > 1 || wide(line) <= 0.0;
+            heading.lines.is_empty() || heading.lines.len() <= 2 && heading.lines.iter().all(whole)
+        };
+        if !all.iter().all(fits) {
+            // Labels are shortened to one line each, moments are left out.
+            let least = 4.0 * size;
+            for (at, heading) in all.iter_mut().enumerate() {
+                let room = pitch - apart - beside_letter(&heading.letter, fonts, scale);
+                let label = sheet.columns[at].label.as_deref().filter(|_| room >= least).unwrap_or_default();
+                let short = fonts.shortened(label, Weight::Regular, size, room.max(0.0));
+                heading.lines = if short.is_empty() { Vec::new() } else { vec![short] };
+            }
+        }
+        let letters_fit = |heading: &Self| fonts.width(&heading.letter, Weight::SemiBold, size) + 2.0 <= pitch;
+        let has_lines = all.iter().any(|heading| !heading.lines.is_empty());
+        if !Scale::legible(size) || !all.iter().all(letters_fit) && !has_lines {
+            return Vec::new();
+        }
+        for heading in &mut all {
+            // A letter alone still takes a line.
+            if heading.lines.is_empty() && !heading.letter.is_empty() {
+                heading.lines.push(String::new());
+            }
+        }
+        all
+    }
+}
+
+/// The room that a letter takes before what stands beside it (px).
+fn beside_letter(letter: &str, fonts: &Fonts, scale: Scale) -> f64 {
+    if letter.is_empty() {
+        return 0.0;
+    }
+    fonts.width(letter, Weight::SemiBold, scale.caption()) + LETTER_GAP * scale.unit
+}
+
+/// Writes the headings of all columns.
+pub(super) fn write_headings(writer: &mut Writer<'_>, plan: &Plan, sheet: &Sheet) {
+    let (scale, palette) = (writer.scale, writer.palette);
+    for (column, heading) in plan.headings.iter().enumerate().take(sheet.columns.len()) {
+        let left = f64::from(plan.tile(0, column)[0]);
+        let baseline = plan.headings_baseline;
+        writer.left(&heading.letter, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
+        let left = left + beside_letter(&heading.letter, writer.fonts, scale);
+        for (at, line) in heading.lines.iter().enumerate() {
+            let baseline = baseline + at as f64 * HEADING_LINE * scale.type_unit();
+            writer.left(line, Weight::Regular, scale.caption(), palette.second_text, left, baseline);
+        }
+    }
+}
+
+/// What stands beside the rows.
+pub(super) struct RowLabels {
+    /// Lines of the name and of the note of each row.
+    rows: Vec<[Vec<String>; 2]>,
+    /// Whether a sample of the row's line stands below its name.
+    with_sample: bool,
+    /// The width of all (px).
+    pub(super) width: f64,
+}
+
+impl RowLabels {
+    /// The words beside the rows of a sheet in a picture of a width (px).
+    pub(super) fn new(sheet: &Sheet, fonts: &Fonts, scale: Scale, with_sample: bool, picture: f64) -> Self {
+        let room = WIDEST * picture;
+        let note_size = NOTE * scale.type_unit();
+        let lines = |text: &str, weight, size, most: usize| {
+            let all = wrapped(fonts, text, weight, size, room);
+            let all: Vec<_> = all.into_iter().filter(|line| !line.is_empty()).collect();
+            cut(all, most)
+        };
+        let zero_is_small = sheet.rows.iter().filter_map(|row| row.time).all(|time| time < 1.0);
+        let one = |row: &Row| {
+            let own = row.time.filter(|_| row.note.is_empty()).map(|time| number::moment(time, zero_is_small));
+            let note = own.as_deref().unwrap_or(&row.note);
+            let name = lines(&row.label, Weight::SemiBold, scale.caption(), NAME_LINES);
+            let legible = Scale::legible(note_size);
+            [name, if legible { lines(note, Weight::Regular, note_size, NOTE_LINES) } else { Vec::new() }]
+        };
+        let rows: Vec<_> =
+            if Scale::legible(scale.caption()) { sheet.rows.iter().map(one).collect() } else { Vec::new() };
+        let wide = |lines: &[String], weight, size| {
+            lines.iter().map(|line| fonts.width(line, weight, size)).fold(0.0, f64::max)
+        };
+        let widths = rows.iter().map(|[name, note]| {
+            wide(name, Weight::SemiBold, scale.caption()).max(wide(note, Weight::Regular, note_size))
+        });
+        Self { width: widths.fold(0.0, f64::max), rows, with_sample }
+    }
+
+    /// Writes them in the middle of their rows' bodies, as far as there is room.
+    pub(super) fn write(&self, writer: &mut Writer<'_>, plan: &Plan, sheet: &Sheet) {
+        let Some([left, _]) = plan.labels else { return };
+        let (scale, palette) = (writer.scale, writer.palette);
+        let unit = scale.type_unit();
+        for (row, [name, note]) in self.rows.iter().enumerate() {
+            let [_, top, _, height] = plan.tile(row, 0).map(f64::from);
+            let room = height - 4.0 * scale.unit;
+            let heights = |names: usize, with_sample: bool, notes: usize| {
+                let sample = if with_sample { SAMPLE_BELOW } else { 0.0 };
+                let notes = if notes > 0 { NOTE_BELOW + (notes - 1) as f64 * NOTE_LINE } else { 0.0 };
+                (names as f64 * NAME_LINE + sample + notes) * unit
+            };
+            // What does not fit is left out: first the note, then the sample, then further lines of the name.
+            let choices = [
+                (name.len(), self.with_sample, note.len()),
+                (name.len(), self.with_sample, 0),
+                (name.len(), false, 0),
+                (1, false, 0),
+            ];
+            let fitting = choices.into_iter().find(|&(names, sample, notes)| heights(names, sample, notes) <= room);
+            let Some((names, with_sample, notes)) = fitting else { continue };
+            let middle = top + 0.5 * (height - plan.below_body);
+            let highest = top + room - heights(names, with_sample, notes);
+            let mut baseline = (middle - 0.5 * heights(names, with_sample, notes)).clamp(top, highest) + 15.0 * unit;
+            for line in &cut(name.clone(), names) {
+                writer.left(line, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
+                baseline += NAME_LINE * unit;
+            }
+            baseline -= NAME_LINE * unit;
+            if with_sample {
+                baseline += SAMPLE_BELOW * unit;
+                let has_springs = has_springs(sheet, row);
+                let colour = palette.arrows[usize::from(has_springs)];
+                writer.sample([left, baseline], (colour, has_springs));
+            }
+            baseline += NOTE_BELOW * unit;
+            for line in note.iter().take(notes) {
+                writer.left(line, Weight::Regular, NOTE * unit, palette.second_text, left, baseline);
+                baseline += NOTE_LINE * unit;
+            }
+        }
+    }
+}
+
+/// Whether the model of a row has springs.
+fn has_springs(sheet: &Sheet, row: usize) -> bool {
+    let run = |scene: &Scene| scene.runs.iter().find(|run| run.name == sheet.rows[row].run).cloned();
+    sheet.scenes.first().and_then(run).is_some_and(|run| !run.model.springs().is_empty())
+}
+
+/// Tally, count and a number below the body of a tile, or that its run has blown up.
+pub(super) fn write_below(
+    writer: &mut Writer<'_>,
+    plan: &Plan,
+    [row, column]: [usize; 2],
+    composer: &Composer<'_>,
+    run: &RunFrame,
+    number: Option<Diagnostic>,
+) {
+    let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
+    let size = scale.caption();
+    if !plan.has_tally || !Scale::legible(size) {
+        return;
+    }
+    let [left, top, width, height] = plan.tile(row, column).map(f64::from);
+    let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
+    let room = width - 12.0 * scale.unit;
+    let tally_scale = scale.with_unit(TALLY * scale.unit);
+    let baseline = bottom - 0.5 * TALLY * 36.0 * scale.type_unit() + 0.36 * size;
+    if let Status::Diverged(divergence) = run.snapshot.status {
+        let wordings = [format!("diverged at {}", number::time(divergence.time)), "diverged".to_owned()];
+        let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
+        let Some(text) = wordings.iter().find(|text| wide(text) <= room) else { return };
+        return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
+    }
+    let over = &run.snapshot.turned_over;
+    let (mut marks, mut taken) = (Vec::new(), 0.0);
+    if !over.is_empty() {
+        taken = composer.tally.draw(over, palette, tally_scale, 0.6 * room, [0.0, bottom], &mut marks);
+    }
+    let count = run.snapshot.diagnostics.turned_over;
+    let text = if over.is_empty() { String::new() } else { count.to_string() };
+    let [count_gap, number_gap] = [COUNT_GAP, NUMBER_GAP].map(|gap| gap * scale.type_unit());
+    let counted = taken + if text.is_empty() { 0.0 } else { count_gap + fonts.width(&text, Weight::SemiBold, size) };
+    let small = NOTE * scale.type_unit();
+    let said = number.and_then(|diagnostic| said(diagnostic, composer.scene, run)).unwrap_or_default();
+    let said_wide = number_gap + fonts.width(&said, Weight::Regular, small);
+    let said = if Scale::legible(small) && counted + said_wide <= room { said } else { String::new() };
+    let whole = counted + if said.is_empty() { 0.0 } else { said_wide };
+    let left = (middle - 0.5 * whole).round();
+    for mark in &mut marks {
+        mark.rectangle[0] += narrow(left);
+    }
+    writer.marks.extend(marks);
+    let colour = if count > 0 { palette.alarm_text } else { palette.second_text };
+    writer.left(&text, Weight::SemiBold, size, colour, left + taken + count_gap, baseline);
+    let end = left + counted + number_gap;
+    writer.left(&said, Weight::Regular, small, palette.second_text, end, baseline);
+}
+
+/// A diagnostic with its name; `None` if it has no value.
+fn said(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
+    let value = diagnostic.of(&run.snapshot.diagnostics);
+    let name = course::name(diagnostic, scene);
+    let value = match diagnostic {
+        _ if !value.is_finite() => return None,
+        Diagnostic::TurnedOver => return None,
+        Diagnostic::VolumeRatio => number::ratio(value),
+        Diagnostic::ShapeError => number::length(value, scene.body.extent()),
+        _ => {
+            let unit = diagnostic.unit();
+            number::with_minus(format!("{} {unit}", crate::sim::words::rounded(value, 3)))
+        }
+    };
+    Some(format!("{name} {value}"))
+}
