@@ -34,6 +34,8 @@ struct Panel {
     place: vec4<f32>,
     // Opacity of sound elements.
     opacity: f32,
+    // 1 if turned-over elements are hatched, else 0.
+    hatch: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

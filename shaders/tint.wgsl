@@ -1,5 +1,6 @@
 // Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
-// elements are coloured by it, too, and keep their hatch, in vermilion; through the body only that is seen.
+// elements are coloured by it, too, and keep their hatch, in vermilion; through the body only that is seen. Without a
+// hatch they are vermilion.
 
 // The colours of the scale, linear.
 @group(1) @binding(2) var<uniform> ramp: array<vec4<f32>, SHADES>;
@@ -49,10 +50,16 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     return colour * mix(SHADED, 1.0, smoothstep(DARKEST, 1.0, brightness));
 }
 
+// How much of a pixel of a turned-over element has the alarm's colour: the stripes of its hatch, or all of it.
+fn alarm_share(corner: TintedCorner) -> f32 {
+    let covered = stripes(corner.hatch, corner.place.xy);
+    return select(1.0, covered, panel.hatch > 0.5);
+}
+
 // The hatch of the turned-over set by itself, for those who look through the body: how much of a pixel it covers.
 @fragment
 fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let covered = stripes(corner.hatch, corner.place.xy);
+    let covered = alarm_share(corner);
     if panel.opacity < 1.0 {
         // Under a clear surface, their own colour is seen, too.
         return vec4(sqrt(saturate(mix(tint(corner), panel.alarm, covered))), 0.5 * covered);
@@ -62,7 +69,7 @@ fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
 
 @fragment
 fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let colour = mix(tint(corner), panel.alarm, stripes(corner.hatch, corner.place.xy));
+    let colour = mix(tint(corner), panel.alarm, alarm_share(corner));
     return vec4(sqrt(saturate(colour)), 1.0);
 }
 

@@ -64,6 +64,9 @@ pub(super) struct Arrows<'a> {
     pub(super) room: Rectangle,
     /// See [`size`].
     pub(super) size: f64,
+    /// How many times thicker than that they are. A thicker arrow is no longer, and the head of a short one is no larger:
+    /// the same displacements are shown at any thickness.
+    pub(super) thickness: f64,
     /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
     pub(super) node: f64,
     /// How many times longer than the displacements they are.
@@ -93,7 +96,7 @@ impl Arrows<'_> {
         ends.sort_by(|one, other| other.0.total_cmp(&one.0));
         let arrows = ends.into_iter().filter_map(|(_, opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
-            let whole = arrow(ends, self.size, self.colour, self.halo);
+            let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);
             Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })
         });
         marks.extend(arrows);

@@ -93,7 +93,9 @@ impl Writer<'_> {
         // Its left edge is that of the panels' words.
         let (margin, size) = (self.scale.margin(), TITLE * around.title());
         let title = self.fonts.shortened(title, Weight::SemiBold, size, width - 2.0 * margin);
-        self.left(&title, Weight::SemiBold, size, self.palette.text, margin, around.row(TITLE_BASELINE));
+        // Its margin is no wider than theirs, either, where that gives way to bodies.
+        let baseline = around.row(TITLE_BASELINE) - around.widened() * (around.unit - self.scale.unit);
+        self.left(&title, Weight::SemiBold, size, self.palette.text, margin, baseline);
     }
 
     /// The caption below all panels, with its first baseline at a height (px).
@@ -184,7 +186,7 @@ impl Writer<'_> {
             0 => (self.palette.text, self.palette.second_text),
             _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
-        let bottom = room.bottom - self.scale.margin();
+        let bottom = room.bottom - self.scale.lower_margin();
         let taken = tally.draw(
             &snapshot.turned_over,
             self.palette,
@@ -271,7 +273,7 @@ impl Writer<'_> {
     pub(super) fn hairlines(&mut self, layout: &Layout) {
         let inset = self.scale.margin();
         // A hairline of one pixel that lies between two pixels fills half of both.
-        let thickness = (2.0 * self.scale.unit).round().max(1.0);
+        let thickness = (2.0 * self.scale.unit * self.scale.line_factor).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
         let first = f64::from(layout.ground[1]);

@@ -39,6 +39,8 @@ pub(super) struct Chart {
     pub(super) unit: f64,
     /// Thickness of lines, in parts of that in the reference picture.
     pub(super) line: f64,
+    /// That of hairlines, which go with the type.
+    pub(super) thin: f64,
 }
 
 impl Chart {
@@ -59,12 +61,12 @@ impl Chart {
 
     /// Thickness of hairlines, in whole pixels.
     fn hairline(self) -> f64 {
-        self.unit.round().max(1.0)
+        self.thin.round().max(1.0)
     }
 
     /// The colour of a hairline: one that would be thinner than a pixel is fainter instead.
     fn thinned(self, colour: Colour, ground: Colour) -> Colour {
-        mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
+        mixed(ground, colour, (1.25 * self.thin / self.hairline()).min(1.0))
     }
 
     pub(super) fn outside(self) -> f64 {
@@ -109,7 +111,9 @@ impl Chart {
             let line = [self.left, (self.bottom - thickness / 2.0).round(), self.right - self.left, thickness];
             writer.marks.push(filled(line, hairline));
         }
-        for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate() {
+        let mut free = f64::INFINITY;
+        // The last one, which has the unit, comes first: a number for which it leaves no room is not written.
+        for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate().rev() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();
             let length = (TICK * self.unit).round().max(2.0);
@@ -117,8 +121,12 @@ impl Chart {
             let left = x - wide(writer.fonts, text, self.unit) / 2.0;
             let is_last = at + 1 == times.ticks.len();
             let text = if is_last { format!("{text} {}", times.unit) } else { text.clone() };
-            let left = left.min(self.right - wide(writer.fonts, &text, self.unit)).max(from);
-            self.write(writer, &text, palette.second_text, left, self.bottom + (BELOW - 3.0) * self.unit);
+            let width = wide(writer.fonts, &text, self.unit);
+            let left = left.min(self.right - width).max(from);
+            if left + width <= free {
+                self.write(writer, &text, palette.second_text, left, self.bottom + (BELOW - 3.0) * self.unit);
+                free = left;
+            }
         }
     }
 

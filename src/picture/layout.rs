@@ -12,7 +12,7 @@
 //! caption
 //! ```
 
-use crate::scene::{Labels, Look, View};
+use crate::scene::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
@@ -23,14 +23,23 @@ const REFERENCE_PANEL_HEIGHT: f64 = 460.0;
 /// Type smaller than this cannot be read and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
-/// Free around and inside each panel (px in the reference picture).
+/// Free around and inside each panel unless the scene says otherwise (px in the reference picture).
 const MARGIN: f64 = 40.0;
+/// The narrowest margin, at type of the usual size: words keep off the picture's sides, and off those of the next panel
+/// (px in the reference picture).
+const LEAST_MARGIN: f64 = 10.0;
+/// Above a strip it is so many times as wide: what is above and below has names of the same size.
+const ABOVE_STRIP: f64 = 2.0;
+/// What margins lack that are narrower than usual comes between rows to this part, or the lowest words of panels would
+/// touch what is below.
+const MADE_UP: f64 = 0.25;
 /// Height of the ground of the title, and of a strip with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
 const STRIP: f64 = 128.0;
-/// Free below a strip (px in the reference picture).
+/// Free below a strip with usual margins (px in the reference picture).
 const BELOW_STRIP: f64 = 22.0;
-/// Distance of the caption's lines, free above the first baseline and below the last (px in the reference picture).
+/// Distance of the caption's lines, free above the first baseline and, with usual margins, below the last (px in the
+/// reference picture).
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
@@ -91,7 +100,10 @@ impl Layout {
             if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(around.of_type(TITLE)) };
         let caption_height = |lines: usize| match lines {
             0 => 0,
-            lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION),
+            lines => rows(
+                around.of_type((lines - 1) as f64 * CAPTION_LINE + around.above_caption())
+                    + around.like_margin(BELOW_CAPTION),
+            ),
         };
         // Whatever stands around them, panels keep half of the picture: the title comes first, then the keys, and the
         // caption has what is left.
@@ -103,19 +115,24 @@ impl Layout {
         let caption = caption_height(caption_lines);
         let height = size[1] - title - legend - caption;
         let panels = panels([size[0], height], runs, view.columns);
-        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(&view.look));
+        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
         let strip_height = |height: f64| match view.strip {
-            Some(_) => (STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT))).min(STRIP_SHARE * height).round(),
+            Some(_) => {
+                let usual = STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
+                let more = (scale.like_margin(BELOW_STRIP) - BELOW_STRIP) * scale.unit;
+                (usual + more).min(STRIP_SHARE * height).round()
+            }
             None => 0.0,
         };
-        // However large the type is, bodies have some of their panel for themselves.
+        // However large type and margins are, bodies have some of their panel for themselves.
         let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         let room = MOST_WORDS * (lowest - strip_height(lowest)) / rooms(view).iter().sum::<f64>();
         let scale = Scale { unit: scale.unit.min(room), ..scale };
         let strip = |panel: Rectangle| {
             let [width, height] = [panel[2], panel[3]].map(f64::from);
             let room = strip_height(height);
-            let (side, below) = (scale.margin().min(width / 2.0), (BELOW_STRIP * scale.unit).min(room));
+            let (side, below) =
+                (scale.margin().min(width / 2.0), (scale.like_margin(BELOW_STRIP) * scale.unit).min(room));
             let top = f64::from(title + panel[1]) + height - room;
             [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
         };
@@ -136,17 +153,14 @@ impl Layout {
             has_legend: legend > 0,
             caption_lines,
             legend: title + height,
-            caption: f64::from(title + height + legend) + ABOVE_CAPTION * around.type_unit(),
+            caption: f64::from(title + height + legend) + around.above_caption() * around.type_unit(),
         }
     }
 
     /// Sizes of type and lines around the panels of a view of a number of runs.
     pub(super) fn around(view: &View, runs: usize) -> Scale {
         let size = view.size.map(|length| length.max(1));
-        panels(size, runs, view.columns)
-            .first()
-            .map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel))
-            .with(&view.look)
+        panels(size, runs, view.columns).first().map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel)).with(view)
     }
 }
 
@@ -160,7 +174,27 @@ pub(super) fn rooms(view: &View) -> [f64; 2] {
     };
     let below = if count || number || view.scale_bar { WORDS_BELOW } else { NO_WORDS };
     // Inside the margin, rows are as high as their type.
-    [above, below].map(|room| room.min(MARGIN) + (room - MARGIN).max(0.0) * view.look.text_scale)
+    let room = |room: f64, margin: f64| {
+        (room.min(MARGIN) + margin - MARGIN).max(0.0) + (room - MARGIN).max(0.0) * view.look.text_scale
+    };
+    let [margin, lower] = margins(view);
+    [room(above, margin), room(below, lower)]
+}
+
+/// Free around and inside each panel, and below its lowest words (px in the reference picture).
+fn margins(view: &View) -> [f64; 2] {
+    let least = LEAST_MARGIN * view.look.text_scale;
+    let margin = (MARGIN * view.look.margin).max(least);
+    // To a strip the words keep a distance of their own.
+    let lower = if view.strip.is_some() { margin.clamp((ABOVE_STRIP * least).min(MARGIN), MARGIN) } else { margin };
+    [margin, lower]
+}
+
+/// How much wider and higher panels seem to a camera whose margins are narrower than usual (px in the reference
+/// picture).
+pub(super) fn gained(view: &View) -> [f64; 2] {
+    let [margin, lower] = margins(view);
+    [2.0 * (MARGIN - margin), (MARGIN - margin) + (MARGIN - lower)]
 }
 
 /// Divides a picture into panels, row by row; together they cover it without gaps. No panel is without a pixel as
@@ -188,11 +222,15 @@ pub(super) struct Scale {
     type_factor: f64,
     /// How many times thicker than usual lines are.
     pub(super) line_factor: f64,
+    /// Free around and inside each panel, and below its lowest words (px in the reference picture).
+    margin: f64,
+    lower_margin: f64,
 }
 
 impl Scale {
     /// That of the reference picture.
-    pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0 };
+    pub(super) const REFERENCE: Self =
+        Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0, margin: MARGIN, lower_margin: MARGIN };
 
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         let [width, height] = [panel[2], panel[3]].map(f64::from);
@@ -211,9 +249,10 @@ impl Scale {
         Self { unit, ..self }
     }
 
-    /// The same with type and lines as a scene asks for.
-    pub(super) fn with(self, look: &Look) -> Self {
-        Self { type_factor: look.text_scale, line_factor: look.line_scale, ..self }
+    /// The same with type, lines and margins as a scene asks for.
+    pub(super) fn with(self, view: &View) -> Self {
+        let ([margin, lower_margin], look) = (margins(view), &view.look);
+        Self { type_factor: look.text_scale, line_factor: look.line_scale, margin, lower_margin, ..self }
     }
 
     /// Pixels for one pixel of type in the reference picture, and of what stands in its rows.
@@ -226,10 +265,10 @@ impl Scale {
         length * self.type_factor
     }
 
-    /// A height of type within margins, given in the reference picture (px): inside the margin, rows are as high as
-    /// their type.
+    /// A height of type within margins, given in the reference picture with its margins (px): inside the margin, rows are
+    /// as high as their type.
     pub(super) fn row(self, height: f64) -> f64 {
-        (MARGIN + (height - MARGIN) * self.type_factor) * self.unit
+        (self.margin + (height - MARGIN) * self.type_factor) * self.unit
     }
 
     /// Names, clock and count (px).
@@ -244,7 +283,38 @@ impl Scale {
 
     /// Free space around and inside each panel (px).
     pub(super) fn margin(self) -> f64 {
-        MARGIN * self.unit
+        self.margin * self.unit
+    }
+
+    /// Free below the lowest words of each panel (px).
+    pub(super) fn lower_margin(self) -> f64 {
+        self.lower_margin * self.unit
+    }
+
+    /// A free length as much longer as margins are wider.
+    fn like_margin(self, length: f64) -> f64 {
+        length * (self.margin / MARGIN)
+    }
+
+    /// How much wider than usual margins are, if they are (px in the reference picture).
+    pub(super) fn widened(self) -> f64 {
+        (self.margin - MARGIN).max(0.0)
+    }
+
+    /// What stands between rows instead of margins that are narrower than usual (px in the reference picture).
+    pub(super) fn made_up(self) -> f64 {
+        MADE_UP * (MARGIN - self.margin).max(0.0)
+    }
+
+    /// How much more than usual is free below the key of colours and arrows (px in the reference picture), which has less
+    /// room there than a margin.
+    pub(super) fn below_legend(self) -> f64 {
+        0.5 * (self.margin - MARGIN)
+    }
+
+    /// Free above the caption's first baseline (px in the reference picture).
+    fn above_caption(self) -> f64 {
+        ABOVE_CAPTION + self.made_up()
     }
 
     /// Between things beside each other (px).
@@ -264,6 +334,9 @@ impl Scale {
     }
 }
 
+/// The lowest baseline of a panel lies so far within its margin (px in the reference picture).
+const BELOW_BASELINE: f64 = 2.0;
+
 /// The lines of text in a panel (px from its top).
 pub(super) struct Baselines {
     pub(super) title: f64,
@@ -278,8 +351,8 @@ impl Baselines {
         Self {
             title: scale.row(60.0),
             second: scale.row(86.0),
-            count: height - (38.0 + 20.0 * scale.type_factor) * scale.unit,
-            caption: height - 38.0 * scale.unit,
+            count: height - (scale.lower_margin - BELOW_BASELINE + 20.0 * scale.type_factor) * scale.unit,
+            caption: height - (scale.lower_margin - BELOW_BASELINE) * scale.unit,
         }
     }
 }
@@ -297,7 +370,7 @@ pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Theme;
+    use crate::scene::{Look, Theme};
 
     #[test]
     fn panels_cover_the_picture_without_gaps() {
@@ -365,14 +438,14 @@ mod tests {
     #[test]
     fn type_and_lines_grow_by_themselves() {
         let look = Look { text_scale: 2.0, line_scale: 3.0, ..Look::of(Theme::Light) };
-        let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&look));
+        let view = View { look, ..View::default() };
+        let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&view));
         assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));
         assert_eq!((large.line(), large.margin()), (3.0 * usual.line(), usual.margin()));
         // Each row has room for its type.
         let panel = [0, 0, 640, 720];
         let rows = Baselines::new(large, panel);
         assert!(rows.second - rows.title > large.caption() && rows.caption - rows.count >= large.caption());
-        let view = View { look, ..View::default() };
         let [_, top, _, height] = clear_of_words(panel, large, rooms(&view));
         assert!(f64::from(top) > rows.second && f64::from(top + height) < rows.count - large.title());
     }

@@ -77,7 +77,8 @@ impl Legend {
         let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
-        let height = (HEIGHT * unit).round() as u32;
+        let made_up = scale.made_up() * scale.type_unit();
+        let height = ((HEIGHT + scale.below_legend()) * unit + made_up).round() as u32;
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
 
@@ -93,7 +94,8 @@ impl Legend {
     ) {
         let unit = self.unit;
         let margin = writer.scale.margin();
-        let top = (ground - ABOVE * writer.scale.unit).round();
+        let made_up = writer.scale.made_up() * writer.scale.type_unit();
+        let top = (ground + made_up - ABOVE * writer.scale.unit).round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some([metres, length, size]) = arrow {
@@ -160,7 +162,7 @@ impl Legend {
         let after = self.write(writer, name, Weight::SemiBold, 16.0, palette.text, left, baseline);
         self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
         let bar_left = (left + named + gap).round();
-        let rim = unit.round().max(1.0);
+        let rim = (unit * writer.scale.line_factor).round().max(1.0);
         let mark = |rectangle: [f64; 4], colour, second, shape| Mark {
             rectangle: rectangle.map(narrow),
             along: Mark::UPRIGHT,

@@ -88,6 +88,8 @@ pub struct Panel {
     pub opacity: f32,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
+    /// Whether that is hatched.
+    pub hatch: bool,
     /// Edges and contours of both, and of solid obstacles.
     pub lines: Vec<Line>,
     /// What the body bounces off, besides the floor.

@@ -31,6 +31,8 @@ const MANY_NODES: usize = 150;
 /// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
 const CROWDED: f64 = 0.14;
 const SMALLEST_NODE: f64 = 1.4;
+/// Thickness of the floor's line (px in the reference picture).
+const FLOOR_LINE: f64 = 1.6;
 /// How far the floor reaches down (px in the reference picture).
 const FLOOR_DEPTH: f64 = 50.0;
 /// Floors whose normal rises or falls less than this are walls.
@@ -113,7 +115,7 @@ impl Flat<'_> {
         if high > low && has_shadow {
             mark([low, high], [0.0, (SHADOW_DEPTH * unit).min(depth)], self.palette.shadow, MarkShape::Shadow);
         }
-        let thickness = (1.6 * unit).round().max(1.0);
+        let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
         if !has_floor {
             return;
         }
@@ -168,7 +170,7 @@ impl Flat<'_> {
         if !has_floor {
             return;
         }
-        let thickness = (1.6 * unit).round().max(1.0);
+        let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
         let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
         marks.push(mark(line, self.palette.axis, MarkShape::Smooth));
     }

@@ -62,6 +62,7 @@ impl Strips {
             bottom,
             unit,
             line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
+            thin: writer.scale.line_factor * unit,
         };
         let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_HEIGHT && Scale::legible(NUMBERS * unit);
         if !enough || self.end <= 0.0 {

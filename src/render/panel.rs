@@ -29,7 +29,8 @@ pub(super) struct PanelUniform {
     pub(super) region: Vec4,
     pub(super) place: Vec4,
     pub(super) opacity: f32,
-    pub(super) spare: [f32; 3],
+    pub(super) hatch: f32,
+    pub(super) spare: [f32; 2],
 }
 
 /// An sRGB colour as linear light.
@@ -95,7 +96,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         alarm: linear(palette.alarm),
         line_scale: sight.line_scale,
         // Beside the dark end of a scale, vermilion is seen better.
-        alarm_line: linear(if picture.ramp.is_empty() { palette.alarm_line } else { palette.alarm }),
+        alarm_line: linear(if picture.ramp.is_empty() || !panel.hatch { palette.alarm_line } else { palette.alarm }),
         outline_alpha: palette.outline_alpha,
         edge: linear(palette.edge),
         focal: sight.focal,
@@ -104,7 +105,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
         opacity: panel.opacity,
-        spare: [0.0; 3],
+        hatch: if panel.hatch { 1.0 } else { 0.0 },
+        spare: [0.0; 2],
     }
 }
 

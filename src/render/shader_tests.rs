@@ -81,7 +81,8 @@ fn structs_are_laid_out_alike_on_both_sides() {
             soft,
             region,
             place,
-            opacity
+            opacity,
+            hatch
         ]
     );
     same_layout!(

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// What it looks like: colours, type and lines.
+    /// What it looks like: colours, type, lines and margins.
     pub look: Look,
     /// From where; the same for all panels.
     pub camera: Camera,
@@ -57,6 +57,10 @@ pub struct View {
     pub floor: FloorStyle,
     /// Whether edges in front, and edges behind the body, are drawn.
     pub edges: [bool; 2],
+    /// Whether the outlines of sound elements and of solid obstacles are drawn.
+    pub outline: bool,
+    /// Whether turned-over elements are hatched, besides having a colour of their own.
+    pub hatch: bool,
 }
 
 impl Default for View {
@@ -93,6 +97,8 @@ impl Default for View {
             shadow: true,
             floor: FloorStyle::default(),
             edges: [true; 2],
+            outline: true,
+            hatch: true,
         }
     }
 }
@@ -199,7 +205,7 @@ pub enum ColourMap {
     PurpleGreen,
 }
 
-/// What a picture looks like besides what it shows: colours, type and lines.
+/// What a picture looks like besides what it shows: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// What the colours come from: the theme asked for, unless its text could not be read on the background.
@@ -214,6 +220,8 @@ pub struct Look {
     pub text_scale: f64,
     /// How many times thicker than usual lines are.
     pub line_scale: f64,
+    /// How many times as wide as usual margins are.
+    pub margin: f64,
 }
 
 impl Look {
@@ -226,6 +234,7 @@ impl Look {
             font: FontFiles::default(),
             text_scale: 1.0,
             line_scale: 1.0,
+            margin: 1.0,
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::{fig4b, gpu};
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
-use localshape::picture::{Composer, Picture, Weight, compose};
+use localshape::history::History;
+use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Picture, Weight, compose};
 use localshape::render::Renderer;
 use localshape::scene::{FontFiles, Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
@@ -131,6 +132,151 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
     assert_ne!(usual, one, "a single font serves for names, too");
     assert_ne!(usual, turned);
     assert_eq!(usual, draw(FontFiles::default()), "one renderer draws with any fonts");
+}
+
+/// A scene that ships, and one of its frames, as pictures are made of them with lines of two thicknesses.
+fn thin_and_thick(text: &str, frame: u64, thickness: f64) -> [Picture; 2] {
+    let mut scene = Scene::parse(text, "thick.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    scene.view.size = [1280, 720];
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let frame = Sequence::new(&scene, &runs).frame(frame);
+    let history = History::new(&scene, &runs);
+    [1.0, thickness].map(|line_scale| {
+        scene.view.look.line_scale = line_scale;
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&history);
+        composer.compose(&frame)
+    })
+}
+
+/// The marks of a picture that fulfil a condition.
+fn some(picture: &Picture, is_meant: impl Fn(&Mark) -> bool) -> Vec<Mark> {
+    picture.under.iter().chain(&picture.marks).filter(|mark| is_meant(mark)).copied().collect()
+}
+
+#[test]
+fn every_line_becomes_thicker_and_no_word_larger() {
+    let text = super::plain()
+        .replace("[view]", "[view]\nshow = ['surfaces', 'displacements']\ncolour.by = 'strain'\nstrip = 'shape_error'");
+    let [usual, twice] = thin_and_thick(&text, 12, 2.0);
+    assert_eq!(usual.words, twice.words);
+    // Arrows: as many, from and to the same places, twice as wide.
+    let arrows =
+        |picture: &Picture| some(picture, |mark| matches!(mark.shape, MarkShape::Arrow | MarkShape::FaintArrow(_)));
+    let (thin, thick) = (arrows(&usual), arrows(&twice));
+    assert!(thin.len() == thick.len() && thin.len() > 10, "{} {}", thin.len(), thick.len());
+    for (thin, thick) in thin.iter().zip(&thick) {
+        assert!((thick.rectangle[3] - 2.0 * thin.rectangle[3]).abs() < 1e-3, "{thin:?} {thick:?}");
+        assert_eq!((thin.shape, thin.along), (thick.shape, thick.along));
+        let ends = |mark: &Mark| {
+            let ([left, top, width, height], [x, y]) = (mark.rectangle, mark.along);
+            let (halo, middle) = (3.0 / 23.0 * height, 0.5 * height);
+            [halo, width - halo].map(|at| [left + at * x - middle * y, top + at * y + middle * x])
+        };
+        let apart = ends(thin)
+            .as_flattened()
+            .iter()
+            .zip(ends(thick).as_flattened())
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max);
+        assert!(apart < 0.01, "{thin:?} {thick:?}");
+    }
+    // The hairline between the panels; frame and ticks of the key; rows and ticks of the strips; curves.
+    let palette = usual.palette;
+    let ink = [palette.axis, palette.second_text, palette.hairline];
+    let upright = |picture: &Picture, thickness: f32| {
+        let is_line = |mark: &Mark| ink.contains(&mark.colour) && mark.rectangle[2] == thickness;
+        some(picture, |mark| is_line(mark) && mark.rectangle[3] < 12.0).len()
+    };
+    assert!(upright(&usual, 1.0) > 5 && upright(&usual, 2.0) > 0);
+    assert_eq!(upright(&twice, 4.0), upright(&usual, 2.0));
+    assert_eq!(upright(&twice, 2.0), upright(&usual, 1.0));
+    let divider = |picture: &Picture| some(picture, |mark| mark.rectangle[3] > 400.0)[0].rectangle[2];
+    assert_eq!([&usual, &twice].map(divider), [2.0, 4.0]);
+    let rows = |picture: &Picture, thickness: f32| {
+        some(picture, |mark| mark.rectangle[3] == thickness && mark.rectangle[2] > 300.0).len()
+    };
+    assert!(
+        rows(&usual, 1.0) >= 6 && rows(&twice, 2.0) == rows(&usual, 1.0),
+        "{} {}",
+        rows(&usual, 1.0),
+        rows(&twice, 2.0)
+    );
+    let frame = |picture: &Picture| {
+        let bar: Vec<_> = some(picture, |mark| mark.shape == MarkShape::Blend);
+        let framed =
+            some(picture, |mark| mark.colour == palette.axis && mark.rectangle[2] > 100.0 && mark.rectangle[3] > 5.0);
+        bar[0].rectangle[1] - framed[0].rectangle[1]
+    };
+    assert_eq!([&usual, &twice].map(frame), [1.0, 2.0]);
+    assert!(!usual.curves.is_empty());
+    for (thin, thick) in usual.curves.iter().zip(&twice.curves) {
+        assert!((thick.width - 2.0 * thin.width).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn the_line_of_the_floor_in_the_plane_becomes_thicker() {
+    for (line_scale, expected) in [(1.0, 2.0), (2.0, 3.0), (4.0, 6.0)] {
+        let [_, picture] = thin_and_thick(include_str!("../../scenes/fig4a.toml"), 20, line_scale);
+        let floors = some(&picture, |mark| mark.shape == MarkShape::Smooth);
+        // With a border of half a pixel on both sides.
+        assert!(!floors.is_empty() && floors.iter().all(|mark| mark.rectangle[3] == expected + 1.0), "{floors:?}");
+    }
+}
+
+#[test]
+fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
+    let (mut scene, mut frame) = fig4b(12);
+    frame.runs[1].snapshot.turned_over[0] = true;
+    let kinds = |picture: &Picture| {
+        let count = |kind| {
+            let lines = picture.panels.iter().flat_map(|panel| &panel.lines);
+            lines.filter(|line: &&Line| line.kind == kind).count()
+        };
+        [LineKind::Contour, LineKind::AlarmContour, LineKind::Edge, LineKind::AlarmEdge].map(count)
+    };
+    let usual = kinds(&compose(&scene, &frame));
+    scene.view.outline = false;
+    assert!(usual.iter().all(|&count| count > 0), "{usual:?}");
+    assert_eq!(kinds(&compose(&scene, &frame)), [0, usual[1], usual[2], usual[3]]);
+    for text in [include_str!("../../scenes/obstacles.toml"), include_str!("../../scenes/wheel.toml")] {
+        let mut scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("a scene that ships");
+        scene.view.outline = false;
+        let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+        assert!(picture.panels[0].lines.iter().all(|line| line.kind != LineKind::ObstacleContour));
+        let solids = &picture.panels[0].obstacles.solids;
+        assert!(solids.iter().all(|solid| solid.rim.is_none_or(|rim| rim == solid.colour)));
+    }
+}
+
+#[test]
+fn without_a_hatch_turned_over_elements_have_one_colour() {
+    let Some(gpu) = gpu("without_a_hatch_turned_over_elements_have_one_colour") else { return };
+    let plane = include_str!("../../scenes/fig4a.toml");
+    let text = |more: &str| {
+        plane
+            .replace("[view]", &format!("[view]\nshow = ['surfaces']\nlabels = []\n{more}"))
+            .replace("strip =", "# strip =")
+    };
+    for theme in ["light", "dark"] {
+        for colour in ["", "colour.by = 'strain'\nlegend = false"] {
+            let text = text(&format!("theme = '{theme}'\n{colour}"));
+            let mut scene =
+                Scene::parse(&text, "hatch.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            let frame = Sequence::new(&scene, &[1]).frame(scene.last_frame());
+            assert!(frame.runs[0].snapshot.turned_over.contains(&true));
+            let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+            let alarm = scene.view.look.palette.alarm;
+            let [hatched, plain] = [true, false].map(|hatch| {
+                scene.view.hatch = hatch;
+                let picture = renderer.draw(&compose(&scene, &frame)).expect("the device works");
+                picture.pixels().filter(|pixel| (0..3).all(|at| pixel[at].abs_diff(alarm[at]) <= 2)).count()
+            });
+            println!("{theme} {colour}: {hatched} pixels of the alarm's colour with a hatch, {plain} without");
+            assert!(plain > 200 && plain as f64 > 1.15 * hatched as f64, "{theme} {colour}: {hatched} {plain}");
+        }
+    }
 }
 
 #[test]

@@ -91,6 +91,85 @@ fn no_words_overlap_and_none_leaves_the_picture() {
 }
 
 #[test]
+fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
+    let shown = "show = ['springs', 'displacements']\n";
+    for (margin, text_scale) in [(0.0, 0.5), (0.0, 1.0), (0.0, 1.5), (0.4, 1.0), (2.0, 0.5), (2.0, 1.0), (2.0, 1.5)] {
+        for strip in ["strip = 'shape_error'", ""] {
+            for view in ["", "caption = ''", "caption = ''\nlegend = false", "panels = 'column'"] {
+                let text = ALL.lines().filter(|line| !line.starts_with("strip"));
+                let text: Vec<_> =
+                    text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
+                let scales = format!("margin = {margin}\ntext_scale = {text_scale}");
+                let mut scene = load(&format!("{}\n{strip}\n{shown}{scales}\n{view}\n", text.join("\n")));
+                for size in [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]] {
+                    scene.view.size = size;
+                    let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(3));
+                    let place = format!("{size:?} with {scales} {strip} {view}");
+                    if let Some([one, other]) = overlapping(&picture) {
+                        panic!(
+                            "“{}” lies over “{}” in {place}: {:?} {:?}",
+                            one.text,
+                            other.text,
+                            one.bounds(),
+                            other.bounds()
+                        );
+                    }
+                    for word in &picture.words {
+                        let [left, top, right, bottom] = word.bounds();
+                        let [width, height] = size.map(|length| length as f32);
+                        let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+                        assert!(inside, "“{}” leaves the picture of {place}: {:?}", word.text, word.bounds());
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn margins_move_everything_that_stands_on_them() {
+    let mut scene = load(&format!("{ALL}\nshow = ['springs', 'displacements']\nsize = [1920, 1080]\n"));
+    let mut bounds = |margin: f64, word: &str| {
+        scene.view.look.margin = margin;
+        let picture = compose(&scene, &Sequence::new(&scene, &[0, 1]).frame(3));
+        let found = picture.words.iter().find(|found| found.text.starts_with(word));
+        let [left, top, right, bottom] = found.unwrap_or_else(|| panic!("{word} at {margin}")).bounds();
+        [left, top, 1920.0 - right, 1080.0 - bottom]
+    };
+    // Margins of 10, 40 and 80 pixels in a picture 720 high.
+    for (margin, moved) in [(0.0, -45.0), (1.0, 0.0), (2.0, 60.0)] {
+        for (word, sides) in [
+            ("A title above", &[0, 1][..]),
+            ("a", &[0, 1]),
+            ("Local shape", &[0, 1]),
+            ("after release", &[1, 2]),
+            ("shape error", &[]),
+            ("displacement ", &[0]),
+            ("A caption of", &[0]),
+        ] {
+            let [now, usual] = [margin, 1.0].map(|margin| bounds(margin, word));
+            for &side in sides {
+                let found = now[side] - usual[side];
+                assert!((found - moved).abs() < 1.0, "“{word}” moved by {found} at {margin}, not {moved}");
+            }
+        }
+        let caption = bounds(margin, "A caption of")[3] - bounds(1.0, "A caption of")[3];
+        assert!(caption * moved >= 0.0 && (margin == 1.0) == (caption.abs() < 10.0), "{caption} at {margin}");
+    }
+}
+
+#[test]
+fn bodies_have_what_margins_leave_them() {
+    let (mut scene, frame) = fig4b(4);
+    let mut focal = |margin: f64| {
+        scene.view.look.margin = margin;
+        compose(&scene, &frame).panels[0].sight.focal
+    };
+    let [narrow, usual, wide] = [0.0, 1.0, 2.0].map(&mut focal);
+    assert!(narrow > 1.05 * usual && usual > 1.1 * wide, "{narrow} {usual} {wide}");
+}
+
+#[test]
 fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
     let long = "A caption that goes on and on. ".repeat(60);
     for (size, text_scale) in [([1280, 720], 1.0), ([1280, 720], 3.0), ([640, 360], 2.0), ([300, 500], 1.0)] {

@@ -346,7 +346,8 @@ impl<'a> Composer<'a> {
         let [now, usual] = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
         let metres = legend.arrow_metres(usual * times);
-        [metres, metres * now * times, arrows::size(now * self.scene.view.side, scale.unit)]
+        let size = arrows::size(now * self.scene.view.side, scale.unit) * scale.line_factor;
+        [metres, metres * now * times, size]
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.

@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
 use crate::picture::surface::own_lines;
-use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
+use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::{FloorStyle, Scene};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
@@ -116,6 +116,9 @@ impl<'a> Draft<'a> {
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
         let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        if !self.scene.view.outline {
+            lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));
+        }
         self.hands(above);
         self.arrows(above);
         Panel {
@@ -126,6 +129,7 @@ impl<'a> Draft<'a> {
             sound,
             opacity: narrow(self.scene.view.opacity),
             turned_over,
+            hatch: self.scene.view.hatch,
             lines,
             obstacles,
             strokes: self.strokes(),
@@ -216,7 +220,8 @@ impl<'a> Draft<'a> {
             palette: &self.composer.palette,
         };
         if self.flat {
-            let flat = obstacle::Flat { site, line_scale: self.scale.line() };
+            let outline = self.scene.view.outline;
+            let flat = obstacle::Flat { site, line_scale: self.scale.line(), outline };
             flat.arrows(&self.pointers(), above);
             return flat.draw();
         }
@@ -264,6 +269,7 @@ impl<'a> Draft<'a> {
             lens: &self.lens,
             room: self.clear_of_words(),
             size: arrows::size(self.element, self.scale.unit),
+            thickness: self.scale.line_factor,
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
             colour: match view.colour {

@@ -30,10 +30,16 @@ pub(in crate::scene) struct ViewFile {
     /// be read, is left out.
     #[schemars(range(min = 0.5, max = 3.0))]
     pub(in crate::scene) text_scale: f64,
-    /// How many times thicker than usual the lines of bodies, obstacles, strips and the scale bar are, and how many
-    /// times larger nodes and the signs on elements in the plane.
+    /// How many times thicker than usual all lines are, and how many times larger nodes, the signs on elements in the
+    /// plane and the marks of what moves or is held. Arrows of displacements become thicker, not longer; type stays as it
+    /// is.
     #[schemars(range(min = 0.25, max = 4.0))]
     pub(in crate::scene) line_scale: f64,
+    /// How many times as wide as usual the margins of the picture and of each panel are: 40 pixels in a picture 720 high.
+    /// The body has what they leave. At 0 they are as narrow as words allow that must not touch, a quarter of that at the
+    /// usual size of type.
+    #[schemars(range(min = 0.0, max = 2.0))]
+    pub(in crate::scene) margin: f64,
     /// What the clock counts from, in the words shown under the time.
     #[schemars(length(max = 80))]
     pub(in crate::scene) clock: String,
@@ -93,6 +99,12 @@ pub(in crate::scene) struct ViewFile {
     pub(in crate::scene) floor: FloorStyle,
     /// Which lines are drawn on surfaces.
     pub(in crate::scene) edges: EdgesFile,
+    /// Whether silhouettes are drawn: the outlines of sound elements and of solid obstacles, and where folds of these end
+    /// before what is farther away. Those of turned-over elements are drawn in any case.
+    pub(in crate::scene) outline: bool,
+    /// Whether turned-over elements are hatched. Without it their colour tells of them; where a field colours surfaces
+    /// they have it instead of the field's.
+    pub(in crate::scene) hatch: bool,
     /// From where the scene is seen.
     pub(in crate::scene) camera: CameraFile,
 }
@@ -107,6 +119,7 @@ impl Default for ViewFile {
             font: None,
             text_scale: 1.0,
             line_scale: 1.0,
+            margin: 1.0,
             clock: "after release".into(),
             columns: None,
             panels: None,
@@ -127,6 +140,8 @@ impl Default for ViewFile {
             shadow: true,
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),
+            outline: true,
+            hatch: true,
             camera: CameraFile::default(),
         }
     }

@@ -1,4 +1,4 @@
-//! What the scene looks like: colours, type and lines.
+//! What the scene looks like: colours, type, lines and margins.
 
 use crate::colour::{Colour, Sight, contrast, difference, written};
 use crate::scene::file::{BackgroundFile, ColoursFile, ViewFile};
@@ -22,8 +22,8 @@ pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     check_alarm(&typed.colours, &palette, report);
     (report.total() == known).then(|| {
         let transparent = typed.background == Some(BackgroundFile::Transparent);
-        let (text_scale, line_scale) = (typed.text_scale, typed.line_scale);
-        Look { theme, palette, transparent, font, text_scale, line_scale }
+        let (text_scale, line_scale, margin) = (typed.text_scale, typed.line_scale, typed.margin);
+        Look { theme, palette, transparent, font, text_scale, line_scale, margin }
     })
 }
 

@@ -156,6 +156,8 @@ pub(super) fn resolve(
             EdgesFile::Visible => [true, false],
             EdgesFile::Outline => [false, false],
         },
+        outline: typed.outline,
+        hatch: typed.hatch,
     })
 }
 

@@ -94,7 +94,8 @@ impl<'a> Charts<'a> {
     /// The charts, each with the time that it shows (s), that stand beside each other for two scales of time.
     fn parts(&self, scale: Scale, [left, right]: [f64; 2], [top, bottom]: [f64; 2]) -> Vec<(Chart, [f64; 2])> {
         let line = scale.line_factor * scale.unit;
-        let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit: scale.type_unit(), line };
+        let [unit, thin] = [1.0, scale.line_factor].map(|factor| factor * scale.type_unit());
+        let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit, line, thin };
         let Some(split) = self.sheet.split else { return vec![(chart([left, right]), [0.0, self.end])] };
         let gap = (SPLIT_GAP * scale.unit).round();
         let middle = (left + BEFORE * (right - left - gap)).round();

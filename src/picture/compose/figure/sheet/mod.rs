@@ -28,7 +28,7 @@ use crate::picture::legend::Legend;
 use crate::picture::text::Fonts;
 use crate::picture::{Framing, Picture};
 use crate::scene::figure::{Figure, Sheet};
-use crate::scene::{Labels, Scene};
+use crate::scene::{Labels, Scene, View};
 use crate::sim::snapshot::Frame;
 use charts::Charts;
 use plan::Plan;
@@ -41,7 +41,7 @@ const LEAST_UNIT: f64 = 0.36;
 pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Picture {
     let size = figure.size.map(|length| length.max(1));
     let unit = (f64::from(size[0]) / REFERENCE[0]).min(f64::from(size[1]) / REFERENCE[1]).max(LEAST_UNIT);
-    let scale = Scale::at(unit).with(&figure.look);
+    let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
     let fonts = Fonts::new(&figure.look.font);
     let palette = &figure.look.palette;
     let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
