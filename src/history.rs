@@ -80,16 +80,16 @@ impl Rehearsal {
         Self { end: scene.frame_time(scene.last_frame()), parts: runs.iter().map(part).collect() }
     }
 
-    /// The same with more moments noted down: as many as usually of the whole scene before `closer` (s), if that is
-    /// given, and the steps nearest to each of `shown` (s).
-    pub fn with(mut self, scene: &Scene, closer: Option<f64>, shown: &[f64]) -> Self {
+    /// The same with more moments noted down: as many as usually of the whole scene between two that are looked at
+    /// `closer` (s), if there are any, and the steps nearest to each of `shown` (s).
+    pub fn with(mut self, scene: &Scene, closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
         for part in &mut self.parts {
             let last = part.last();
             let step = |time: f64| ((time / scene.runs[part.course.run].step).round() as u64).min(last);
-            let early = closer
-                .into_iter()
-                .flat_map(|end| (0..=FEWEST_MOMENTS).map(move |at| end * at as f64 / FEWEST_MOMENTS as f64));
-            part.moments.extend(early.chain(shown.iter().copied()).map(step));
+            let closely = closer.into_iter().flat_map(|[start, end]| {
+                (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
+            });
+            part.moments.extend(closely.chain(shown.iter().copied()).map(step));
             part.moments.sort_unstable();
             part.moments.dedup();
         }
@@ -258,7 +258,7 @@ mod tests {
     fn what_is_looked_at_closely_has_more_moments() {
         let scene = scene("3", "60", "T/70");
         let usual = History::new(&scene, &[0, 1]);
-        let mut rehearsal = Rehearsal::new(&scene, &[0, 1]).with(&scene, Some(0.1), &[1.2345, 9.0]);
+        let mut rehearsal = Rehearsal::new(&scene, &[0, 1]).with(&scene, Some([0.0, 0.1]), &[1.2345, 9.0]);
         while !rehearsal.advance(u64::MAX) {}
         let closer = rehearsal.finish();
         for (usual, closer) in usual.courses.iter().zip(&closer.courses) {

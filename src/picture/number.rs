@@ -15,15 +15,26 @@ pub(super) fn time(seconds: f64) -> String {
     with_minus(text)
 }
 
-/// A moment (s) as exactly as someone typed it: milliseconds below a second, if zero is to be one of those, too.
-pub(super) fn moment(seconds: f64, small: bool) -> String {
+/// A moment (s) as exactly as someone typed it: milliseconds below a second, if zero is to be one of those, too; then
+/// seconds with so many decimals.
+pub(super) fn moment(seconds: f64, small: bool, decimals: usize) -> String {
     let text = match seconds.abs() {
         0.0 if !small => "0 s".to_owned(),
-        size if size < 0.999_95 => format!("{} ms", rounded(seconds * 1e3, 4)),
-        _ => format!("{:?} s", rounded(seconds, 4)),
+        size if size < LEAST_SECOND => format!("{} ms", rounded(seconds * 1e3, 4)),
+        _ => format!("{seconds:.decimals$} s"),
     };
     with_minus(text)
 }
+
+/// How many decimals of a moment (s) from a second on are worth writing, at least one.
+pub(super) fn decimals(seconds: f64) -> usize {
+    let text = format!("{:?}", rounded(seconds, 4));
+    let plain = seconds.abs() >= LEAST_SECOND && !text.contains('e');
+    text.split_once('.').filter(|_| plain).map_or(1, |(_, decimals)| decimals.len())
+}
+
+/// What is shorter is written in milliseconds (s).
+const LEAST_SECOND: f64 = 0.999_95;
 
 /// A small length (m), in the unit that suits the size of the body (m) throughout a run.
 pub(super) fn length(metres: f64, extent: f64) -> String {
@@ -185,8 +196,8 @@ mod tests {
     fn moments_are_what_was_typed() {
         let times = [0.0, 0.07, 0.0125, 1.0 / 3.0, 0.999_96, 1.0, 1.46, 12.345_678, 1e5];
         let expected = ["0 ms", "70 ms", "12.5 ms", "333.3 ms", "1.0 s", "1.0 s", "1.46 s", "12.35 s", "100000.0 s"];
-        assert_eq!(times.map(|time| moment(time, true)), expected);
-        assert_eq!(moment(0.0, false), "0 s");
+        assert_eq!(times.map(|time| moment(time, true, decimals(time))), expected);
+        assert_eq!((moment(0.0, false, 2), moment(1.5, false, 2)), ("0 s".to_owned(), "1.50 s".to_owned()));
     }
 
     #[test]

@@ -56,6 +56,9 @@ pub(super) struct SheetFile {
     pub(super) strips: Vec<Diagnostic>,
     /// A diagnostic written below each picture. Default: none.
     pub(super) number: Option<Diagnostic>,
+    /// Where the axis of time begins (s), not after any moment shown. Default: 0.
+    #[schemars(range(min = 0.0))]
+    pub(super) from: Option<f64>,
     /// Where the axis of time changes its scale (s): what comes before takes most of the width. Default: nowhere.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) split: Option<f64>,

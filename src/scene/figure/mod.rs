@@ -56,6 +56,8 @@ pub struct Sheet {
     pub strips: Vec<Diagnostic>,
     /// The diagnostic written below each picture.
     pub number: Option<Diagnostic>,
+    /// Where the axis of time begins (s).
+    pub from: f64,
     /// Where the axis of time changes its scale (s).
     pub split: Option<f64>,
 }

@@ -6,6 +6,7 @@ use crate::scene::report::{Report, Way};
 use crate::scene::structure::Checked;
 use crate::scene::words::{list, nearest};
 use crate::scene::{Scene, SceneError};
+use crate::sim::snapshot::Diagnostic;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -132,10 +133,7 @@ impl Scenes<'_, '_, '_> {
         if !file.strips.is_empty() && self.scenes.len() > 1 {
             self.report.at_key(&at("strips"), "strips are of one scene, but the columns show several", None);
         }
-        if file.split.is_some_and(|split| split >= end(&self.scenes[0])) {
-            let message = format!("the scene ends at {} s; expected an earlier moment", end(&self.scenes[0]));
-            self.report.at(&at("split"), message, None);
-        }
+        self.check_times(&file.strips, file.from, file.split, &resolved);
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
             run: row.run,
@@ -144,9 +142,38 @@ impl Scenes<'_, '_, '_> {
         };
         let rows = rows.into_iter().map(row).collect();
         let Self { report, scenes, .. } = self;
-        let sheet =
-            Sheet { scenes, columns: resolved, rows, strips: file.strips, number: file.number, split: file.split };
+        let sheet = Sheet {
+            scenes,
+            columns: resolved,
+            rows,
+            strips: file.strips,
+            number: file.number,
+            from: file.from.unwrap_or(0.0),
+            split: file.split,
+        };
         Ok((report.total() == before).then_some(sheet))
+    }
+
+    /// Whether the axis of time holds its own beginning, the change of its scale, and the moments of columns.
+    fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
+        let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
+        for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
+            if strips.is_empty() {
+                self.report.at_key(&at(key), format!("`sheet.{key}` is about strips, but there are none"), None);
+                return;
+            }
+        }
+        let end = end(&self.scenes[0]);
+        let earliest = columns.iter().filter_map(|column| column.time).fold(end, f64::min);
+        if let Some(from) = from.filter(|&from| from > earliest || from >= end) {
+            let message = format!("the axis of time begins at {from} s, but there is a moment at {earliest} s");
+            self.report.at(&at("from"), message, None);
+        } else if let Some(split) = split.filter(|&split| split >= end || split <= from.unwrap_or(0.0)) {
+            let from = from.unwrap_or(0.0);
+            let message =
+                format!("the axis of time goes from {from} to {end} s; expected a moment between, found {split}");
+            self.report.at(&at("split"), message, None);
+        }
     }
 
     /// Whether each cell has a run and a moment.

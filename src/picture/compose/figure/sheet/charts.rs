@@ -96,10 +96,10 @@ impl<'a> Charts<'a> {
         let line = scale.line_factor * scale.unit;
         let [unit, thin] = [1.0, scale.line_factor].map(|factor| factor * scale.type_unit());
         let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit, line, thin };
-        let Some(split) = self.sheet.split else { return vec![(chart([left, right]), [0.0, self.end])] };
+        let Some(split) = self.sheet.split else { return vec![(chart([left, right]), [self.sheet.from, self.end])] };
         let gap = (SPLIT_GAP * scale.unit).round();
         let middle = (left + BEFORE * (right - left - gap)).round();
-        vec![(chart([left, middle]), [0.0, split]), (chart([middle + gap, right]), [split, self.end])]
+        vec![(chart([left, middle]), [self.sheet.from, split]), (chart([middle + gap, right]), [split, self.end])]
     }
 
     /// A line through all charts at the moment of each column, with the column's letter in a ring above.

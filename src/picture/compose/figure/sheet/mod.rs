@@ -25,18 +25,23 @@ use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::Scale;
 use crate::picture::legend::Legend;
+use crate::picture::narrow::narrow;
 use crate::picture::text::Fonts;
-use crate::picture::{Framing, Picture};
+use crate::picture::{Colour, Curve, Framing, Picture};
 use crate::scene::figure::{Figure, Sheet};
 use crate::scene::{Labels, Scene, View};
 use crate::sim::snapshot::Frame;
 use charts::Charts;
+use glam::DVec2;
 use plan::Plan;
 
 /// Lengths hold for a picture of this size (px); of a larger or smaller one, they are as much longer or shorter.
 const REFERENCE: [f64; 2] = [1600.0, 900.0];
 /// Smaller pictures than this part of it have less in them, not smaller type.
 const LEAST_UNIT: f64 = 0.36;
+
+/// Width of bodies that are a line or a point (px at the tile's scale).
+const COLLAPSED: [f64; 2] = [3.0, 9.0];
 
 pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Picture {
     let size = figure.size.map(|length| length.max(1));
@@ -80,13 +85,16 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.bars(&bars));
     }
 
-    let Writer { marks: above, curves, mut words, .. } = writer;
+    let Writer { marks: above, mut curves, mut words, .. } = writer;
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
             let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
             let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
             panels.push(draft.panel(&mut under, &mut marks));
+            // Surfaces without width do not show.
+            let ends = sight::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
+            curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
         }
     }
     marks.extend(above);
@@ -129,6 +137,14 @@ fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> S
         (camera.target, camera.distance, camera.rise) = (framing.target, framing.distance, 0.0);
     }
     scene
+}
+
+/// A body without width, as a line or a dot.
+fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
+    let is_dot = ends[0].distance(ends[1]) < 1.0;
+    let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };
+    let points = ends.iter().take(if is_dot { 1 } else { 2 }).map(|end| [end.x, end.y].map(narrow)).collect();
+    Curve { points, width: narrow(width), dash: None, colour, alpha: 1.0 }
 }
 
 /// The key of colours and arrows, if there are any.

@@ -147,7 +147,7 @@ impl Plan {
     pub(super) fn body_room(&self) -> [f64; 4] {
         let [width, height] = self.tile.map(f64::from);
         let beside = (0.045 * width).max(2.0).min(0.25 * width);
-        let above = (0.03 * height).max(2.0).min(0.25 * height);
+        let above = (0.045 * height).max(2.0).min(0.25 * height);
         [beside, above, width - beside, (height - self.below_body).max(0.5 * height)]
     }
 

@@ -5,6 +5,7 @@ use super::plan::Plan;
 use crate::moments::Moments;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::exploded::Exploded;
+use crate::picture::obstacle::{Site, Staging};
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
 use crate::sim::body::{Dimension, bounds};
@@ -16,12 +17,15 @@ use glam::{DVec2, DVec3};
 /// and then one by one.
 const SMALLEST: f64 = 0.30;
 /// And none is larger than this part, even where a tile shows only a part of what it was.
-const LARGEST: f64 = 0.66;
+const LARGEST: f64 = 0.8;
 /// Bodies whose sizes differ by more than this factor are not shown at one scale.
 const UNLIKE: f64 = 3.0;
-/// Half of what is seen of a plate, and how far around the body obstacles are looked at (sizes of the body).
-const PLATE: f64 = 0.9;
-const AROUND: f64 = 0.75;
+/// How far around the body obstacles are looked at (sizes of the body).
+const AROUND: f64 = 1.0;
+/// The part of the room left over that is below bodies on the ground.
+const BELOW_GROUND: f64 = 0.25;
+/// A body is without width if no node is farther than this from a line (px).
+const FLAT: f64 = 0.5;
 /// Steps of the search; each brings it about ten times nearer.
 const STEPS: usize = 12;
 
@@ -60,6 +64,20 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
     let extent = scene.body.extent();
     let (low, high) = bounds(&points);
     let [low, high] = [low - AROUND * extent, high + AROUND * extent];
+    let lens =
+        Lens::new(&scene.view, &Framing::still(&scene.view.camera), scene.body.dimension, [0.0, 0.0, 1.0, 1.0], 1.0);
+    let site = Site {
+        obstacles: &scene.obstacles,
+        time: snapshot.time,
+        frame: 1.0 / scene.frames_per_second,
+        lens: &lens,
+        origin: DVec3::ZERO,
+        side: scene.view.side,
+        extent,
+        palette: &scene.view.look.palette,
+    };
+    let start = bounds(&scene.initial.position).into();
+    let staging = Staging { site, widening: 1.0, cell: 1.0, ground: None, position: &snapshot.position, start };
     let mut near = Vec::new();
     for obstacle in &scene.obstacles {
         let pose = obstacle.pose(snapshot.time);
@@ -68,11 +86,8 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
             |middle: DVec3, radius: f64| DVec3::AXES.map(|axis| [middle - radius * axis, middle + radius * axis]);
         match obstacle.shape {
             Shape::Floor { .. } => {}
-            Shape::Plate { point, normal } if scene.body.dimension == Dimension::Space => {
-                let normal = pose.turn * normal;
-                let [one, other] = [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())];
-                let reach = PLATE * extent;
-                near.extend([one, other].iter().flat_map(|axis| [-reach, reach].map(|way| place(point) + way * *axis)));
+            Shape::Plate { .. } if scene.body.dimension == Dimension::Space => {
+                near.extend(staging.plate_corners(obstacle).into_iter().flatten());
             }
             Shape::Plate { point, .. } => near.push(place(point)),
             Shape::Sphere { centre, radius } => near.extend(ball(place(centre), radius).concat()),
@@ -211,7 +226,7 @@ impl Eye<'_> {
             };
             let wanted = DVec2::new(right - left, bottom - top).max(DVec2::ONE);
             let times = ((high - low) / wanted).max_element().max(1e-3);
-            framing = self.centred(&lens, &framing, low.midpoint(high));
+            framing = self.centred(&lens, &framing, (low, high));
             framing.distance *= times;
         }
         framing
@@ -223,7 +238,7 @@ impl Eye<'_> {
         for _ in 0..STEPS {
             let lens = self.lens(&framing);
             let Some((low, high)) = seen(&lens, points) else { break };
-            framing = self.centred(&lens, &framing, low.midpoint(high));
+            framing = self.centred(&lens, &framing, (low, high));
         }
         framing
     }
@@ -234,12 +249,42 @@ impl Eye<'_> {
         Self::framing(target, distance)
     }
 
-    /// The same with a pixel moved into the middle of the room for bodies.
-    fn centred(&self, lens: &Lens, framing: &Framing, pixel: DVec2) -> Framing {
+    /// The same with a box of the picture (px) moved into the middle of the room for bodies, or lower where there is
+    /// ground.
+    fn centred(&self, lens: &Lens, framing: &Framing, (low, high): (DVec2, DVec2)) -> Framing {
         let [left, top, right, bottom] = self.plan.body_room();
-        let off = (pixel - DVec2::new(left + right, top + bottom) / 2.0) / self.pixels(framing.distance);
+        let has_ground = contact::ground(&self.scene.obstacles, 0.0).is_some();
+        let below = if has_ground { BELOW_GROUND } else { 0.5 } * ((bottom - top) - (high.y - low.y)).max(0.0);
+        let wanted =
+            DVec2::new((left + right) / 2.0, (bottom - below - (high.y - low.y) / 2.0).max((top + bottom) / 2.0));
+        let off = (low.midpoint(high) - wanted) / self.pixels(framing.distance);
         Self::framing(framing.target + off.x * lens.right - off.y * lens.up, framing.distance)
     }
+}
+
+/// What is seen of a body without any width: the ends of a line, or a place twice, in the tile at a place of the picture
+/// (px); `None` for all others.
+pub(super) fn collapsed(
+    scene: &Scene,
+    plan: &Plan,
+    [row, column]: [usize; 2],
+    framing: &Framing,
+    run: &RunFrame,
+) -> Option<[DVec2; 2]> {
+    let [left, top, ..] = plan.tile(row, column).map(f64::from);
+    let lens = Eye { scene, plan }.lens(framing);
+    let nodes = run.snapshot.position.iter();
+    let pixels: Option<Vec<_>> =
+        nodes.map(|&node| Some(DVec2::from(lens.project(node)?.0) + DVec2::new(left, top))).collect();
+    let pixels = pixels.filter(|_| run.snapshot.status == Status::Ok)?;
+    let farthest = |from: DVec2| {
+        pixels.iter().copied().max_by(|a, b| a.distance_squared(from).total_cmp(&b.distance_squared(from)))
+    };
+    let one = farthest(*pixels.first()?)?;
+    let other = farthest(one)?;
+    let along = (other - one).normalize_or_zero();
+    let off = |pixel: &DVec2| if along == DVec2::ZERO { 0.0 } else { along.perp_dot(*pixel - one).abs() };
+    (pixels.len() > 1 && pixels.iter().all(|pixel| off(pixel) < FLAT)).then_some([one, other])
 }
 
 /// The box around points on the picture (px); `None` if there are none, or not all are in front of the camera.

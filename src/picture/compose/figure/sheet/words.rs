@@ -14,7 +14,7 @@ use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
 use crate::sim::words::elements;
 
 /// Names and notes of rows are at most this part of the picture wide, and have at most so many lines.
-const WIDEST: f64 = 0.17;
+const WIDEST: f64 = 0.125;
 const NAME_LINES: usize = 2;
 const NOTE_LINES: usize = 3;
 /// Size of notes, distances of the lines of names and notes, and from a name to the sample of its line and on to the
@@ -66,13 +66,13 @@ impl Heading {
         let apart = HEADINGS_APART * scale.unit;
         let count = sheet.columns.len();
         let times = || sheet.columns.iter().filter_map(|column| column.time);
-        let small = times().all(|time| time < 1.0) || times().any(|time| time > 0.0 && time < 1.0);
+        let moment = moments(times());
         // A moment that every row replaces by its own says nothing.
         let replaced = sheet.rows.iter().all(|row| row.time.is_some());
         let text = |at: usize| {
             let column = &sheet.columns[at];
-            let moment = column.time.filter(|_| !replaced).map(|time| number::moment(time, small));
-            column.label.clone().or(moment).unwrap_or_default()
+            let own = column.time.filter(|_| !replaced).map(&moment);
+            column.label.clone().or(own).unwrap_or_default()
         };
         let letter = |at: usize| if count > 1 || with_charts { caption::letter(at) } else { String::new() };
         let all = (0..count).map(|at| {
@@ -113,6 +113,15 @@ impl Heading {
         }
         all
     }
+}
+
+/// How moments (s) that stand beside each other are written: with equally many decimals from a second on, and zero like
+/// its neighbours.
+fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> String {
+    let times: Vec<_> = times.collect();
+    let small = times.iter().all(|&time| time < 1.0) || times.iter().any(|&time| time > 0.0 && time < 1.0);
+    let decimals = times.iter().map(|&time| number::decimals(time)).max().unwrap_or(1);
+    move |time| number::moment(time, small, decimals)
 }
 
 /// The room that a letter takes before what stands beside it (px).
@@ -158,9 +167,9 @@ impl RowLabels {
             let all: Vec<_> = all.into_iter().filter(|line| !line.is_empty()).collect();
             cut(all, most)
         };
-        let zero_is_small = sheet.rows.iter().filter_map(|row| row.time).all(|time| time < 1.0);
+        let moment = moments(sheet.rows.iter().filter_map(|row| row.time));
         let one = |row: &Row| {
-            let own = row.time.filter(|_| row.note.is_empty()).map(|time| number::moment(time, zero_is_small));
+            let own = row.time.filter(|_| row.note.is_empty()).map(&moment);
             let note = own.as_deref().unwrap_or(&row.note);
             let name = lines(&row.label, Weight::SemiBold, scale.caption(), NAME_LINES);
             let legible = Scale::legible(note_size);
@@ -282,6 +291,7 @@ pub(super) fn write_below(
 fn said(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
     let value = diagnostic.of(&run.snapshot.diagnostics);
     let name = course::name(diagnostic, scene);
+    let name = name.strip_suffix(" ratio").unwrap_or(name);
     let value = match diagnostic {
         _ if !value.is_finite() => return None,
         Diagnostic::TurnedOver => return None,
