@@ -12,5 +12,6 @@ mod free_form;
 mod grips;
 mod integrators;
 mod readings;
+mod restore;
 mod support;
 mod threads;

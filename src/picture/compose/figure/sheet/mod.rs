@@ -34,6 +34,7 @@ use crate::sim::snapshot::Frame;
 use charts::Charts;
 use glam::DVec2;
 use plan::Plan;
+use words::Below;
 
 /// Lengths hold for a picture of this size (px); of a larger or smaller one, they are as much longer or shorter.
 const REFERENCE: [f64; 2] = [1600.0, 900.0];
@@ -69,12 +70,15 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     // What every tile of a scene shares follows from the first one of it.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
+    let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
             let composer = &composers[sheet.columns[column].scene];
-            words::write_below(&mut writer, &plan, [row, column], composer, run, sheet.number);
+            below.push(([row, column], Below::new(&writer, &plan, composer, run, sheet.number)));
         }
     }
+    let with_number = below.iter().all(|(_, below)| below.has_room(&writer, &plan));
+    below.into_iter().for_each(|(place, below)| below.write(&mut writer, &plan, place, with_number));
     if let Some(legend) = legend.filter(|_| bottom < size[1]) {
         let first = &composers[0];
         let arrow = scenes[0].view.visible.displacements;

@@ -21,6 +21,8 @@ const MOST_LABELS: f64 = 0.4;
 const BELOW_BODY: f64 = 36.0;
 pub(super) const TALLY_RAISED: f64 = 9.0;
 const LEAST_TILE: [f64; 2] = [100.0, 62.0];
+/// Free beside the words in a tile, both sides together (px in the reference picture).
+const BESIDE_WORDS: f64 = 12.0;
 /// So far above the lower side of a tile the floor of the plane is drawn at least (px at the tile's scale).
 const BELOW_FLOOR: f64 = 44.0;
 /// Tiles are at most this many times higher than wide.
@@ -149,6 +151,11 @@ impl Plan {
         let beside = (0.045 * width).max(2.0).min(0.25 * width);
         let above = (0.045 * height).max(2.0).min(0.25 * height);
         [beside, above, width - beside, (height - self.below_body).max(0.5 * height)]
+    }
+
+    /// The width of the room for words in a tile (px).
+    pub(super) fn words_width(&self, scale: Scale) -> f64 {
+        f64::from(self.tile[0]) - BESIDE_WORDS * scale.unit
     }
 
     /// The sizes of a tile (px).

@@ -7,7 +7,7 @@ use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
 use crate::picture::tally::Tally;
 use crate::picture::text::{Fonts, Weight};
-use crate::picture::{course, number};
+use crate::picture::{Mark, course, number, tally};
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
@@ -27,22 +27,25 @@ const NOTE_BELOW: f64 = 21.0;
 /// Between the letter of a column and what stands beside it, and between columns (px in the reference picture).
 const LETTER_GAP: f64 = 10.0;
 const HEADINGS_APART: f64 = 14.0;
-/// How large tallies are beside those of panels, and between tally, count and number (px in the reference picture).
+/// How large tallies are beside those of panels, the part of a tile's width that they take at most, and between tally, count and number (px in the reference picture).
 const TALLY: f64 = 0.54;
+const TALLY_SHARE: f64 = 0.6;
 const COUNT_GAP: f64 = 10.0;
 const NUMBER_GAP: f64 = 18.0;
+/// Half the height of digits, in parts of the type's size.
+const X_MIDDLE: f64 = 0.36;
 
 /// What the key of turned-over elements may say, from the longest wording to the shortest.
 pub(super) fn key(scenes: &[Scene]) -> Vec<String> {
-    let rows: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side).rows()).collect();
+    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
     let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
     let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
     let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
     let mut wordings = vec!["turned over".to_owned()];
     let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
-    if several && rows.iter().all(Option::is_some) {
+    if several && tallies.iter().all(Tally::has_squares) {
         wordings.push(format!("turned over (one square per {kind})"));
-        if rows.iter().all(|rows| rows.is_some_and(|rows| rows > 1)) {
+        if tallies.iter().all(Tally::has_layers) {
             wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
         }
     }
@@ -237,54 +240,95 @@ fn has_springs(sheet: &Sheet, row: usize) -> bool {
     sheet.scenes.first().and_then(run).is_some_and(|run| !run.model.springs().is_empty())
 }
 
-/// Tally, count and a number below the body of a tile, or that its run has blown up.
-pub(super) fn write_below(
-    writer: &mut Writer<'_>,
-    plan: &Plan,
-    [row, column]: [usize; 2],
-    composer: &Composer<'_>,
-    run: &RunFrame,
-    number: Option<Diagnostic>,
-) {
-    let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
-    let size = scale.caption();
-    if !plan.has_tally || !Scale::legible(size) {
-        return;
+/// What stands below the body of a tile.
+pub(super) struct Below {
+    /// The tally, as if the tile's lower left corner were the picture's left upper one.
+    tally: Vec<Mark>,
+    tally_width: f64,
+    /// How many elements have turned over; empty if that cannot be said.
+    count: String,
+    is_alarm: bool,
+    /// A diagnostic; empty for none.
+    said: String,
+    /// When the run has blown up (s).
+    diverged: Option<f64>,
+}
+
+impl Below {
+    /// What is said of a run, with a diagnostic if one is asked for.
+    pub(super) fn new(
+        writer: &Writer<'_>,
+        plan: &Plan,
+        composer: &Composer<'_>,
+        run: &RunFrame,
+        number: Option<Diagnostic>,
+    ) -> Self {
+        let over = &run.snapshot.turned_over;
+        let diverged = match run.snapshot.status {
+            Status::Diverged(divergence) => Some(divergence.time),
+            Status::Ok => None,
+        };
+        let (mut tally, mut tally_width) = (Vec::new(), 0.0);
+        if !over.is_empty() {
+            let scale = writer.scale.with_unit(TALLY * writer.scale.unit);
+            let room = TALLY_SHARE * plan.words_width(writer.scale);
+            tally_width = composer.tally.draw(over, writer.palette, scale, room, [0.0; 2], &mut tally);
+        }
+        let count = run.snapshot.diagnostics.turned_over;
+        Self {
+            tally,
+            tally_width,
+            count: if over.is_empty() { String::new() } else { count.to_string() },
+            is_alarm: count > 0,
+            said: number.and_then(|diagnostic| said(diagnostic, composer.scene, run)).unwrap_or_default(),
+            diverged,
+        }
     }
-    let [left, top, width, height] = plan.tile(row, column).map(f64::from);
-    let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
-    let room = width - 12.0 * scale.unit;
-    let tally_scale = scale.with_unit(TALLY * scale.unit);
-    let baseline = bottom - 0.5 * TALLY * 36.0 * scale.type_unit() + 0.36 * size;
-    if let Status::Diverged(divergence) = run.snapshot.status {
-        let wordings = [format!("diverged at {}", number::time(divergence.time)), "diverged".to_owned()];
-        let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
-        let Some(text) = wordings.iter().find(|text| wide(text) <= room) else { return };
-        return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
+
+    /// Width of tally and count (px).
+    fn counted(&self, writer: &Writer<'_>) -> f64 {
+        let gap = if self.count.is_empty() { 0.0 } else { COUNT_GAP * writer.scale.type_unit() };
+        self.tally_width + gap + writer.fonts.width(&self.count, Weight::SemiBold, writer.scale.caption())
     }
-    let over = &run.snapshot.turned_over;
-    let (mut marks, mut taken) = (Vec::new(), 0.0);
-    if !over.is_empty() {
-        taken = composer.tally.draw(over, palette, tally_scale, 0.6 * room, [0.0, bottom], &mut marks);
+
+    /// Whether there is room for the diagnostic, too.
+    pub(super) fn has_room(&self, writer: &Writer<'_>, plan: &Plan) -> bool {
+        let size = NOTE * writer.scale.type_unit();
+        let said = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.said, Weight::Regular, size);
+        self.said.is_empty() || Scale::legible(size) && self.counted(writer) + said <= plan.words_width(writer.scale)
     }
-    let count = run.snapshot.diagnostics.turned_over;
-    let text = if over.is_empty() { String::new() } else { count.to_string() };
-    let [count_gap, number_gap] = [COUNT_GAP, NUMBER_GAP].map(|gap| gap * scale.type_unit());
-    let counted = taken + if text.is_empty() { 0.0 } else { count_gap + fonts.width(&text, Weight::SemiBold, size) };
-    let small = NOTE * scale.type_unit();
-    let said = number.and_then(|diagnostic| said(diagnostic, composer.scene, run)).unwrap_or_default();
-    let said_wide = number_gap + fonts.width(&said, Weight::Regular, small);
-    let said = if Scale::legible(small) && counted + said_wide <= room { said } else { String::new() };
-    let whole = counted + if said.is_empty() { 0.0 } else { said_wide };
-    let left = (middle - 0.5 * whole).round();
-    for mark in &mut marks {
-        mark.rectangle[0] += narrow(left);
+
+    /// Writes tally, count and, if there is room in all tiles, the diagnostic; or that the run has blown up.
+    pub(super) fn write(self, writer: &mut Writer<'_>, plan: &Plan, [row, column]: [usize; 2], with_number: bool) {
+        let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
+        let size = scale.caption();
+        if !plan.has_tally || !Scale::legible(size) {
+            return;
+        }
+        let [left, top, width, height] = plan.tile(row, column).map(f64::from);
+        let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
+        let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * size;
+        if let Some(time) = self.diverged {
+            let wordings = [format!("diverged at {}", number::time(time)), "diverged".to_owned()];
+            let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
+            let Some(text) = wordings.iter().find(|text| wide(text) <= plan.words_width(scale)) else { return };
+            return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
+        }
+        let small = NOTE * scale.type_unit();
+        let said = if with_number { &self.said[..] } else { "" };
+        let gap = if said.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
+        let counted = self.counted(writer);
+        let left = (middle - 0.5 * (counted + gap + fonts.width(said, Weight::Regular, small))).round();
+        writer.marks.extend(self.tally.into_iter().map(|mut mark| {
+            mark.rectangle[0] += narrow(left);
+            mark.rectangle[1] += narrow(bottom.round());
+            mark
+        }));
+        let colour = if self.is_alarm { palette.alarm_text } else { palette.second_text };
+        let count_left = left + counted - fonts.width(&self.count, Weight::SemiBold, size);
+        writer.left(&self.count, Weight::SemiBold, size, colour, count_left, baseline);
+        writer.left(said, Weight::Regular, small, palette.second_text, left + counted + gap, baseline);
     }
-    writer.marks.extend(marks);
-    let colour = if count > 0 { palette.alarm_text } else { palette.second_text };
-    writer.left(&text, Weight::SemiBold, size, colour, left + taken + count_gap, baseline);
-    let end = left + counted + number_gap;
-    writer.left(&said, Weight::Regular, small, palette.second_text, end, baseline);
 }
 
 /// A diagnostic with its name; `None` if it has no value.
