@@ -173,7 +173,7 @@ fn every_scene_looks_as_it_did() {
 /// The contact sheets that have goldens.
 const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];
 /// Width of their pictures (px).
-const SHEET: u32 = 480;
+const SHEET: u32 = 330;
 
 #[test]
 fn every_contact_sheet_looks_as_it_did() {

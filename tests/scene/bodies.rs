@@ -1,6 +1,6 @@
 //! Bodies that are made by a rule, and elements of every shape.
 
-use super::{bad, good};
+use super::{WORLD, bad, good};
 use glam::DVec3;
 use localshape::scene::Scene;
 use localshape::sequence::Sequence;
@@ -334,7 +334,7 @@ fn a_start_says_what_is_wrong_with_it() {
             "`positions` and `start`, which exclude each other",
         ),
     ] {
-        let error = super::bad(&body(start, more)).to_string();
+        let error = bad(&body(start, more)).to_string();
         assert!(error.contains(words), "{words:?} is not in\n{error}");
     }
 }

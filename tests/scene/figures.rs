@@ -32,14 +32,14 @@ fn sheet(text: &str) -> Sheet {
 #[test]
 fn every_mistake_is_said_where_it_is() {
     let cases: [(&str, usize, usize, &str); 22] = [
-        ("", 1, 1, "the figure shows nothing: expected a table `[sheet]` or `[forces]`"),
+        ("title = 'x'", 1, 1, "the figure shows nothing: expected a table `[sheet]` or `[forces]`"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[forces]\nscenes = ['fig4b.toml']", 1, 1, "keep one of them"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoment = [0]", 3, 1, "unknown key `moment` in `sheet`"),
         ("[sheet]\nscene = 'fig4b.toml'", 1, 1, "the sheet has no columns: expected `moments` or `[[sheet.column]]`"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = []", 3, 11, "`sheet.moments`"),
         ("[sheet]\nscene = 'nowhere.toml'\nmoments = [0]", 2, 9, "nowhere.toml: there is no such file"),
-        ("[sheet]\nmoments = [0]", 2, 1, "the column has no scene: expected `scene` here or in `[sheet]`"),
-        ("[sheet]\n[[sheet.column]]\ntime = 0", 2, 1, "the column has no scene"),
+        ("[sheet]\nmoments = [0]", 2, 1, "there is no `scene` beside the moments that are shown of it"),
+        ("[sheet]\n[[sheet.column]]\ntime = 0", 2, 1, "the column has no scene: expected `scene` here or in `[sheet]`"),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[[sheet.column]]\ntime = 0",
             3,

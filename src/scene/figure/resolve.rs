@@ -100,6 +100,10 @@ impl Scenes<'_, '_, '_> {
             }
             None => file.column,
         };
+        if are_moments && file.scene.is_none() {
+            self.report.at_key(&at("moments"), "there is no `scene` beside the moments that are shown of it", None);
+            return Ok(None);
+        }
         if columns.is_empty() {
             self.report.at(&at(""), "the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
             return Ok(None);

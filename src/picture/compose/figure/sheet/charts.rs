@@ -20,6 +20,8 @@ const UNIT: f64 = 14.0;
 const UNIT_BELOW: f64 = 19.0;
 /// Between names and numbers (px in the reference picture).
 const BESIDE_NAMES: f64 = 14.0;
+/// The first time begins at most so far left of the chart (px in the reference picture).
+const BEFORE_TIMES: f64 = 5.0;
 /// Where the scale of time changes: the part of the width before, and the gap (px in the reference picture).
 const BEFORE: f64 = 0.8;
 const SPLIT_GAP: f64 = 12.0;
@@ -221,7 +223,8 @@ impl One {
                 chart.rows(writer, values, at == 0);
             }
             if is_last || values.is_none() {
-                let from = if at == 0 { f64::NEG_INFINITY } else { chart.left };
+                // Beside the lowest value's number, and beside the times of the other scale.
+                let from = chart.left - if at == 0 { BEFORE_TIMES * chart.unit } else { 0.0 };
                 chart.columns(writer, &times, values.is_none(), from);
             }
             let Some(values) = &values else { continue };
