@@ -43,6 +43,11 @@ const SMALLEST_ELEMENT = vec2<f32>(1.5, 4.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
 
+// The depth of the turned-over set by itself at the sample nearest to a point.
+fn alarm_depth_around(place: vec2<f32>, sample: u32) -> f32 {
+    return load_alarm_depth(texel_around(place, sample), sample);
+}
+
 @vertex
 fn segment(
     @builtin(vertex_index) corner: u32,
@@ -160,8 +165,11 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     }
     if kind == ALARM_EDGE {
         // Turned-over elements hide more of it than sound ones.
-        let alarm = textureLoad(alarm_depth, texel_of(at.middle), 0);
-        let behind = mix(0.15, hidden_alpha.y, visible_share(at.depth * (1.0 + OFFSET), alarm));
+        var free = 0.0;
+        for (var sample = 0u; sample < SAMPLES; sample++) {
+            free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, sample)) / f32(SAMPLES);
+        }
+        let behind = mix(0.15, hidden_alpha.y, free);
         let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
         return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
     }
@@ -199,10 +207,16 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
     if of_alarm {
         // Where the set ends, its outline is drawn at full strength.
         let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
-        let ends = textureLoad(alarm_depth, texel_of(at.middle + across), 0) <= 0.0
-            || textureLoad(alarm_depth, texel_of(at.middle - across), 0) <= 0.0;
+        var ends = 0.0;
+        for (var sample = 0u; sample < SAMPLES; sample++) {
+            let farther = min(
+                alarm_depth_around(at.middle + across, sample),
+                alarm_depth_around(at.middle - across, sample),
+            );
+            ends += select(0.0, 1.0, farther <= 0.0) / f32(SAMPLES);
+        }
         let smallness = min(1.0, panel.element / SMALL_FOLDED);
-        let fold = select(smallness * smallness, 1.0, ends);
+        let fold = mix(smallness * smallness, 1.0, ends);
         through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * scale);
     }
     return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);

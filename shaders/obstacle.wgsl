@@ -55,11 +55,8 @@ fn solid_surface(corner: SolidCorner) -> SolidPixel {
     return solid(corner, OBSTACLE);
 }
 
-// Among the turned-over elements, which have one sample a pixel, to be seen through clear surfaces.
+// Among the turned-over elements, to be seen through clear surfaces.
 @fragment
-fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
-    if corner.above < 0.0 {
-        discard;
-    }
-    return solid(corner, 1.0).colour;
+fn solid_behind(corner: SolidCorner) -> SolidPixel {
+    return solid(corner, 1.0);
 }

@@ -87,6 +87,8 @@ fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> ve
 const ARROW_HEAD = vec2<f32>(1.235, 0.2);
 const ARROW_SHAFT = 0.247;
 const ARROW_HALO = 0.17647;
+// The part of the halo's room that it fills, so that it is as wide beside its arrow in pictures of all sizes.
+const ARROW_HALO_FILLED = 0.83333;
 const ARROW_SHORT = 0.62;
 
 fn off_segment(at: vec2<f32>, from_end: vec2<f32>, to_end: vec2<f32>) -> f32 {
@@ -118,7 +120,7 @@ fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
     let side = (p.x - barb.x) * (point.y - barb.y) - (p.y - barb.y) * (point.x - barb.x);
     let rear = p.x >= back + notch * (1.0 - p.y / max(half_head, 1e-6));
     let inside = in_shaft || (rear && side > 0.0 && p.y <= half_head);
-    return vec2(select(off, -off, inside), max(pad * max(part, 0.5) - 0.5, 0.0));
+    return vec2(select(off, -off, inside), ARROW_HALO_FILLED * pad * max(part, 0.5));
 }
 
 // How much of a pixel lies between the upper corners of a rectangle and below its upper side.
@@ -129,7 +131,7 @@ fn within(at: vec2<f32>, size: vec2<f32>) -> f32 {
 // How far a mark reaches beyond its rectangle (px): by its smooth border, and ring arrows by their heads.
 fn room_around(mark: Mark) -> f32 {
     switch mark.shape {
-        case NODE, PIN, HAND, FADING, SHADOW: { return 1.0; }
+        case NODE, PIN, HAND, FADING, SHADOW, ARROW: { return 1.0; }
         case COUNTER_CLOCKWISE, CLOCKWISE: { return 0.5 * (RING + HEAD.y - 1.0) * mark.rectangle.z + 1.0; }
         default: { return 0.0; }
     }
@@ -164,14 +166,15 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case NODE: {
             let inward = (1.0 - length(middle)) / pixel;
             let rim = 0.16 * corner.rectangle.z;
-            let alpha = saturate(inward + 0.5);
+            let alpha = saturate(inward + 0.5) * corner.colour.a;
             return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), alpha);
         }
         case COUNTER_CLOCKWISE: {
-            return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel));
+            return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel) * corner.colour.a);
         }
         case CLOCKWISE: {
-            return vec4(corner.colour.rgb, ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel));
+            let alpha = ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel) * corner.colour.a;
+            return vec4(corner.colour.rgb, alpha);
         }
         case FADING: {
             let left = saturate(1.0 - at.y / corner.rectangle.w);

@@ -36,6 +36,8 @@ struct Panel {
     opacity: f32,
     // 1 if turned-over elements are hatched, else 0.
     hatch: f32,
+    // 0 if nothing lies behind sound elements, 1 if something may.
+    behind: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

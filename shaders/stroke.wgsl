@@ -27,7 +27,8 @@ const CASING = 0.24;
 const LEAST_CASING = 0.6;
 // The rim of a disc, in parts of its radius.
 const RIM = 0.32;
-// A disc is cut off by what is nearer than the front of a ball this much larger.
+// A disc is cut off by what is nearer than the front of a ball this much larger, and fades over half of that before and
+// behind it: of a sheet seen nearly from its side, depths change within a pixel by more than a step could bear.
 const FRONT = 2.0;
 
 @vertex
@@ -60,14 +61,16 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
 }
 
 // How much is seen of a disc, for one sample of the pixel around its middle and one of the pixel that is drawn.
-fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, front: f32, sample: u32) -> f32 {
+fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, sample: u32) -> f32 {
     // At an outline, the next pixel may be the background's.
     let beside = min(
         min(sample_depth(middle + vec2(1.5, 0.0), sample), sample_depth(middle - vec2(1.5, 0.0), sample)),
         min(sample_depth(middle + vec2(0.0, 1.5), sample), sample_depth(middle - vec2(0.0, 1.5), sample)),
     );
     let seen = visible_share(before, min(sample_depth(middle, sample), beside));
-    return seen * visible_share(front, sample_depth(pixel, sample));
+    let here = sample_depth(pixel, sample);
+    let front = before / (1.0 - FRONT * nearness);
+    return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
 
 // How much is seen of a line, and how much of it runs over a surface and not along an outline, where it stands out
@@ -89,11 +92,12 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let distance = length(pixel - middle);
     let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
     if stroke.kind == DISC {
-        let front = before / (1.0 - min(0.5, FRONT * stroke.size / panel.focal));
+        // The radius of a ball as large as the disc, as a part of the distance.
+        let nearness = min(0.5 / FRONT, stroke.size / panel.focal);
         let inward = stroke.size - distance;
         var shown = 0.0;
         for (var sample = 0u; sample < SAMPLES; sample++) {
-            shown += disc_share(middle, pixel, before, front, sample) / f32(SAMPLES);
+            shown += disc_share(middle, pixel, before, nearness, sample) / f32(SAMPLES);
         }
         shown = max(shown, panel.flatness);
         let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - RIM * stroke.size + 0.5));

@@ -1,10 +1,6 @@
 // Surfaces of bodies: lit, hatched where turned over, and with the turned-over elements showing through the sound ones.
 // Colours are stored as their square roots, which keeps eight bits fine in the dark and is quick to undo.
 
-// The turned-over set, drawn beforehand: lit colour, and brightness of the light in alpha.
-@group(1) @binding(0) var alarm_colour: texture_2d<f32>;
-@group(1) @binding(1) var alarm_depth: texture_depth_2d;
-
 struct Corner {
     @builtin(position) place: vec4<f32>,
     @location(0) position: vec3<f32>,
@@ -22,6 +18,8 @@ const CONTACT_HEIGHT = 0.9;
 const CONTACT_LIGHT = 0.72;
 // The turned-over set is drawn this much nearer (sides), so that faces shared with the sound one are its own.
 const NEARER = 0.02;
+// A face turned away lies this much farther back, as a part of the distance.
+const BACK_FACE = 1e-5;
 // The share of a stripe's period that is dark, and how dark it is.
 const STRIPE = 0.2;
 const STRIPE_ALPHA = 0.62;
@@ -37,14 +35,24 @@ const SOLID_BEHIND = 0.99;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
 
+// Where a corner of a face is drawn. Of two faces at the same place, as a body pressed flat has, the one that is turned
+// towards the viewer is always seen: the other lies behind it by a hair, some times what round-off makes of depths.
+fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
+    var place = panel.clip * vec4(position, 1.0);
+    if panel.flatness < 0.5 && dot(normal, panel.eye - position) < 0.0 {
+        place.z *= 1.0 - BACK_FACE;
+    }
+    return place;
+}
+
 @vertex
 fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
-    return Corner(panel.clip * vec4(position, 1.0), position, normal, hatch);
+    return Corner(corner_place(position, normal), position, normal, hatch);
 }
 
 // Where a corner of the turned-over set is drawn.
-fn moved_nearer(position: vec3<f32>) -> vec4<f32> {
-    var place = panel.clip * vec4(position, 1.0);
+fn moved_nearer(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
+    var place = corner_place(position, normal);
     place.z *= place.w / max(place.w - NEARER, panel.near);
     place.z = min(place.z, place.w);
     return place;
@@ -52,7 +60,7 @@ fn moved_nearer(position: vec3<f32>) -> vec4<f32> {
 
 @vertex
 fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
-    return Corner(moved_nearer(position), position, normal, hatch);
+    return Corner(moved_nearer(position, normal), position, normal, hatch);
 }
 
 struct Light {
@@ -119,36 +127,63 @@ fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
 
 // What is stored of a sound surface of a colour, which lets through what is behind.
 fn see_through(colour: vec3<f32>) -> vec4<f32> {
-    return vec4(sqrt(saturate(colour) * panel.opacity), min(panel.opacity, MOST_OPACITY));
+    let alpha = select(min(panel.opacity, MOST_OPACITY), 1.0, panel.opacity >= 1.0);
+    return vec4(sqrt(saturate(colour) * panel.opacity), alpha);
+}
+
+// What is seen where one sample of what is behind a surface of a colour lies at a depth: linear, multiplied with alpha.
+fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> vec4<f32> {
+    let stored = load_alarm_colour(vec2<i32>(corner.place.xy), sample);
+    if panel.opacity < 1.0 {
+        if behind > 0.0 && stored.a > SOLID_BEHIND {
+            return vec4(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity)), 1.0);
+        }
+        // In the plane, turned-over elements lie before sound ones.
+        if behind <= 0.0 || panel.flatness > 0.5 {
+            return vec4(saturate(colour) * panel.opacity, panel.opacity);
+        }
+    }
+    if behind <= 0.0 || panel.flatness > 0.5 {
+        return vec4(saturate(colour), 1.0);
+    }
+    let depth = panel.near / behind - 1.0 / corner.place.w;
+    // The clearer the surface, the less what is deep under it loses.
+    let deep = panel.opacity * smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+    let lit = stored.rgb * stored.rgb;
+    let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
+    let alarm = mix(lit, unlit, 0.65 * deep);
+    // Blue-grey under vermilion would turn pink: most of its colour goes first.
+    let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
+    return vec4(saturate(mix(grey, alarm, 1.0 - 0.4 * deep)), 1.0);
+}
+
+// What is stored of the mean of all samples: nothing that is seen through, be it a little, is as opaque as an obstacle.
+fn stored_mean(sum: vec4<f32>) -> vec4<f32> {
+    let mean = sum / f32(SAMPLES);
+    return vec4(sqrt(mean.rgb), select(min(mean.a, MOST_OPACITY), 1.0, mean.a > 0.9999));
 }
 
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     let light = light(corner.position, corner.normal);
-    var colour = panel.sound * light.diffuse + light.gloss;
+    let colour = panel.sound * light.diffuse + light.gloss;
+    if panel.behind < 0.5 {
+        return see_through(colour);
+    }
+    // Each sample of what lies behind counts, so that its borders are as smooth as those of the surface.
     let at = vec2<i32>(corner.place.xy);
-    let behind = textureLoad(alarm_depth, at, 0);
-    if panel.opacity < 1.0 {
-        let stored = textureLoad(alarm_colour, at, 0);
-        if behind > 0.0 && stored.a > SOLID_BEHIND {
-            return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity))), 1.0);
-        }
-        // In the plane, turned-over elements lie before sound ones.
-        if behind <= 0.0 || panel.flatness > 0.5 {
-            return see_through(colour);
-        }
+    var behind: array<f32, SAMPLES>;
+    var nearest = 0.0;
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        behind[sample] = load_alarm_depth(at, sample);
+        nearest = max(nearest, behind[sample]);
     }
-    if behind > 0.0 && panel.flatness < 0.5 {
-        let depth = panel.near / behind - 1.0 / corner.place.w;
-        // The clearer the surface, the less what is deep under it loses.
-        let deep = panel.opacity * smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-        let stored = textureLoad(alarm_colour, at, 0);
-        let lit = stored.rgb * stored.rgb;
-        let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
-        let alarm = mix(lit, unlit, 0.65 * deep);
-        // Blue-grey under vermilion would turn pink: most of its colour goes first.
-        let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
-        colour = mix(grey, alarm, 1.0 - 0.4 * deep);
+    if nearest <= 0.0 {
+        return see_through(colour);
     }
-    return vec4(sqrt(saturate(colour)), 1.0);
+    var sum = vec4(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        sum += over_behind(colour, corner, behind[sample], sample);
+    }
+    return stored_mean(sum);
 }

@@ -3,7 +3,7 @@
 // hatch they are vermilion.
 
 // The colours of the scale, linear.
-@group(1) @binding(2) var<uniform> ramp: array<vec4<f32>, SHADES>;
+@group(1) @binding(4) var<uniform> ramp: array<vec4<f32>, SHADES>;
 
 const SHADES = 64;
 // The darkest light leaves this part of a colour, and light of this brightness and below it is the darkest.
@@ -27,7 +27,7 @@ fn tinted_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    return TintedCorner(panel.clip * vec4(position, 1.0), position, normal, hatch, shade);
+    return TintedCorner(corner_place(position, normal), position, normal, hatch, shade);
 }
 
 @vertex
@@ -37,7 +37,7 @@ fn tinted_alarm_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    return TintedCorner(moved_nearer(position), position, normal, hatch, shade);
+    return TintedCorner(moved_nearer(position, normal), position, normal, hatch, shade);
 }
 
 fn tint(corner: TintedCorner) -> vec3<f32> {
@@ -73,25 +73,37 @@ fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
     return vec4(sqrt(saturate(colour)), 1.0);
 }
 
-@fragment
-fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
-    var colour = tint(corner);
+// As for plain surfaces.
+fn tinted_over(colour: vec3<f32>, corner: TintedCorner, sample: u32) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
-    let behind = textureLoad(alarm_depth, at, 0);
+    let behind = load_alarm_depth(at, sample);
+    let stored = load_alarm_colour(at, sample);
     if panel.opacity < 1.0 {
-        let stored = textureLoad(alarm_colour, at, 0);
         let is_solid = stored.a > SOLID_BEHIND;
         if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
-            return see_through(colour);
+            return vec4(saturate(colour) * panel.opacity, panel.opacity);
         }
         // Turned-over elements keep their own opacity: a little of the surface shows that it lies before them.
         let covering = select(panel.opacity * panel.opacity, panel.opacity, is_solid);
-        return vec4(sqrt(saturate(mix(stored.rgb * stored.rgb, colour, covering))), 1.0);
+        return vec4(saturate(mix(stored.rgb * stored.rgb, colour, covering)), 1.0);
     }
-    if behind > 0.0 && panel.flatness < 0.5 {
-        let depth = panel.near / behind - 1.0 / corner.place.w;
-        let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-        colour = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * textureLoad(alarm_colour, at, 0).a);
+    if behind <= 0.0 || panel.flatness > 0.5 {
+        return vec4(saturate(colour), 1.0);
     }
-    return vec4(sqrt(saturate(colour)), 1.0);
+    let depth = panel.near / behind - 1.0 / corner.place.w;
+    let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+    return vec4(saturate(mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a)), 1.0);
+}
+
+@fragment
+fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
+    let colour = tint(corner);
+    if panel.behind < 0.5 {
+        return see_through(colour);
+    }
+    var sum = vec4(0.0);
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        sum += tinted_over(colour, corner, sample);
+    }
+    return stored_mean(sum);
 }

@@ -23,6 +23,7 @@ mod report;
 mod scenes;
 mod schema;
 mod simulate;
+mod table;
 
 #[cfg(feature = "render")]
 pub use driver::settle;
@@ -46,6 +47,7 @@ const EXAMPLES: &str = "\
 Examples:
   localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
   localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape table                             the paper's numbers beside ours
 
 This program was built without the feature `render`: it draws no pictures.";
 
@@ -55,7 +57,8 @@ Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
   localshape simulate scenes/fig4b.toml        the same without pictures
   localshape check scenes/*.toml               what scenes hold, or every mistake in them
-  localshape figure all                        the paper's figures in output/figures/";
+  localshape figure all                        the paper's figures in output/figures/
+  localshape table                             the paper's numbers beside ours";
 
 /// Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models
 #[derive(Debug, Parser)]
@@ -73,6 +76,7 @@ enum Command {
     #[cfg(feature = "render")]
     Figure(figure::FigureCommand),
     Check(check::Check),
+    Table(table::Table),
     Info(info::Info),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -104,6 +108,7 @@ impl Command {
             #[cfg(feature = "render")]
             Self::Figure(figure) => figure.run(),
             Self::Check(check) => check.run(),
+            Self::Table(table) => table.run(),
             Self::Info(info) => info.run(),
             Self::Schema(schema) => schema.run(),
             Self::Completions(completions) => completions.run(),

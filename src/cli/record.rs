@@ -50,7 +50,7 @@ pub(super) fn run_all(
     studio: Option<&dyn Studio>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
-    let pool = pool(options)?;
+    let pool = pool(options.threads())?;
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut documents: Vec<Value> = Vec::new();
     let mut interrupted = false;
@@ -106,15 +106,16 @@ fn record(
     result
 }
 
-fn merge(document: &mut Value, more: Value) {
+/// Adds the keys of one document to another.
+pub(super) fn merge(document: &mut Value, more: Value) {
     if let (Value::Object(document), Value::Object(more)) = (document, more) {
         document.extend(more);
     }
 }
 
-fn pool(options: &RunOptions) -> Result<ThreadPool, Failure> {
-    let pool =
-        ThreadPoolBuilder::new().num_threads(options.threads()).thread_name(|at| format!("simulate {at}")).build();
+/// The threads that simulate.
+pub(super) fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|at| format!("simulate {at}")).build();
     pool.map_err(|error| Failure::usage(format!("--threads: the system does not start so many threads ({error})")))
 }
 

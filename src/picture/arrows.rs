@@ -22,6 +22,8 @@ const FAINTEST: f64 = 0.33;
 const SHORTEST: [f64; 2] = [9.0, 2.5];
 /// They fade over this part of that length above it.
 const FADING: f64 = 0.35;
+/// Depths that differ by less than this part of the largest are equal.
+const EQUALLY_DEEP: f64 = 1e-6;
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 
@@ -93,7 +95,10 @@ impl Arrows<'_> {
             Some((depth, opacity, [from, to].map(DVec2::from)))
         });
         let mut ends: Vec<_> = ends.collect();
-        ends.sort_by(|one, other| other.0.total_cmp(&one.0));
+        // What lies equally deep stays in order, whatever round-off says.
+        let step = EQUALLY_DEEP * ends.iter().map(|(depth, ..)| depth.abs()).fold(0.0, f64::max);
+        let rank = |depth: f64| (depth / step.max(f64::MIN_POSITIVE)).round();
+        ends.sort_by(|one, other| rank(other.0).total_cmp(&rank(one.0)));
         let arrows = ends.into_iter().filter_map(|(_, opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
             let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);

@@ -253,7 +253,9 @@ impl Writer<'_> {
         let middle = between[0].midpoint(between[1]);
         let [length, thickness] = [pixels, 2.0 * self.scale.line()].map(|length| length.round().max(1.0));
         let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - BAR_HEIGHT * unit).round());
-        let tick = (BAR_TICK * unit).round().max(thickness);
+        // Beside thick lines ticks are longer, or they would be none.
+        let usual_thickness = (2.0 * self.scale.line() / self.scale.line_factor).round().max(1.0);
+        let tick = ((BAR_TICK * unit).round() + 2.0 * (thickness - usual_thickness)).max(thickness);
         let [first, last] = [left, left + length - thickness];
         for [x, y, width, height] in [
             [left, top, length, thickness],

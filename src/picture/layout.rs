@@ -47,6 +47,9 @@ const BELOW_CAPTION: f64 = 30.0;
 pub(super) const LEAST_STRIP_UNIT: f64 = 0.5;
 /// The words above and below a body take at most this part of its panel.
 const MOST_WORDS: f64 = 0.62;
+/// What a strip needs besides its chart (px in the reference picture), and the lowest chart (px).
+const LEAST_STRIP: f64 = 46.0;
+pub(super) const LEAST_CHART: f64 = 14.0;
 /// A strip takes at most this part of its panel.
 const STRIP_SHARE: f64 = 0.34;
 
@@ -116,6 +119,7 @@ impl Layout {
         let height = size[1] - title - legend - caption;
         let panels = panels([size[0], height], runs, view.columns);
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
+        let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         let strip_height = |height: f64| match view.strip {
             Some(_) => {
                 let usual = STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
@@ -124,8 +128,12 @@ impl Layout {
             }
             None => 0.0,
         };
+        // A strip too low to be read leaves its room to the body.
+        let strip_unit = scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
+        let below = scale.like_margin(BELOW_STRIP) * scale.unit;
+        let has_strips = view.strip.is_some() && strip_height(lowest) - below > LEAST_STRIP * strip_unit + LEAST_CHART;
+        let strip_height = |height: f64| if has_strips { strip_height(height) } else { 0.0 };
         // However large type and margins are, bodies have some of their panel for themselves.
-        let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         let room = MOST_WORDS * (lowest - strip_height(lowest)) / rooms(view).iter().sum::<f64>();
         let scale = Scale { unit: scale.unit.min(room), ..scale };
         let strip = |panel: Rectangle| {
@@ -137,7 +145,7 @@ impl Layout {
             [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
         };
         let place = |mut panel: Rectangle| {
-            let strip = view.strip.map(|_| strip(panel));
+            let strip = has_strips.then(|| strip(panel));
             panel[1] += title;
             if let Some([_, top, ..]) = strip {
                 panel[3] = top - panel[1];

@@ -382,6 +382,12 @@ pub enum MarkShape {
     FaintPin(u8),
     /// A [`Self::Hand`] of an opacity (of 255).
     FaintHand(u8),
+    /// A [`Self::Node`] of an opacity (of 255).
+    FaintNode(u8),
+    /// A [`Self::CounterClockwise`] of an opacity (of 255).
+    FaintCounterClockwise(u8),
+    /// A [`Self::Clockwise`] of an opacity (of 255).
+    FaintClockwise(u8),
 }
 
 impl MarkShape {
@@ -394,6 +400,9 @@ impl MarkShape {
             Self::Arrow => Some(Self::FaintArrow(opacity)),
             Self::Pin => Some(Self::FaintPin(opacity)),
             Self::Hand => Some(Self::FaintHand(opacity)),
+            Self::Node => Some(Self::FaintNode(opacity)),
+            Self::CounterClockwise => Some(Self::FaintCounterClockwise(opacity)),
+            Self::Clockwise => Some(Self::FaintClockwise(opacity)),
             _ => Some(self),
         }
     }

@@ -24,11 +24,14 @@ const RING: [f64; 2] = [13.0, 17.0];
 const ROOMY: f64 = 18.0;
 const SMALLEST_SIGN: f64 = 0.35;
 const SMALLEST_ALARM: f64 = 0.7;
+/// Above these sizes they fade in over this part of their whole size: nothing appears at once.
+const FADING_SIGN: f64 = 0.2;
+/// What is covered by the disc of another, or by an element that has turned over, fades over this distance beside it (px in
+/// the reference picture).
+const FADING_BESIDE: f64 = 6.0;
 /// Bodies of more elements than this have no signs, which would hide what they stand for.
 const MOST_SIGNS: usize = 16;
-/// Bodies of more nodes than this have smaller ones.
-const MANY_NODES: usize = 150;
-/// Nodes of such bodies have at most this part of an element's edge for a radius, and at least this radius (px).
+/// Nodes have at most this part of an element's edge for a radius, and at least this radius (px).
 const CROWDED: f64 = 0.14;
 const SMALLEST_NODE: f64 = 1.4;
 /// Thickness of the floor's line (px in the reference picture).
@@ -201,8 +204,7 @@ impl Flat<'_> {
     /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are those of the nodes if
     /// they have colours of their own.
     pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Mark>) {
-        let usual = NODE * self.scale.line();
-        let radius = if self.body.len() > MANY_NODES { node_radius(self.scale, element) } else { usual };
+        let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
             let Some(pixel) = self.pixel(point) else { continue };
             let colour = colours(node).unwrap_or(self.palette.node);
@@ -221,14 +223,16 @@ impl Flat<'_> {
     fn sound_arrow(&self, (middle, room): Place, turned_over: &[(Vec<DVec2>, Place)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
         // Neither one that lies over it nor the disc of its arrow.
-        let covered = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
-            is_inside(polygon, middle) || disc.distance(middle) < (RING[0] + RING[1]) * unit
+        let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
+            outside(polygon, middle).min(disc.distance(middle) - (RING[0] + RING[1]) * unit)
         };
+        let free = turned_over.iter().map(beside).fold(f64::INFINITY, f64::min) / (FADING_BESIDE * unit);
         // Where there is less room it is smaller, so that it does not come at once when the camera draws near.
         let size = (room / (ROOMY * unit)).min(1.0);
-        if size > SMALLEST_SIGN && !turned_over.iter().any(covered) {
+        let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
+        if let Some(shape) = MarkShape::CounterClockwise.faint(grown.min(free)) {
             let colour = self.palette.sign();
-            self.round(middle, size * RING[0] * unit, colour, colour, MarkShape::CounterClockwise, marks);
+            self.round(middle, size * RING[0] * unit, colour, colour, shape, marks);
         }
     }
 
@@ -237,11 +241,13 @@ impl Flat<'_> {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
         // A disc must not hide the element that it stands on.
         let size = (room / (0.55 * disc)).min(1.0);
-        if size > SMALLEST_ALARM {
+        let grown = (size - SMALLEST_ALARM) / FADING_SIGN;
+        let [ground, sign] = [MarkShape::Node, MarkShape::Clockwise].map(|shape| shape.faint(grown));
+        if let (Some(ground), Some(sign)) = (ground, sign) {
             let white = [255; 3];
-            self.round(middle, size * disc, white, white, MarkShape::Node, marks);
+            self.round(middle, size * disc, white, white, ground, marks);
             let colour = self.palette.alarm_on_white;
-            self.round(middle, size * ring, colour, colour, MarkShape::Clockwise, marks);
+            self.round(middle, size * ring, colour, colour, sign, marks);
         }
     }
 
@@ -306,6 +312,21 @@ fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
         (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
     });
     crossed.count() % 2 == 1
+}
+
+/// How far a point lies outside of a polygon; 0 inside it.
+fn outside(polygon: &[DVec2], point: DVec2) -> f64 {
+    if is_inside(polygon, point) {
+        return 0.0;
+    }
+    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    sides.map(|(&a, &b)| from_side(point, a, b)).fold(f64::INFINITY, f64::min)
+}
+
+/// How far a point lies from a straight line between two others.
+fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let share = (point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
+    point.distance(a.lerp(b, share.clamp(0.0, 1.0)))
 }
 
 /// The point among a few inside a polygon that is farthest from all its sides, and how far it is.

@@ -5,7 +5,7 @@ use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
 use super::course::{self, Line, Look, OWN};
-use super::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
+use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, Rectangle, Scale};
 use super::text::Weight;
 use crate::history::History;
 use crate::scene::Scene;
@@ -16,9 +16,8 @@ const NAME: f64 = 16.0;
 /// From the top of the strip to the baseline of its name and to its chart (px in the reference picture).
 const NAME_BASELINE: f64 = 13.0;
 const ABOVE: f64 = 26.0;
-/// The smallest chart (px).
+/// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
-const LEAST_HEIGHT: f64 = 14.0;
 /// Where there are more other runs than this, they would only be a thicket, and take their time.
 const MOST_OTHERS: usize = 8;
 /// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
@@ -64,7 +63,7 @@ impl Strips {
             line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
             thin: writer.scale.line_factor * unit,
         };
-        let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_HEIGHT && Scale::legible(NUMBERS * unit);
+        let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_CHART && Scale::legible(NUMBERS * unit);
         if !enough || self.end <= 0.0 {
             return;
         }

@@ -167,7 +167,7 @@ impl Wire<'_> {
     pub(super) fn beads(&self, radius: f64) -> Vec<Bead> {
         let haze = self.haze();
         let mut order: Vec<usize> = (0..self.position.len()).collect();
-        let depth = |node: &usize| self.position[*node].dot(self.forward);
+        let depth = |node: &usize| rounded(self.position[*node].dot(self.forward) / self.side);
         order.sort_by(|a, b| depth(b).total_cmp(&depth(a)).then(a.cmp(b)));
         let bead = |node: usize| {
             // A disc is light so that its rim shows; the farther it is, the fainter is the rim.
@@ -262,14 +262,21 @@ impl Wire<'_> {
         move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
 
-    /// The farthest first, so that nearer lines run over them.
+    /// The farthest first, so that nearer lines run over them; what is equally far stays in order.
     fn sorted(&self, mut strokes: Vec<Stroke>) -> Vec<Stroke> {
         let forward = narrow_point(self.forward);
         let depth =
             |stroke: &Stroke| (glam::Vec3::from(stroke.ends[0]) + glam::Vec3::from(stroke.ends[1])).dot(forward);
-        strokes.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        let rank = |stroke: &Stroke| rounded(f64::from(depth(stroke)));
+        strokes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
         strokes
     }
+}
+
+/// A depth (sides) without its last digits: what lies equally deep is not put in another order by round-off.
+fn rounded(depth: f64) -> f64 {
+    const STEP: f64 = 1e-5;
+    (depth / STEP).round()
 }
 
 /// The change of the distance of two nodes over their distance at rest; NaN where that is zero.

@@ -4,12 +4,11 @@ use super::panel::{Panels, is_visible, limit};
 use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Line, LineKind, Picture, Rectangle};
+use crate::picture::{Line, LineKind, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/line.wgsl");
-pub(super) const ALARM_SHADER: &str = include_str!("../../shaders/line_alarm.wgsl");
 /// What lines know of solid obstacles, where there are none and where there are some.
 pub(super) const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
 pub(super) const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
@@ -26,6 +25,11 @@ struct Segment {
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32, 3 => Float32];
+
+/// Whether there are lines of turned-over elements.
+pub(super) fn has_alarm(panel: &Panel) -> bool {
+    panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
+}
 
 /// A pipeline and what it reads.
 #[derive(Debug)]
@@ -125,9 +129,10 @@ impl Way {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
         let reading = super::reading_shader(samples);
         let places = super::samples_shader(samples);
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, places, reading, obstacles, ALARM_SHADER, SHADER];
+        let alarm = super::alarm_shader(samples);
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, places, reading, obstacles, alarm, SHADER];
         let module = shader(gpu, "line", &parts);
-        let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, 1)];
+        let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, samples)];
         if among {
             entries.push(texture_entry(0, false, samples));
         }

@@ -45,6 +45,13 @@ const ONE_SAMPLE_SHADER: &str = include_str!("../../shaders/one_sample.wgsl");
 const FOUR_SAMPLES_SHADER: &str = include_str!("../../shaders/four_samples.wgsl");
 const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");
 const MULTISAMPLED_SHADER: &str = include_str!("../../shaders/multisampled.wgsl");
+const ALARM_SINGLE_SHADER: &str = include_str!("../../shaders/alarm_single.wgsl");
+const ALARM_MULTISAMPLED_SHADER: &str = include_str!("../../shaders/alarm_multisampled.wgsl");
+
+/// The part of shaders that reads the turned-over set by itself, drawn with a number of samples.
+fn alarm_shader(samples: u32) -> &'static str {
+    if samples > 1 { ALARM_MULTISAMPLED_SHADER } else { ALARM_SINGLE_SHADER }
+}
 
 /// The part of shaders that knows where samples lie.
 fn samples_shader(samples: u32) -> &'static str {
@@ -219,7 +226,7 @@ impl Renderer {
             let solids = self.solids.get_or_insert_with(new);
             solids.write(&gpu, picture);
             if with_clear {
-                solids.prepare_behind(&gpu, &self.panels);
+                solids.prepare_behind(&gpu, &self.panels, self.samples);
             }
         }
         if with_slabs {
@@ -244,7 +251,8 @@ impl Renderer {
         let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
+        // Where nothing lies behind any surface, nobody asks for it but lines of turned-over elements without faces.
+        if picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel)) {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
             self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint);
             if let Some(solids) = solids.filter(|_| with_clear) {

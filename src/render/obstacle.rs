@@ -93,11 +93,7 @@ impl Solids {
 
     fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str, samples: u32) -> wgpu::RenderPipeline {
         // The light is that on bodies.
-        let module = shader(
-            gpu,
-            "obstacle",
-            &[super::PANEL_SHADER, super::samples_shader(samples), super::surface::SHADER, SHADER],
-        );
+        let module = shader(gpu, "obstacle", &[&super::surface::parts(samples)[..], &[SHADER]].concat());
         let recipe = Recipe {
             label: "obstacle",
             shader: &module,
@@ -114,8 +110,8 @@ impl Solids {
     }
 
     /// Prepares to draw what is seen through clear surfaces.
-    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels) {
-        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind", 1));
+    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels, samples: u32) {
+        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind", samples));
     }
 
     /// Uploads the solids of a picture.

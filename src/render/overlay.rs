@@ -174,7 +174,12 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
 /// A mark that is no glyph, as the shader reads it.
 fn plain(mark: &picture::Mark) -> Mark {
     let opacity = match mark.shape {
-        MarkShape::FaintArrow(opacity) | MarkShape::FaintPin(opacity) | MarkShape::FaintHand(opacity) => opacity,
+        MarkShape::FaintArrow(opacity)
+        | MarkShape::FaintPin(opacity)
+        | MarkShape::FaintHand(opacity)
+        | MarkShape::FaintNode(opacity)
+        | MarkShape::FaintCounterClockwise(opacity)
+        | MarkShape::FaintClockwise(opacity) => opacity,
         _ => 255,
     };
     let [red, green, blue] = mark.colour;
@@ -187,9 +192,9 @@ fn plain(mark: &picture::Mark) -> Mark {
         shape: match mark.shape {
             MarkShape::Filled => 0,
             MarkShape::Struck => 1,
-            MarkShape::Node => 3,
-            MarkShape::CounterClockwise => 4,
-            MarkShape::Clockwise => 5,
+            MarkShape::Node | MarkShape::FaintNode(_) => 3,
+            MarkShape::CounterClockwise | MarkShape::FaintCounterClockwise(_) => 4,
+            MarkShape::Clockwise | MarkShape::FaintClockwise(_) => 5,
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,

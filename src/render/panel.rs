@@ -30,7 +30,8 @@ pub(super) struct PanelUniform {
     pub(super) place: Vec4,
     pub(super) opacity: f32,
     pub(super) hatch: f32,
-    pub(super) spare: [f32; 2],
+    pub(super) behind: f32,
+    pub(super) spare: f32,
 }
 
 /// An sRGB colour as linear light.
@@ -79,6 +80,12 @@ fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     )
 }
 
+/// Whether anything may be seen through the sound surfaces of a panel.
+pub(super) fn has_behind(panel: &Panel) -> bool {
+    let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
+    !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
+}
+
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
     let (palette, sight) = (&picture.palette, &panel.sight);
     let [left, top] = [0, 1].map(|axis| panel.region[axis] as f32 - region[axis] as f32);
@@ -106,7 +113,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
         opacity: panel.opacity,
         hatch: if panel.hatch { 1.0 } else { 0.0 },
-        spare: [0.0; 2],
+        behind: if has_behind(panel) { 1.0 } else { 0.0 },
+        spare: 0.0,
     }
 }
 

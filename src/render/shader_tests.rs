@@ -4,8 +4,9 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::PanelUniform;
 use super::{
-    FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER, PANEL_SHADER, SEGMENT_SHADER, SINGLE_SHADER,
-    composite, curve, ground, line, obstacle, overlay, stroke, surface, tint,
+    ALARM_MULTISAMPLED_SHADER, ALARM_SINGLE_SHADER, FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER,
+    PANEL_SHADER, SEGMENT_SHADER, SINGLE_SHADER, composite, curve, ground, line, obstacle, overlay, stroke, surface,
+    tint,
 };
 use std::mem::offset_of;
 
@@ -21,15 +22,20 @@ fn parse(parts: &[&str]) -> naga::Module {
 
 #[test]
 fn shaders_are_valid() {
-    parse(&[PANEL_SHADER, surface::SHADER]);
-    parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
     parse(&[curve::SHADER]);
-    for [places, reading] in [[ONE_SAMPLE_SHADER, SINGLE_SHADER], [FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER]] {
-        parse(&[PANEL_SHADER, places, surface::SHADER, obstacle::SHADER]);
+    for samples in [1, 4] {
+        parse(&surface::parts(samples));
+        parse(&[&surface::parts(samples)[..], &[tint::SHADER]].concat());
+        parse(&[&surface::parts(samples)[..], &[obstacle::SHADER]].concat());
+    }
+    for [places, reading, alarm] in [
+        [ONE_SAMPLE_SHADER, SINGLE_SHADER, ALARM_SINGLE_SHADER],
+        [FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ALARM_MULTISAMPLED_SHADER],
+    ] {
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacles, line::ALARM_SHADER, line::SHADER]);
+            parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacles, alarm, line::SHADER]);
         }
         parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
@@ -82,7 +88,8 @@ fn structs_are_laid_out_alike_on_both_sides() {
             region,
             place,
             opacity,
-            hatch
+            hatch,
+            behind
         ]
     );
     same_layout!(
@@ -97,7 +104,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
 
 #[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
-    let module = parse(&[PANEL_SHADER, surface::SHADER, tint::SHADER]);
+    let module = parse(&[&surface::parts(4)[..], &[tint::SHADER]].concat());
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
     let (_, ramp) = ramp.expect("the scale");
     let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner

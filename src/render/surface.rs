@@ -21,6 +21,16 @@ pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
     }
 }
 
+/// The parts of the shader, for a number of samples.
+pub(super) fn parts(samples: u32) -> [&'static str; 4] {
+    [super::PANEL_SHADER, super::samples_shader(samples), super::alarm_shader(samples), SHADER]
+}
+
+/// What surfaces read of what lies behind them.
+pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
+    [texture_entry(2, true, samples), texture_entry(3, false, samples)]
+}
+
 /// The pipelines of the surfaces, and the meshes of one picture.
 #[derive(Debug)]
 pub(super) struct Surfaces {
@@ -37,9 +47,9 @@ pub(super) struct Surfaces {
 
 impl Surfaces {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let module = shader(gpu, "surface", &[super::PANEL_SHADER, SHADER]);
-        let behind_layout = group_layout(gpu, "turned over", &[texture_entry(0, false, 1), texture_entry(1, true, 1)]);
-        let build = |label, entries, groups: &[&wgpu::BindGroupLayout], samples| {
+        let module = shader(gpu, "surface", &parts(samples));
+        let behind_layout = group_layout(gpu, "turned over", &behind_entries(samples));
+        let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
             let recipe = Recipe {
                 label,
                 shader: &module,
@@ -55,9 +65,9 @@ impl Surfaces {
             recipe.build(gpu)
         };
         Self {
-            alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout], 1),
-            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout], samples),
-            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, &behind_layout], samples),
+            alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
+            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, &behind_layout]),
             behind_layout,
             behind: None,
             vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
@@ -82,7 +92,7 @@ impl Surfaces {
 
     /// Takes note of new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        let views = [(0, &bodies.alarm_colour), (1, &bodies.alarm_depth)];
+        let views = [(2, &bodies.alarm_depth), (3, &bodies.alarm_colour)];
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
     }
 

@@ -41,7 +41,7 @@ pub(super) struct Bodies {
     /// Everything of the bodies, with all samples.
     pub(super) colour: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
-    /// The turned-over elements by themselves, one sample a pixel.
+    /// The turned-over elements by themselves, with all samples.
     pub(super) alarm_colour: wgpu::TextureView,
     pub(super) alarm_depth: wgpu::TextureView,
     /// Opacities of lines.
@@ -67,8 +67,8 @@ impl Bodies {
             size,
             colour: texture("bodies", BODY_FORMAT, samples),
             depth: texture("depth of bodies", DEPTH_FORMAT, samples),
-            alarm_colour: texture("turned over", BODY_FORMAT, 1),
-            alarm_depth: texture("depth of turned over", DEPTH_FORMAT, 1),
+            alarm_colour: texture("turned over", BODY_FORMAT, samples),
+            alarm_depth: texture("depth of turned over", DEPTH_FORMAT, samples),
             lines: texture("lines", LINE_FORMAT, 1),
         }
     }

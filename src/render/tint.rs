@@ -1,7 +1,7 @@
 //! Surfaces coloured by a scalar field, in place of the plain ones.
 
 use super::panel::{Panels, linear};
-use super::pipeline::{BODY_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
+use super::pipeline::{BODY_FORMAT, Recipe, group_layout, shader, uniform_entry};
 use super::surface;
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -29,10 +29,11 @@ pub(super) struct Tint {
 
 impl Tint {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
-        let module = shader(gpu, "tint", &[super::PANEL_SHADER, surface::SHADER, SHADER]);
-        let scale = || uniform_entry(2, SHADES * size_of::<Vec4>(), false);
+        let module = shader(gpu, "tint", &[&surface::parts(samples)[..], &[SHADER]].concat());
+        let scale = || uniform_entry(4, SHADES * size_of::<Vec4>(), false);
         let alarm_layout = group_layout(gpu, "scale", &[scale()]);
-        let behind = [texture_entry(0, false, 1), texture_entry(1, true, 1), scale()];
+        let [depth, colour] = surface::behind_entries(samples);
+        let behind = [depth, colour, scale()];
         let sound_layout = group_layout(gpu, "scale, turned over", &behind);
         let vertices = [
             Some(surface::vertices()),
@@ -42,7 +43,7 @@ impl Tint {
                 attributes: &ATTRIBUTES,
             }),
         ];
-        let build = |label, entries, layout, samples| {
+        let build = |label, entries, layout| {
             let recipe = Recipe {
                 label,
                 shader: &module,
@@ -58,16 +59,15 @@ impl Tint {
             recipe.build(gpu)
         };
         let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
-        let alarm_entries = [wgpu::BindGroupEntry { binding: 2, resource: ramp.buffer().as_entire_binding() }];
+        let alarm_entries = [wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() }];
         Self {
             alarm_behind: build(
                 "turned over, behind, coloured",
                 ["tinted_alarm_corner", "tinted_behind"],
                 &alarm_layout,
-                1,
             ),
-            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], &alarm_layout, samples),
-            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], &sound_layout, samples),
+            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], &alarm_layout),
+            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], &sound_layout),
             alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("scale"),
                 layout: &alarm_layout,
@@ -105,9 +105,9 @@ fn sound_group(
         label: Some("scale, turned over"),
         layout,
         entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&bodies.alarm_colour) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&bodies.alarm_depth) },
-            wgpu::BindGroupEntry { binding: 2, resource: ramp.buffer().as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&bodies.alarm_colour) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&bodies.alarm_depth) },
+            wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() },
         ],
     })
 }

@@ -30,6 +30,8 @@ mod summary;
 mod view;
 mod words;
 
+pub(crate) use generate::random;
+
 pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
 pub use palette::Palette;

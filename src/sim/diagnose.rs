@@ -67,7 +67,7 @@ impl Diagnose {
         let volumes: Vec<_> = elements.map(|element| self.volume(element, &state.position)).collect();
         // Summed in the order of the elements, whoever measured them.
         let volume: f64 = volumes.iter().fold(0.0, |sum, (now, _)| sum + now);
-        let turned_over: Vec<_> = volumes.iter().map(|(now, at_rest)| now * at_rest < 0.0).collect();
+        let turned_over: Vec<_> = volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect();
         diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
         diagnostics.volume_ratio = volume / self.volume_at_rest;
         let placement = self.placement(&state.position);
@@ -106,6 +106,17 @@ impl Diagnose {
             self.centred.iter().zip(position).map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
         (squared.sum::<f64>() / position.len() as f64).sqrt()
     }
+}
+
+/// An element has turned over when its signed volume is below minus this part of that at rest.
+///
+/// Of one pressed exactly flat, round-off leaves some 1e-16 of either sign, or 1e-12 where the body lies ten thousand times
+/// its size away from the origin: it would be told as sound and as turned over by turns. One that truly turns over passes
+/// this bound a billionth of its height later.
+const ROUND_OFF: f64 = 1e-9;
+
+fn is_turned_over(now: f64, at_rest: f64) -> bool {
+    now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
 
 /// Corners whose second moments have a determinant below this part of what it would be in a ball lie in a plane.
@@ -215,6 +226,23 @@ mod tests {
         for thickness in [1.0, 1e-3] {
             assert!((at_rest(heptad(thickness)).volume_ratio - 1.0).abs() < 1e-8);
         }
+    }
+
+    #[test]
+    fn what_is_pressed_flat_has_not_turned_over_however_it_lies() {
+        let corner = |bit: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1)));
+        let rest: Vec<_> = (0..8).map(corner).collect();
+        let elements = [&[0, 1, 2, 3, 4, 5, 6, 7][..]].into_iter().collect();
+        let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 8], elements, Solids::Ordered, None);
+        let diagnose = Diagnose::new(&Arc::new(body));
+        let over = |height: f64, turn: u32| {
+            let tilt = DQuat::from_xyzw(0.1, -0.2, 0.01 * f64::from(turn), 0.9).normalize();
+            let place = |at: &DVec3| tilt * (*at * DVec3::new(1.0, 1.0, height)) + DVec3::new(3.0, -2.0, 1.0);
+            let now = State::at_rest(rest.iter().map(place).collect());
+            diagnose.state(&now, DVec3::ZERO, Measure { energy: None, residual: None }).0.turned_over
+        };
+        assert!((0..100).all(|turn| over(0.0, turn) == 0));
+        assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
     }
 
     #[test]

@@ -9,4 +9,5 @@ mod interrupt;
 mod render;
 mod simulate;
 mod support;
+mod table;
 mod usage;

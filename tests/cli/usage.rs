@@ -6,11 +6,13 @@ use crate::support::{Place, SMALL};
 fn help_and_version_are_results() {
     let place = Place::new();
     let help = place.run("--help").good();
-    for word in ["render", "simulate", "check", "info", "schema", "completions", "Exit status:", "130", "Examples:"] {
+    for word in
+        ["render", "simulate", "check", "table", "info", "schema", "completions", "Exit status:", "130", "Examples:"]
+    {
         assert!(help.out.contains(word) || (word == "render" && cfg!(not(feature = "render"))), "{word}");
     }
     assert_eq!(place.run("--version").good().out, format!("localshape {}\n", env!("CARGO_PKG_VERSION")));
-    for command in ["simulate", "check", "info", "schema", "completions"] {
+    for command in ["simulate", "check", "table", "info", "schema", "completions"] {
         place.run(&format!("{command} --help")).good();
     }
 }

@@ -33,6 +33,9 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     // In the plane Eq. (9) is exact and there is nothing to read.
     if body.dimension == Dimension::Space {
         all.push(sound(Box::new(ShapeBased { rotation: RotationReading::VectorLength, passes: 12, ..shape.clone() })));
+        for rotation in [RotationReading::Symmetric, RotationReading::Exact] {
+            all.push(sound(Box::new(ShapeBased { rotation, ..shape.clone() })));
+        }
         let linear = ShapeBased { rotation: RotationReading::LinearUpdate, ..shape };
         all.push(Case { model: Box::new(linear), has_potential: false, forgets_turns: false });
     }
@@ -348,7 +351,7 @@ fn every_choice_of_the_scene_format_is_in_the_suites() {
         consts.collect::<Vec<_>>()
     };
     let model = |kind: usize, key: &str| names(&run["model"]["oneOf"][kind]["properties"][key]);
-    assert_eq!(model(0, "rotation"), ["arctangent", "vector-length", "linear-update"]);
+    assert_eq!(model(0, "rotation"), ["arctangent", "vector-length", "linear-update", "symmetric", "exact"]);
     assert_eq!(model(0, "damping_of"), ["relative-motion", "deformation"]);
     assert_eq!(
         model(1, "springs"),

@@ -14,4 +14,5 @@ mod integrators;
 mod readings;
 mod restore;
 mod support;
+mod table1;
 mod threads;

@@ -186,7 +186,7 @@ fn every_line_becomes_thicker_and_no_word_larger() {
     let ink = [palette.axis, palette.second_text, palette.hairline];
     let upright = |picture: &Picture, thickness: f32| {
         let is_line = |mark: &Mark| ink.contains(&mark.colour) && mark.rectangle[2] == thickness;
-        some(picture, |mark| is_line(mark) && mark.rectangle[3] < 12.0).len()
+        some(picture, |mark| is_line(mark) && mark.rectangle[3] < 14.0).len()
     };
     assert!(upright(&usual, 1.0) > 5 && upright(&usual, 2.0) > 0);
     assert_eq!(upright(&twice, 4.0), upright(&usual, 2.0));

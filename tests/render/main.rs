@@ -4,6 +4,7 @@
 #![cfg(feature = "render")]
 
 mod fields;
+mod fine;
 mod inside;
 mod look;
 mod obstacles;
@@ -11,6 +12,7 @@ mod pictures;
 mod sheets;
 mod shown;
 mod smooth;
+mod steady;
 mod strips;
 mod words;
 

@@ -268,6 +268,7 @@ fn keys_that_exclude_or_need_each_other() {
     );
     case(PLANE, "mass = 1", "mass = 1\nmasses = [1, 1, 1, 1]", &[(10, 1, "both `mass` and `masses`")]);
     case(SPACE, "1e4 }", "1e4, damping = 1, damping_ratio = 1 }", &[(8, 63, "both `damping` and `damping_ratio`")]);
+    case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'exact' }", &[(8, 59, "without; take it out")]);
     case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", &[(6, 1, "`body.masses` needs `nodes`")]);
     case(
         PLANE,

@@ -255,7 +255,7 @@ impl<'a> Composer<'a> {
             let heading = Heading {
                 letter: if labels.letter { caption::letter(at) } else { String::new() },
                 name: shown(labels.name, self.scene.runs.get(run.run).map_or("", |run| &run.name)),
-                sample: self.sample(run.run),
+                sample: self.sample(run.run, place.strip.is_some()),
                 second: shown(labels.model, self.descriptions.get(run.run).map_or("", String::as_str)),
             };
             writer.heading(viewport, &heading, taken);
@@ -285,12 +285,12 @@ impl<'a> Composer<'a> {
     }
 
     /// The line that stands for a run in strips and among arrows, if there are any.
-    fn sample(&self, run: usize) -> Option<(Colour, bool)> {
+    fn sample(&self, run: usize, has_strip: bool) -> Option<(Colour, bool)> {
         let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
         let has_springs = !self.scene.runs.get(run)?.model.springs().is_empty();
         let colour = self.palette.arrows[usize::from(has_springs)];
-        (view.legend && (view.strip.is_some() || has_arrows)).then_some((colour, has_springs && view.strip.is_some()))
+        (view.legend && (has_strip || has_arrows)).then_some((colour, has_springs && has_strip))
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).

@@ -5,7 +5,7 @@
 mod irregular;
 mod lattice;
 mod mixed;
-mod random;
+pub(crate) mod random;
 mod shapes;
 mod start;
 

@@ -4,7 +4,7 @@ use crate::colour::{Colour, Sight, contrast, difference, written};
 use crate::scene::file::{BackgroundFile, ColoursFile, ViewFile};
 use crate::scene::palette::{LEAST_CONTRAST, Palette};
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{FontFiles, Look};
+use crate::scene::view::{FloorStyle, FontFiles, Look};
 
 /// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
@@ -18,10 +18,12 @@ pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     let theme = Palette::theme_on(background, typed.theme);
     let palette = Palette::with(theme, background, &typed.colours);
     let known = report.total();
-    check_text(&typed.colours, &palette, report);
+    let transparent = typed.background == Some(BackgroundFile::Transparent);
+    // Where no floor is drawn there are no words on it.
+    let floor = typed.colours.floor.filter(|_| !transparent && typed.floor != FloorStyle::None);
+    check_text(&typed.colours, floor.map(|floor| floor.0), &palette, report);
     check_alarm(&typed.colours, &palette, report);
     (report.total() == known).then(|| {
-        let transparent = typed.background == Some(BackgroundFile::Transparent);
         let (text_scale, line_scale, margin) = (typed.text_scale, typed.line_scale, typed.margin);
         Look { theme, palette, transparent, font, text_scale, line_scale, margin }
     })
@@ -32,8 +34,8 @@ fn way(role: &str) -> [Way<'_>; 3] {
 }
 
 /// Words must be readable, on the floor, too.
-fn check_text(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
-    if let Some(floor) = typed.floor.map(|floor| floor.0) {
+fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, report: &mut Report<'_>) {
+    if let Some(floor) = floor {
         let texts = [palette.text, palette.second_text, palette.alarm_text];
         let found = texts.map(|text| contrast(text, floor)).into_iter().fold(f64::INFINITY, f64::min);
         if found < LEAST_CONTRAST {

@@ -39,7 +39,8 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100))]
     pub passes: Option<u32>,
-    /// How the solution of Eq. (15) becomes a rotation. In the plane Eq. (9) is exact and there is nothing to choose.
+    /// How Eq. (15) is solved and its solution becomes a rotation. In the plane Eq. (9) is exact and there is nothing
+    /// to choose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationReading>,
     /// Which velocity the damping of Eq. (4) acts on.
@@ -47,7 +48,8 @@ pub struct Parameters {
     pub damping_of: Option<DampingReading>,
 }
 
-/// How the solution `w` of Eq. (15) becomes a rotation. The paper can be read in three ways.
+/// How the rotation of an element is found. The paper's Eqs. (15) and (16) can be read in three ways; two better
+/// solvers stand beside them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RotationReading {
@@ -58,6 +60,11 @@ pub enum RotationReading {
     VectorLength,
     /// Eq. (16) as printed, `R + w × R`. That is no rotation: a spinning body swells.
     LinearUpdate,
+    /// Like `arctangent`, with the symmetric part of Eq. (15)'s matrix: each pass takes the error to its third power
+    /// instead of its second. Not in the paper.
+    Symmetric,
+    /// The exact optimum at every evaluation, without Eq. (15) and without passes. Not in the paper.
+    Exact,
 }
 
 /// Which velocity the damping of Eq. (4) acts on.
@@ -81,7 +88,7 @@ pub struct ShapeBased {
     pub damping: f64,
     /// How often Eq. (15) is solved at each evaluation.
     pub passes: u32,
-    /// How its solution becomes a rotation.
+    /// How the rotation of an element is found.
     pub rotation: RotationReading,
     /// Which velocity is damped.
     pub damping_of: DampingReading,
@@ -97,6 +104,10 @@ impl TypedModel for Parameters {
                 );
                 return Err(Misfit { key, message });
             }
+        }
+        if self.rotation == Some(RotationReading::Exact) && self.passes.is_some() {
+            let message = "`passes` is about Eq. (15), which `rotation = \"exact\"` does without; take it out";
+            return Err(Misfit { key: "passes", message: message.into() });
         }
         Ok(Arc::new(ShapeBased {
             stiffness: self.stiffness,
@@ -125,6 +136,8 @@ impl ElasticModel for ShapeBased {
             RotationReading::Arctangent => "",
             RotationReading::VectorLength => ", θ = |w|",
             RotationReading::LinearUpdate => ", Eq. (16)",
+            RotationReading::Symmetric => ", symmetric Eq. (15)",
+            RotationReading::Exact => ", exact rotations",
         });
         if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
             text.push_str(" of deformation");
@@ -140,9 +153,12 @@ impl ElasticModel for ShapeBased {
 impl ShapeBased {
     /// The rotation of an element in space from its last one, as read.
     fn follow(&self, at_rest: DMat3, last: DQuat) -> DQuat {
+        use linearised::{follow, solve, solve_symmetric, turn, turn_by_length};
         match self.rotation {
-            RotationReading::VectorLength => linearised::follow(at_rest, last, self.passes, linearised::turn_by_length),
-            _ => linearised::follow(at_rest, last, self.passes, linearised::turn),
+            RotationReading::VectorLength => follow(at_rest, last, self.passes, |a| turn_by_length(solve(a))),
+            RotationReading::Symmetric => follow(at_rest, last, self.passes, |a| turn(solve_symmetric(a))),
+            RotationReading::Exact => davenport1968::optimum(at_rest, last),
+            _ => follow(at_rest, last, self.passes, |a| turn(solve(a))),
         }
     }
 }
@@ -195,7 +211,7 @@ impl Elements {
                 let turns = all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY));
                 match model.rotation {
                     RotationReading::LinearUpdate => Rotations::Linear(turns.map(DMat3::from_quat).collect()),
-                    RotationReading::Arctangent | RotationReading::VectorLength => Rotations::Space(turns.collect()),
+                    _ => Rotations::Space(turns.collect()),
                 }
             }
         };

@@ -1,0 +1,171 @@
+//! `table`: the paper's numbers beside ours.
+
+use super::console::{self, print, print_json};
+use super::failure::{Failure, Status};
+use super::options::processors;
+use super::{interrupt, record};
+use crate::output::SheetFiles;
+use crate::table::{Watch, ratio, table1};
+use clap::{Args, ValueEnum, ValueHint};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape table                             Table 1 and the ratio in output/table1/ and output/ratio/
+  localshape table table1 --orientations 200   more starts, narrower medians
+  localshape table ratio --threads 4 -o four   the ratio of computation times on four threads
+
+Each folder then holds the table as Markdown, which is printed, too, and as CSV with all digits. Table 1 is the same to \
+the byte on every machine and for any number of threads; the ratio is measured on this machine, and best while it does \
+nothing else.";
+
+/// Measure the numbers that the paper tells, and put them beside its own
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Table {
+    /// What to measure
+    #[arg(value_name = "TABLE", value_enum, default_values_t = [Name::All])]
+    tables: Vec<Name>,
+
+    /// Output folder [default: output/TABLE]; with several tables, the folder that holds one folder TABLE for each
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    out: Option<PathBuf>,
+
+    /// Replace what the output folder holds of a table made in another way, or of others
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Starts of Table 1, turned at random; each is the same in any number of them
+    #[arg(long, value_name = "N", default_value_t = table1::Protocol::default().orientations)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    orientations: u32,
+
+    /// Threads to work with [default: one for each processor, and one for the ratio]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Neither progress nor the tables; only errors
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Print the tables as one JSON document
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// What can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Name {
+    /// The errors of the rotations (Table 1)
+    Table1,
+    /// The computation time of the shape model over that of mass-spring (section 4)
+    Ratio,
+    /// All of them
+    All,
+}
+
+/// A table that was measured, as texts.
+struct Made {
+    /// For each of its files.
+    texts: Vec<String>,
+    json: Value,
+}
+
+impl Table {
+    pub(super) fn run(self) -> Result<Status, Failure> {
+        interrupt::listen();
+        let wanted = |name: &Name| self.tables.contains(name) || self.tables.contains(&Name::All);
+        let names: Vec<_> = [Name::Table1, Name::Ratio].into_iter().filter(wanted).collect();
+        // All folders are looked at before the first table is measured.
+        let folder = |name: Name| match &self.out {
+            Some(out) if names.len() > 1 => out.join(name.word()),
+            Some(out) => out.clone(),
+            None => Path::new("output").join(name.word()),
+        };
+        for &name in &names {
+            SheetFiles::inspect(&folder(name), name.files(), &self.mark(name), self.overwrite)?;
+        }
+        let (mut documents, mut status) = (Vec::new(), Status::Done);
+        for (number, &name) in names.iter().enumerate() {
+            let folder = folder(name);
+            let files = SheetFiles::begin(&folder, name.files())?;
+            let Some(made) = self.measure(name)? else {
+                status = Status::Interrupted;
+                if !self.quiet && !self.json {
+                    print(&format!("interrupted; {} was not made\n", name.word()))?;
+                }
+                break;
+            };
+            files.finish(&made.texts)?;
+            if self.json {
+                let mut document = json!({ "table": name.word(), "folder": folder.to_string_lossy() });
+                document["files"] = json!(name.files());
+                record::merge(&mut document, made.json);
+                documents.push(document);
+            } else if !self.quiet {
+                let blank = if number > 0 { "\n" } else { "" };
+                let (table, names) = (&made.texts[0], name.files().join(", "));
+                print(&format!("{blank}{table}\nIn {}: {names}\n", folder.display()))?;
+            }
+        }
+        if self.json {
+            print_json(&json!({ "tables": documents }))?;
+        }
+        Ok(status)
+    }
+
+    /// How a table is made, by which its files are known again.
+    fn mark(&self, name: Name) -> String {
+        match name {
+            Name::Ratio => ratio::MARK.to_owned(),
+            _ => self.table1().mark(),
+        }
+    }
+
+    fn table1(&self) -> table1::Protocol {
+        table1::Protocol { orientations: self.orientations, ..table1::Protocol::default() }
+    }
+
+    /// Measures a table; `None` if the user wants to stop.
+    fn measure(&self, name: Name) -> Result<Option<Made>, Failure> {
+        let (protocol, timing) = (self.table1(), ratio::Protocol::default());
+        let (work, threads) = match name {
+            Name::Ratio => (timing.work(), 1),
+            _ => (protocol.work(), processors()),
+        };
+        let pool = record::pool(self.threads.map_or(threads, usize::from))?;
+        let bar = console::progress(name.word(), work, self.quiet);
+        let watch: &Watch<'_> = &|more| {
+            bar.inc(more);
+            !interrupt::requested()
+        };
+        let made =
+            pool.install(|| match name {
+                Name::Ratio => ratio::measure(&timing, watch)
+                    .map(|ratios| Made { texts: ratios.files().into(), json: ratios.json() }),
+                _ => table1::measure(&protocol, watch)
+                    .map(|table| Made { texts: table.files().into(), json: table.json() }),
+            });
+        bar.finish_and_clear();
+        Ok(made)
+    }
+}
+
+impl Name {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Table1 => "table1",
+            Self::Ratio => "ratio",
+            Self::All => "all",
+        }
+    }
+
+    fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Table1 => &table1::FILES,
+            Self::Ratio => &ratio::FILES,
+            Self::All => &[],
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! The ratio of computation times that section 4 of the paper ends with: 1.05 for the shape model over mass-spring.
+//!
+//! The paper tells neither body, springs nor machine. Here a block of cubes stands on a floor, the shape model with two
+//! passes of Eq. (15), as the paper advises; whole steps are timed, as a simulation takes them, and each named
+//! arrangement of springs has its own ratio. All models take turns, a few milliseconds each, and each ratio is one of
+//! neighbours in time, so that what else the machine does hits both. On one thread its processor time is taken, which
+//! does not count while others have the processor; on more threads, and where the system does not tell, it is time on
+//! the wall.
+
+use super::sheet::figure;
+use super::{Sheet, Spread, Watch, scene};
+use crate::output::{Clock, exact};
+use crate::scene::Scene;
+use crate::sim::topology::Springs;
+use serde_json::{Value, json};
+
+/// The names of the table's files: itself, and the same as CSV.
+pub const FILES: [&str; 2] = ["ratio.md", "ratio.csv"];
+
+/// The mark of the Markdown file, by which it is known again: how it is made.
+pub const MARK: &str = "localshape table ratio";
+
+/// The computation time of the shape model over that of mass-spring, as printed in section 4.
+pub const PRINTED: f64 = 1.05;
+
+/// The arrangements of springs that are compared.
+pub const SPRINGS: [Springs; 5] =
+    [Springs::Edges, Springs::EdgesOneDiagonal, Springs::EdgesFaceDiagonals, Springs::EdgesBodyDiagonals, Springs::All];
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Protocol {
+    /// Cubes along each side of the blocks.
+    pub sides: Vec<u32>,
+    /// How often all models take their turns.
+    pub rounds: u32,
+    /// Cubes times steps in one turn.
+    pub turn: u64,
+}
+
+impl Default for Protocol {
+    /// From a body that fits any cache to one that fits few.
+    fn default() -> Self {
+        Self { sides: vec![3, 10, 20], rounds: 41, turn: 64_000 }
+    }
+}
+
+impl Protocol {
+    /// How many turns there are in all: what [`measure`] tells its watch comes to this.
+    pub fn work(&self) -> u64 {
+        self.sides.len() as u64 * u64::from(self.rounds) * (1 + SPRINGS.len() as u64)
+    }
+}
+
+/// The shape model against one arrangement of springs on one block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Cubes along each side.
+    pub side: u32,
+    /// Where the springs are.
+    pub springs: Springs,
+    /// How many there are.
+    pub count: usize,
+    /// Time of the shape model for one cube and step (ns).
+    pub shape: Spread,
+    /// Time of mass-spring for one cube and step (ns).
+    pub mass_spring: Spread,
+    /// The first over the second, turn by turn.
+    pub ratio: Spread,
+}
+
+/// The ratios, measured on a number of threads of one machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratios {
+    threads: usize,
+    rounds: u32,
+    /// Block by block, in the order of [`SPRINGS`].
+    pub comparisons: Vec<Comparison>,
+}
+
+/// Measures the ratios on the pool of threads that it is called on; `None` if `watch`, which is told of each turn, stops
+/// it.
+pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Ratios> {
+    let mut comparisons = Vec::new();
+    for &side in &protocol.sides {
+        let scene = block(side);
+        let times = take_turns(&scene, protocol, watch)?;
+        let (shape, others) = times.split_first()?;
+        for ((&springs, times), run) in SPRINGS.iter().zip(others).zip(&scene.runs[1..]) {
+            comparisons.push(Comparison {
+                side,
+                springs,
+                count: run.model.springs().len(),
+                shape: Spread::of(shape.iter().copied()),
+                mass_spring: Spread::of(times.iter().copied()),
+                ratio: Spread::of(shape.iter().zip(times).map(|(shape, springs)| shape / springs)),
+            });
+        }
+    }
+    Some(Ratios { threads: rayon::current_num_threads(), rounds: protocol.rounds, comparisons })
+}
+
+/// A block of cubes that stands on a floor: the shape model, then each arrangement of springs.
+fn block(side: u32) -> Scene {
+    let mut text = format!(
+        "gravity = [0, -9.8, 0]
+        time = {{ duration = 1, step = 'T/50' }}
+        body = {{ lattice = {{ cells = [{side}, {side}, {side}], side = 0.1 }}, mass = 1, lowest = 0 }}
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        [[run]]
+        name = 'shape'
+        model = {{ kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1, passes = 2 }}
+        "
+    );
+    for springs in SPRINGS.map(Springs::name) {
+        text += &format!(
+            "[[run]]
+            name = '{springs}'
+            model = {{ kind = 'mass-spring', stiffness = 1e4, damping_ratio = 0.1, springs = '{springs}' }}
+            "
+        );
+    }
+    scene(&text, "ratio")
+}
+
+/// The time of each run's turns (ns for one cube and step), round by round.
+fn take_turns(scene: &Scene, protocol: &Protocol, watch: &Watch<'_>) -> Option<Vec<Vec<f64>>> {
+    let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
+    let mut times = vec![Vec::new(); worlds.len()];
+    let cubes = scene.body.elements.len() as u64;
+    let steps = (protocol.turn / cubes).max(1);
+    // The first time that memory is touched is nobody's turn.
+    worlds.iter_mut().for_each(|world| world.advance(1));
+    for round in 0..protocol.rounds as usize {
+        for turn in 0..worlds.len() {
+            // Nobody always follows the same one.
+            let run = (round + turn) % worlds.len();
+            let clock = Clock::thread();
+            worlds[run].advance(steps);
+            let spent = clock.spent();
+            let alone = rayon::current_num_threads() == 1;
+            let time = spent.cpu.filter(|_| alone).unwrap_or(spent.wall);
+            times[run].push(time * 1e9 / (steps * cubes) as f64);
+            if !watch(1) {
+                return None;
+            }
+        }
+    }
+    Some(times)
+}
+
+impl Ratios {
+    /// The contents of [`FILES`].
+    pub fn files(&self) -> [String; 2] {
+        [self.markdown(), self.sheet().csv()]
+    }
+
+    /// The table for people.
+    pub fn markdown(&self) -> String {
+        let (threads, rounds) = (self.threads, self.rounds);
+        let mut text = format!(
+            "<!-- {MARK} -->\n\
+            # Computation time of the shape model over that of mass-spring\n\n\
+            Whole steps of blocks of cubes on a floor, two passes of Eq. (15), {} of {threads} thread{} ({} {}). Medians \
+            of {rounds} rounds in which all models take turns, of ratios with their quartiles in parentheses. The paper \
+            says {PRINTED}, for a body, springs and a machine that it does not tell. These are times of one machine: \
+            another one, or this one while it does something else, gives others. Springs that cubes share are \
+            computed once.\n\n",
+            if threads == 1 { "processor time" } else { "wall time" },
+            if threads == 1 { "" } else { "s" },
+            std::env::consts::ARCH,
+            std::env::consts::OS,
+        );
+        let mut sheet = Sheet::new([
+            "cubes",
+            "springs",
+            "springs per cube",
+            "shape, ns per cube",
+            "springs, ns per cube",
+            "springs, ns per spring",
+            "ratio",
+            "paper",
+        ]);
+        for one in &self.comparisons {
+            let per_cube = one.per_cube();
+            let Spread { lower, median, upper, .. } = one.ratio;
+            sheet.rows.push([
+                format!("{}³", one.side),
+                one.springs.name().to_owned(),
+                figure(per_cube),
+                figure(one.shape.median),
+                figure(one.mass_spring.median),
+                figure(one.mass_spring.median / per_cube),
+                format!("{} ({} – {})", figure(median), figure(lower), figure(upper)),
+                PRINTED.to_string(),
+            ]);
+        }
+        text += &sheet.markdown(2);
+        text
+    }
+
+    /// The table for programs, all digits.
+    fn sheet(&self) -> Sheet<16> {
+        let mut sheet = Sheet::new([
+            "cubes",
+            "springs",
+            "spring_count",
+            "threads",
+            "rounds",
+            "shape_ns_median",
+            "shape_ns_lower",
+            "shape_ns_upper",
+            "springs_ns_median",
+            "springs_ns_lower",
+            "springs_ns_upper",
+            "ratio_median",
+            "ratio_lower",
+            "ratio_upper",
+            "ratio_least",
+            "ratio_most",
+        ]);
+        for one in &self.comparisons {
+            sheet.rows.push([
+                one.cubes().to_string(),
+                one.springs.name().to_owned(),
+                one.count.to_string(),
+                self.threads.to_string(),
+                self.rounds.to_string(),
+                exact(one.shape.median),
+                exact(one.shape.lower),
+                exact(one.shape.upper),
+                exact(one.mass_spring.median),
+                exact(one.mass_spring.lower),
+                exact(one.mass_spring.upper),
+                exact(one.ratio.median),
+                exact(one.ratio.lower),
+                exact(one.ratio.upper),
+                exact(one.ratio.least),
+                exact(one.ratio.most),
+            ]);
+        }
+        sheet
+    }
+
+    /// The table as one document.
+    pub fn json(&self) -> Value {
+        let row = |one: &Comparison| {
+            json!({
+                "cubes": one.cubes(),
+                "springs": one.springs.name(),
+                "spring_count": one.count,
+                "shape_ns": one.shape,
+                "springs_ns": one.mass_spring,
+                "ratio": one.ratio,
+            })
+        };
+        let rows: Vec<_> = self.comparisons.iter().map(row).collect();
+        json!({ "paper": PRINTED, "threads": self.threads, "rounds": self.rounds, "rows": rows })
+    }
+}
+
+impl Comparison {
+    fn cubes(&self) -> u64 {
+        u64::from(self.side) * u64::from(self.side) * u64::from(self.side)
+    }
+
+    fn per_cube(&self) -> f64 {
+        self.count as f64 / self.cubes() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::snapshot::Status;
+
+    #[test]
+    fn every_arrangement_on_every_block() {
+        let quick = Protocol { sides: vec![1, 2], rounds: 2, turn: 8 };
+        let turns = std::sync::atomic::AtomicU64::new(0);
+        let count = |more| turns.fetch_add(more, std::sync::atomic::Ordering::Relaxed) < u64::MAX;
+        let ratios = measure(&quick, &count).expect("nobody stops it");
+        assert_eq!(turns.into_inner(), quick.work());
+        assert_eq!(ratios.comparisons.len(), 2 * SPRINGS.len());
+        assert_eq!(ratios.comparisons[4].count, 28);
+        assert!(ratios.comparisons.iter().all(|one| one.ratio.least > 0.0 && one.ratio.most.is_finite()));
+        assert_eq!(measure(&quick, &|_| false), None);
+    }
+
+    /// One that blew up would take its steps in no time.
+    #[test]
+    fn no_block_blows_up_while_it_is_timed() {
+        let Protocol { sides, rounds, turn } = Protocol::default();
+        let scene = block(sides[0]);
+        for run in 0..scene.runs.len() {
+            let mut world = scene.world(run);
+            world.advance(u64::from(rounds) * turn / scene.body.elements.len() as u64);
+            assert_eq!(world.status(), Status::Ok, "{}", scene.runs[run].name);
+        }
+    }
+}

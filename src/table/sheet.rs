@@ -1,0 +1,80 @@
+//! Rows and columns as CSV and as Markdown.
+
+/// A table of texts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sheet<const N: usize> {
+    /// What stands over the columns.
+    pub heads: [&'static str; N],
+    /// The rows.
+    pub rows: Vec<[String; N]>,
+}
+
+impl<const N: usize> Sheet<N> {
+    /// A table without rows.
+    pub fn new(heads: [&'static str; N]) -> Self {
+        Self { heads, rows: Vec::new() }
+    }
+
+    /// As CSV (RFC 4180, with line feeds).
+    pub fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(self.heads).expect("memory takes all");
+        self.rows.iter().for_each(|row| writer.write_record(row).expect("rows of equal length"));
+        let bytes = writer.into_inner().expect("memory takes all");
+        String::from_utf8(bytes).expect("made of texts")
+    }
+
+    /// As Markdown, its first `left` columns to the left and the others, numbers, to the right.
+    pub fn markdown(&self, left: usize) -> String {
+        let escaped = |cell: &str| cell.replace('|', "\\|");
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let rule = |column| if column < left { "---" } else { "---:" }.to_owned();
+        let mut text = line(self.heads.iter().map(|head| escaped(head)).collect());
+        text += &line((0..N).map(rule).collect());
+        self.rows.iter().for_each(|row| text += &line(row.iter().map(|cell| escaped(cell)).collect()));
+        text
+    }
+}
+
+/// A number for people: three significant digits, the same on every machine.
+pub(super) fn figure(number: f64) -> String {
+    let short = format!("{number:.2e}");
+    // Read off the rounded number: a logarithm would round the powers of ten as its platform likes.
+    match short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()) {
+        Some(_) if number == 0.0 => "0".to_owned(),
+        Some(exponent @ -3..=5) => format!("{number:.*}", (2 - exponent).max(0) as usize),
+        _ => short,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_forms_can_be_read_again() {
+        let mut sheet = Sheet::new(["name", "|w|"]);
+        sheet.rows.push(["a, \"b\"".to_owned(), "1".to_owned()]);
+        assert_eq!(sheet.csv(), "name,|w|\n\"a, \"\"b\"\"\",1\n");
+        assert_eq!(sheet.markdown(1), "| name | \\|w\\| |\n| --- | ---: |\n| a, \"b\" | 1 |\n");
+    }
+
+    #[test]
+    fn figures_have_three_digits() {
+        let cases = [
+            (0.0, "0"),
+            (4.525_54, "4.53"),
+            (30.875_97, "30.9"),
+            (9.999, "10.0"),
+            (0.001_234_5, "0.00123"),
+            (0.000_999_9, "0.00100"),
+            (4.93e-4, "4.93e-4"),
+            (123_456.0, "123456"),
+            (-0.02, "-0.0200"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (number, text) in cases {
+            assert_eq!(figure(number), text);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! How far apart numbers lie.
+
+use serde::Serialize;
+
+/// Median, quartiles and range of some numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// The least.
+    pub least: f64,
+    /// A quarter of them lies below.
+    pub lower: f64,
+    /// A half of them lies below.
+    pub median: f64,
+    /// Three quarters of them lie below.
+    pub upper: f64,
+    /// The greatest.
+    pub most: f64,
+}
+
+impl Spread {
+    /// The spread of `values`; not-a-number everywhere for none. Quantiles between two values lie on the line between
+    /// them, as in most programs.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        let quantile = |quarters: usize| {
+            let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+            let (below, rest) = (last * quarters / 4, (last * quarters % 4) as f64 / 4.0);
+            let above = sorted[(below + 1).min(last)];
+            sorted[below] + (above - sorted[below]) * rest
+        };
+        let [least, lower, median, upper, most] = [0, 1, 2, 3, 4].map(quantile);
+        Self { least, lower, median, upper, most }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_other_programs() {
+        // numpy.percentile([7, 1, 3, 2], [0, 25, 50, 75, 100])
+        let spread = Spread::of([7.0, 1.0, 3.0, 2.0]);
+        assert_eq!(spread, Spread { least: 1.0, lower: 1.75, median: 2.5, upper: 4.0, most: 7.0 });
+        let one = Spread::of([5.0]);
+        assert_eq!((one.least, one.median, one.most), (5.0, 5.0, 5.0));
+        assert!(Spread::of([]).median.is_nan());
+    }
+}

@@ -1,0 +1,131 @@
+//! `table`: the paper's numbers beside ours, as files and on standard output.
+
+use crate::support::Place;
+
+const FILES: [&str; 3] = ["table1-orientations.csv", "table1.csv", "table1.md"];
+
+/// The rows of the first table in a Markdown text, without heads and rule. All have as many cells as the heads.
+fn markdown_rows(text: &str) -> Vec<Vec<&str>> {
+    let table = text.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let rows: Vec<Vec<_>> = table.map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect()).collect();
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{text}");
+    rows[2..].to_vec()
+}
+
+/// One start, all of Table 1: a second or two.
+#[test]
+fn table1_is_the_same_for_any_number_of_threads_and_can_be_read() {
+    let place = Place::new();
+    let ran = place.run("table table1 --orientations 1 --threads 1").good();
+    let silent = place.run("table table1 --orientations 1 --threads 2 -o two --quiet").good();
+    assert_eq!(silent.out, "");
+    assert_eq!(place.names("output/table1"), FILES);
+    assert_eq!(place.names("two"), FILES);
+    for file in FILES {
+        assert_eq!(place.read(&format!("output/table1/{file}")), place.read(&format!("two/{file}")), "{file}");
+    }
+
+    let markdown = place.read("two/table1.md");
+    assert!(
+        ran.out.starts_with(&markdown)
+            && ran.out.ends_with("In output/table1: table1.md, table1.csv, table1-orientations.csv\n")
+    );
+    let rows = markdown_rows(&markdown);
+    let first: Vec<_> = rows.iter().map(|row| (row[0], row[1])).collect();
+    let letters = ["A", "B", "C", "D"];
+    let expected: Vec<_> = ["1e4", "1e5", "1e6"].into_iter().flat_map(|k| letters.map(|row| (k, row))).collect();
+    assert_eq!(first, expected);
+    assert_eq!((rows[0][4], rows[0][8], rows[3][4]), ("4.53", "30.9", "–"), "the paper's");
+
+    let records = |file: &str| -> Vec<csv::StringRecord> {
+        let text = place.read(file);
+        csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a whole row")).collect()
+    };
+    let (summary, courses) = (records("two/table1.csv"), records("two/table1-orientations.csv"));
+    assert_eq!((summary.len(), courses.len()), (30, 30));
+    // Mean, deviation and maximum of the one start are those of the medians.
+    for (summary, course) in summary.iter().zip(&courses) {
+        assert_eq!([&summary[9], &summary[12], &summary[13]], [&course[11], &course[12], &course[13]]);
+        assert_eq!(&course[14], "ok");
+        let (evaluations, step) = (course[10].parse::<f64>().unwrap(), course[4].parse::<f64>().unwrap());
+        assert!((evaluations * step - 10.0).abs() <= step, "ten seconds");
+    }
+}
+
+#[test]
+fn wrong_words() {
+    let place = Place::new();
+    place.run("table tabel1").bad(2, &["tabel1", "'table1'", "ratio", "all"]);
+    place.run("table ratios").bad(2, &["'ratio'"]);
+    place.run("table table1 --orientations 0").bad(2, &["--orientations", "1..=10000"]);
+    place.run("table --threads 0").bad(2, &["--threads"]);
+    place.run("table --json --quiet").bad(2, &["--json", "--quiet"]);
+    assert_eq!(place.names("."), [""; 0]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_used() {
+    let place = Place::new();
+    place.write("taken", "a file");
+    place.run("table table1 -o taken").bad(4, &["taken"]);
+    place.run("table table1 -o taken/below").bad(4, &["taken"]);
+    place.run("table all -o taken").bad(4, &["taken"]);
+    assert_eq!(place.read("taken"), "a file");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_may_not_be_written() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    place.write("locked/notes.txt", "mine");
+    std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o555)).unwrap();
+    if std::fs::write(place.path("locked/probe"), "").is_ok() {
+        return crate::support::skip("this user may write anywhere; the test needs one who may not");
+    }
+    place.run("table ratio -o locked").bad(4, &["cannot write locked", "ermission denied"]);
+    assert_eq!(place.names("locked"), ["notes.txt"]);
+    std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o755)).unwrap();
+}
+
+#[test]
+fn files_of_others_and_of_another_choice_are_refused_unless_told() {
+    let place = Place::new();
+    place.write("out/table1.csv", "mine");
+    place.run("table table1 -o out").bad(2, &["out holds table1.csv", "not written by localshape", "--overwrite"]);
+    // For all tables nothing is made before every folder has been looked at.
+    place.write("all/ratio/ratio.md", "mine");
+    place.run("table -o all").bad(2, &["ratio.md", "not written by localshape"]);
+    assert_eq!(place.names("all"), ["ratio"]);
+
+    place.run("table table1 -o out --orientations 1 --overwrite").good();
+    assert_eq!(place.names("out"), FILES);
+    let before = place.read("out/table1.csv");
+    place.run("table table1 -o out").bad(2, &["out holds", "table1 --orientations 1`", "--overwrite"]);
+    assert_eq!(place.read("out/table1.csv"), before);
+    let document = place.run("table table1 -o out --orientations 1 --json").good().json();
+    assert_eq!(place.read("out/table1.csv"), before);
+    let table = &document["tables"][0];
+    assert_eq!((table["table"].as_str(), table["folder"].as_str()), (Some("table1"), Some("out")));
+    assert_eq!(table["files"].as_array().unwrap().len(), 3);
+    assert_eq!(table["rows"][0]["paper"]["mean"], 4.52554);
+    assert!(table["rows"][0]["mean"]["median"].as_f64().unwrap() > 0.1);
+}
+
+/// Nothing half-measured is written, and what was there stays.
+#[cfg(unix)]
+#[test]
+fn interrupted() {
+    use crate::interrupt::{signal, start};
+    let place = Place::new();
+    for (name, table) in [("INT", "table1 --orientations 10000"), ("TERM", "ratio")] {
+        let folder = format!("out-{name}");
+        let child = start(&place, &format!("table {table} -o {folder}"), &folder);
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{output:?}");
+        assert!(String::from_utf8_lossy(&output.stdout).starts_with("interrupted; "), "{output:?}");
+        assert_eq!(place.names(&folder), [""; 0]);
+    }
+}

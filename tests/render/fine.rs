@@ -1,0 +1,146 @@
+//! Smooth borders everywhere, text included: pictures against themselves, drawn four times larger and averaged.
+
+use super::gpu;
+use image::RgbImage;
+use localshape::gpu::Gpu;
+use localshape::picture::{MarkShape, Picture, compose};
+use localshape::render::Renderer;
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+
+/// How much larger the truth is drawn.
+const TIMES: u32 = 4;
+/// A channel that is off by more than this is seen, and so many may be, as a part of all: where several lines share one
+/// pixel, and where stripes are so fine that they are left out on purpose.
+const SEEN: u8 = 64;
+const PART: f64 = 3e-4;
+/// The largest root of the mean square of what channels are off by. Four samples leave up to an eighth of the way from one
+/// side to the other, which is 32, in each pixel on a border.
+const MEAN: f64 = 4.5;
+
+/// The same picture, every length of which is larger: lines and marks, too, and glyphs where they are in the small one.
+fn larger(picture: &Picture) -> Picture {
+    let times = TIMES as f32;
+    let mut large = picture.clone();
+    large.size = large.size.map(|length| length * TIMES);
+    for panel in &mut large.panels {
+        panel.viewport = panel.viewport.map(|length| length * TIMES);
+        panel.region = panel.region.map(|length| length * TIMES);
+        let sight = &mut panel.sight;
+        sight.focal *= times;
+        sight.line_scale *= times;
+        // `element` stays: by it, edges of small elements are fainter.
+        sight.middle = sight.middle.map(|at| at * times);
+        panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
+        if sight.flat {
+            let meshes = panel.obstacles.solids.iter_mut().map(|solid| &mut solid.mesh);
+            meshes.flat_map(|mesh| &mut mesh.vertices).for_each(|corner| corner.hatch *= times);
+        }
+        panel.strokes.iter_mut().for_each(|stroke| stroke.width *= times);
+        panel.beads.iter_mut().for_each(|bead| bead.radius *= times);
+    }
+    for mark in large.under.iter_mut().chain(&mut large.marks) {
+        mark.rectangle = mark.rectangle.map(|length| length * times);
+        if mark.shape == MarkShape::Smooth {
+            // Its border is always a pixel wide, half of it inside.
+            let [left, top, width, height] = mark.rectangle;
+            let less = 0.5 * (times - 1.0);
+            let [along, across] = [mark.along, [-mark.along[1], mark.along[0]]];
+            let corner = [0, 1].map(|axis| less * (along[axis] + across[axis]));
+            mark.rectangle = [left + corner[0], top + corner[1], width - 2.0 * less, height - 2.0 * less];
+        }
+    }
+    for curve in &mut large.curves {
+        curve.points.iter_mut().flatten().for_each(|at| *at *= times);
+        curve.width *= times;
+        curve.dash = curve.dash.map(|dash| dash.map(|length| length * times));
+    }
+    for words in &mut large.words {
+        words.size *= times;
+        words.baseline = words.baseline.round() * times;
+        words.span = words.span.map(|at| at * times);
+        words.glyphs.iter_mut().for_each(|glyph| glyph.x = (glyph.x * 4.0).round() / 4.0 * times);
+    }
+    large
+}
+
+fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
+    let mut renderer = Renderer::new(gpu, picture.size, 4).expect("a size that can be drawn");
+    renderer.draw(picture).expect("the device works")
+}
+
+fn linear(byte: u8) -> f64 {
+    let encoded = f64::from(byte) / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+fn encoded(light: f64) -> f64 {
+    255.0 * if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// For each channel of the small picture, the mean of the larger one's pixels, in light and in bytes. The
+/// first is right for bodies and their lines, the second for marks and words, which are blended as bytes.
+fn means(large: &RgbImage, light: &[f64; 256]) -> Vec<[u8; 2]> {
+    let [width, height] = [large.width() / TIMES, large.height() / TIMES];
+    let mut means = Vec::with_capacity((3 * width * height) as usize);
+    for at in 0..width * height {
+        let [x, y] = [at % width, at / width].map(|at| TIMES * at);
+        let bytes = (0..TIMES * TIMES).map(|part| large.get_pixel(x + part % TIMES, y + part / TIMES).0);
+        let sums = bytes.fold([[0.0; 2]; 3], |sums, bytes| {
+            [0, 1, 2].map(|at| {
+                let [of_light, of_bytes]: [f64; 2] = sums[at];
+                [of_light + light[usize::from(bytes[at])], of_bytes + f64::from(bytes[at])]
+            })
+        });
+        let count = f64::from(TIMES * TIMES);
+        means.extend(sums.map(|[light, bytes]| [encoded(light / count).round() as u8, (bytes / count).round() as u8]));
+    }
+    means
+}
+
+/// How far a byte is from all that lies between two others.
+fn off(byte: u8, [one, other]: [u8; 2]) -> u8 {
+    one.min(other).saturating_sub(byte).max(byte.saturating_sub(one.max(other)))
+}
+
+/// The root of the mean square of what channels are off by, and how many are seen to be off.
+fn summary(off: impl Iterator<Item = u8>) -> (f64, usize) {
+    let (mut squares, mut count, mut seen) = (0.0, 0, 0);
+    for off in off {
+        squares += f64::from(off) * f64::from(off);
+        count += 1;
+        seen += usize::from(off > SEEN);
+    }
+    (f64::sqrt(squares / f64::from(count)), seen)
+}
+
+#[test]
+fn borders_are_as_smooth_as_in_larger_pictures() {
+    let Some(gpu) = gpu("borders_are_as_smooth_as_in_larger_pictures") else { return };
+    let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
+    for name in [
+        "arrows",
+        "cubes",
+        "exploded",
+        "field",
+        "grid",
+        "lines",
+        "obstacles",
+        "obstacles-plane",
+        "plane",
+        "springs",
+        "strip",
+        "words",
+    ] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.toml"));
+        let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let frame = Sequence::new(&scene, &runs).frame(scene.last_frame());
+        let picture = compose(&scene, &frame);
+        let small = draw(gpu, &picture);
+        let large = draw(gpu, &larger(&picture));
+        let truth = means(&large, &light);
+        let ours = summary(small.as_raw().iter().zip(&truth).map(|(&byte, &truth)| off(byte, truth)));
+        assert!(ours.0 <= MEAN && ours.1 as f64 <= PART * small.as_raw().len() as f64, "{name}: {ours:?}");
+    }
+}

@@ -1,0 +1,215 @@
+//! Nothing flickers: where everything moves by a twentieth of a pixel a frame, no pixel jumps, and none goes to and fro.
+
+use super::gpu;
+use image::RgbImage;
+use localshape::gpu::Gpu;
+use localshape::picture::Composer;
+use localshape::render::Renderer;
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
+use localshape::sim::body::Dimension;
+use localshape::sim::snapshot::Frame;
+
+/// Frames of a film.
+const FRAMES: u64 = 24;
+/// How far anything moves from one to the next (px).
+const SLOW: f64 = 0.05;
+
+/// What a film does at its worst pixels, in parts of the way from black to white, in linear light: the mean of samples is
+/// made there, so one of four that changes its side is a quarter at most.
+#[derive(Debug, Default)]
+struct Unrest {
+    /// The largest change from one frame to the next.
+    jump: f64,
+    /// The largest way to and fro. Each pixel has swings from one turning point of its course to the next; something thin
+    /// that passes makes two large ones. So this is the third largest of the pixel where that is largest.
+    fro: f64,
+}
+
+/// The bounds. A sample that changes its side on white ground is .24, and a line that begins or ends there with it adds to
+/// that; where elements are a few pixels large, two samples may do so at once. Of what goes to and fro, less than one
+/// sample is left: an edge that stands still within the 1/256 px to which corners are rounded as they are drawn.
+const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
+
+fn linear(byte: u8) -> f64 {
+    let encoded = f64::from(byte) / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+fn unrest(film: &[RgbImage]) -> Unrest {
+    let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
+    let mut worst = Unrest::default();
+    for at in 0..film[0].as_raw().len() {
+        let mut swings = vec![0.0_f64];
+        for two in film.windows(2) {
+            let step = light[usize::from(two[1].as_raw()[at])] - light[usize::from(two[0].as_raw()[at])];
+            worst.jump = worst.jump.max(step.abs());
+            match swings.last_mut() {
+                Some(swing) if *swing * step >= 0.0 => *swing += step,
+                _ => swings.push(step),
+            }
+        }
+        swings.sort_by(|one, other| other.abs().total_cmp(&one.abs()));
+        worst.fro = worst.fro.max(swings.get(2).map_or(0.0, |swing| swing.abs()));
+    }
+    worst
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse(text, "film.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Frames between two others, a small part of the way apart. What has turned over stays so.
+fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
+    (0..FRAMES)
+        .map(|at| {
+            let share = at as f64 * part;
+            let mut frame = from.clone();
+            for (run, (from, to)) in frame.runs.iter_mut().zip(from.runs.iter().zip(&to.runs)) {
+                let (from, to) = (&from.snapshot, &to.snapshot);
+                let now = &mut run.snapshot;
+                now.time = from.time + share * (to.time - from.time);
+                let ends = from.position.iter().zip(&to.position);
+                now.position = ends.map(|(a, &b)| a.lerp(b, share)).collect();
+                now.placement.centre = from.placement.centre.lerp(to.placement.centre, share);
+                let fields = from.field.iter().zip(&to.field);
+                now.field = fields.map(|(a, b)| a + share * (b - a)).collect();
+            }
+            frame
+        })
+        .collect()
+}
+
+/// Draws frames without their words, some of which are numbers.
+struct Camera(Renderer);
+
+impl Camera {
+    fn new(gpu: &Gpu, scene: &Scene) -> Self {
+        Self(Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn"))
+    }
+
+    fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
+        let mut picture = Composer::new(scene).compose(frame);
+        picture.words.clear();
+        self.0.draw(&picture).expect("the device works")
+    }
+}
+
+fn film(gpu: &Gpu, scene: &Scene, frames: &[Frame]) -> Vec<RgbImage> {
+    let mut camera = Camera::new(gpu, scene);
+    frames.iter().map(|frame| camera.shot(scene, frame)).collect()
+}
+
+/// A film of an unmoved frame around which the camera turns, no pixel in its panel faster than a twentieth a frame.
+fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
+    let width = f64::from(scene.view.size[0]) / frame.runs.len() as f64;
+    let mut camera = Camera::new(gpu, scene);
+    let mut shot = |_| {
+        scene.view.camera.azimuth += 2.0 * SLOW / width;
+        camera.shot(scene, frame)
+    };
+    (0..FRAMES).map(&mut shot).collect()
+}
+
+/// The farthest that a node goes between two frames (px), where the body is.
+fn way(scene: &Scene, from: &Frame, to: &Frame) -> f64 {
+    let pixels = f64::from(Composer::new(scene).compose(from).panels[0].sight.element) / scene.view.side;
+    let nodes = |frame: &Frame| frame.runs.iter().flat_map(|run| run.snapshot.position.clone()).collect::<Vec<_>>();
+    nodes(from).iter().zip(nodes(to)).map(|(one, other)| one.distance(other)).fold(0.0, f64::max) * pixels
+}
+
+fn assert_steady(name: &str, film: &[RgbImage]) {
+    let unrest = unrest(film);
+    assert!(film[0] != film[film.len() - 1], "{name}: nothing moves");
+    assert!(unrest.jump <= MOST.jump && unrest.fro <= MOST.fro, "{name}: {unrest:?}");
+}
+
+#[test]
+fn nothing_flickers_in_slow_motion() {
+    let Some(gpu) = gpu("nothing_flickers_in_slow_motion") else { return };
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (file, index) in [
+        ("scenes/fig4a.toml", 60),
+        ("scenes/fig4b.toml", 30),
+        ("scenes/fig4b.toml", 45),
+        ("tests/golden/arrows.toml", 1),
+        ("tests/golden/cubes.toml", 3),
+        ("tests/golden/exploded.toml", 3),
+        ("tests/golden/field.toml", 3),
+        ("tests/golden/obstacles.toml", 3),
+        ("tests/golden/obstacles-plane.toml", 3),
+        ("tests/golden/plane.toml", 1),
+        ("tests/golden/see-through.toml", 3),
+        ("tests/golden/spring-strain.toml", 3),
+    ] {
+        let mut scene = Scene::load(&root.join(file), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        if scene.view.size[0] > 400 {
+            scene.view.size = [320, 180];
+        }
+        scene.view.strip = None;
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let mut sequence = Sequence::new(&scene, &runs);
+        let [from, to] = [index, index + 1].map(|index| sequence.frame(index));
+        // Obstacles move at most two pixels from one frame of these scenes to the next.
+        let part = SLOW / way(&scene, &from, &to).max(2.0);
+        assert_steady(&format!("{file} {index}"), &film(gpu, &scene, &between([&from, &to], part)));
+        if scene.body.dimension == Dimension::Space {
+            assert_steady(&format!("around {file} {index}"), &around(gpu, &mut scene, &from));
+        }
+    }
+}
+
+/// Two cubes pressed into a plane that is no plane of rounded numbers, slowly turning.
+const PRESSED: &str = "
+    gravity = [0, 0, 0]
+    time = { duration = 2, step = 0.0166666666667, frames_per_second = 60 }
+    run = [{ name = 'one', model = { kind = 'mass-spring', stiffness = 1e-9, springs = 'edges+one-diagonal' } }]
+    [body]
+    nodes = [
+        [0, 0, 0], [0.1, 0, 0], [0.2, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0], [0.2, 0.1, 0],
+        [0, 0, 0.1], [0.1, 0, 0.1], [0.2, 0, 0.1], [0, 0.1, 0.1], [0.1, 0.1, 0.1], [0.2, 0.1, 0.1],
+    ]
+    elements = [[0, 1, 3, 4, 6, 7, 9, 10], [1, 2, 4, 5, 7, 8, 10, 11]]
+    positions = [
+        [-0.1, 0.07, 0], [0, 0.1, 0], [0.1, 0.13, 0], [-0.1, 0.07, 0], [0, 0.1, 0], [0.1, 0.13, 0],
+        [-0.1, 0.09, 0.1], [0, 0.12, 0.1], [0.1, 0.15, 0.1], [-0.1, 0.09, 0.1], [0, 0.12, 0.1], [0.1, 0.15, 0.1],
+    ]
+    spin = { axis = [1, 3, 1.5], rate = 0.045 }
+    [view]
+    size = [160, 120]
+    camera = { target = [0, 0.1, 0.05], distance = 0.6 }
+";
+
+#[test]
+fn what_is_pressed_flat_does_not_flicker() {
+    let Some(gpu) = gpu("what_is_pressed_flat_does_not_flicker") else { return };
+    for show in ["", "show = ['surfaces', 'nodes', 'springs']", "colour = { by = 'speed' }"] {
+        let scene = parse(&[PRESSED, show].concat());
+        let mut sequence = Sequence::new(&scene, &[0]);
+        let frames: Vec<_> = (0..FRAMES).map(|index| sequence.frame(index)).collect();
+        assert!(way(&scene, &frames[0], &frames[1]) <= SLOW);
+        assert!(frames.iter().all(|frame| frame.runs[0].snapshot.diagnostics.turned_over == 0));
+        assert_steady(&format!("pressed {show}"), &film(gpu, &scene, &frames));
+    }
+}
+
+/// Two plates that cross, between which the eye goes from one side to the other.
+const CROSSING: &str = "
+    gravity = [0, 0, 0]
+    time = { duration = 1, step = 0.01 }
+    run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1 } }]
+    body = { lattice = { cells = [1, 1, 1], side = 0.05 } }
+    obstacle = [
+        { kind = 'plate', point = [-0.1, 0, 0], normal = [1, 0, 0.2] },
+        { kind = 'plate', point = [0, 0, -0.1], normal = [0.2, 0, 1] },
+    ]
+    view = { size = [160, 120], camera = { azimuth = 0.78, elevation = 0.4, target = [0, 0, 0], distance = 0.5 } }
+";
+
+#[test]
+fn plates_that_cross_do_not_flicker() {
+    let Some(gpu) = gpu("plates_that_cross_do_not_flicker") else { return };
+    let mut scene = parse(CROSSING);
+    let frame = Sequence::new(&scene, &[0]).frame(0);
+    assert_steady("crossing", &around(gpu, &mut scene, &frame));
+}
