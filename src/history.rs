@@ -80,6 +80,22 @@ impl Rehearsal {
         Self { end: scene.frame_time(scene.last_frame()), parts: runs.iter().map(part).collect() }
     }
 
+    /// The same with more moments noted down: as many as usually of the whole scene between two that are looked at
+    /// `closer` (s), if there are any, and the steps nearest to each of `shown` (s).
+    pub fn with(mut self, scene: &Scene, closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+        for part in &mut self.parts {
+            let last = part.last();
+            let step = |time: f64| ((time / scene.runs[part.course.run].step).round() as u64).min(last);
+            let closely = closer.into_iter().flat_map(|[start, end]| {
+                (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
+            });
+            part.moments.extend(closely.chain(shown.iter().copied()).map(step));
+            part.moments.sort_unstable();
+            part.moments.dedup();
+        }
+        self
+    }
+
     /// Goes on, each run by `most_steps` at most, and returns whether all runs are at their end. However the way is
     /// cut up, the course has the same bits.
     pub fn advance(&mut self, most_steps: u64) -> bool {
@@ -236,6 +252,28 @@ mod tests {
         assert_eq!(steps, (0..=short.frame_step(1, 1)).collect::<Vec<_>>());
         // A scene of one frame.
         assert_eq!(moments(&scene("0.1", "1", "T/70"), 0), [0]);
+    }
+
+    #[test]
+    fn what_is_looked_at_closely_has_more_moments() {
+        let scene = scene("3", "60", "T/70");
+        let usual = History::new(&scene, &[0, 1]);
+        let mut rehearsal = Rehearsal::new(&scene, &[0, 1]).with(&scene, Some([0.0, 0.1]), &[1.2345, 9.0]);
+        while !rehearsal.advance(u64::MAX) {}
+        let closer = rehearsal.finish();
+        for (usual, closer) in usual.courses.iter().zip(&closer.courses) {
+            assert!(closer.times.windows(2).all(|two| two[0] < two[1]));
+            let step = scene.runs[closer.run].step;
+            let early = closer.times.iter().filter(|&&time| time < 0.1).count();
+            assert!((early as f64 - 0.1 / step).abs() < 2.0, "every step of a few: {early}");
+            assert!(closer.times.iter().any(|time| (time - 1.2345).abs() <= 0.5001 * step));
+            // All else is there, with the same bits.
+            for (at, time) in usual.times.iter().enumerate() {
+                let same = closer.times.iter().position(|other| other == time).expect("kept");
+                assert_eq!(format!("{:?}", usual.diagnostics[at]), format!("{:?}", closer.diagnostics[same]));
+            }
+            assert_eq!(closer.times.last(), usual.times.last());
+        }
     }
 
     #[test]

@@ -77,7 +77,8 @@ impl Taking {
             let runs: Vec<_> = (0..scene.runs.len())
                 .filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name))
                 .collect();
-            Rehearsal::new(scene, &runs)
+            let shown: Vec<_> = sheet.columns.iter().filter_map(|column| column.time).collect();
+            Rehearsal::new(scene, &runs).with(scene, sheet.split.map(|split| [sheet.from, split]), &shown)
         });
         Self { rows, columns, parts: parts.into_iter().map(|(_, part)| part).collect(), course }
     }

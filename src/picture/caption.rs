@@ -131,7 +131,7 @@ impl Writer<'_> {
     }
 
     /// A piece of the line that stands for a model elsewhere, from a place on (px).
-    fn sample(&mut self, [left, middle]: [f64; 2], (colour, is_dashed): (Colour, bool)) {
+    pub(super) fn sample(&mut self, [left, middle]: [f64; 2], (colour, is_dashed): (Colour, bool)) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
         let thickness = thickness * self.scale.line_factor;
@@ -314,21 +314,21 @@ impl Writer<'_> {
         }
     }
 
-    fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
+    pub(super) fn right(&mut self, text: &str, weight: Weight, size: f64, colour: Colour, right: f64, baseline: f64) {
         let left = right - self.fonts.width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
     }
 }
 
-/// Lines of a text that are at most `room` wide (px) at a size; longer words are cut.
-pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<String> {
+/// Lines of a text that are at most `room` wide (px) at a weight and a size; longer words are cut.
+pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
     let text: String = text.chars().filter(|&character| !is_invisible(character)).collect();
     for paragraph in text.lines() {
         let (mut line, mut wide) = (String::new(), 0.0);
         for word in paragraph.split_whitespace() {
             let space = if line.is_empty() { "" } else { " " };
-            let added = fonts.width(space, Weight::Regular, size) + fonts.width(word, Weight::Regular, size);
+            let added = fonts.width(space, weight, size) + fonts.width(word, weight, size);
             if wide + added <= room {
                 line.push_str(space);
                 line.push_str(word);
@@ -340,12 +340,12 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, size: f64, room: f64) -> Vec<St
             }
             for character in word.chars() {
                 line.push(character);
-                if fonts.width(&line, Weight::Regular, size) > room && line.chars().count() > 1 {
+                if fonts.width(&line, weight, size) > room && line.chars().count() > 1 {
                     line.pop();
                     lines.push(std::mem::replace(&mut line, character.to_string()));
                 }
             }
-            wide = fonts.width(&line, Weight::Regular, size);
+            wide = fonts.width(&line, weight, size);
         }
         lines.push(line);
     }
@@ -392,12 +392,12 @@ mod tests {
     fn captions_are_cut_between_words() {
         let fonts = Fonts::default();
         let text = "One two three four five.\nA new line, anunusuallylongwordthatfitsnowhere end";
-        let lines = wrapped(&fonts, text, 16.0, 120.0);
+        let lines = wrapped(&fonts, text, Weight::Regular, 16.0, 120.0);
         let letters = |text: &str| text.split_whitespace().collect::<String>();
         assert_eq!(letters(&lines.concat()), letters(text));
         assert!(lines.len() > 4 && lines.iter().any(|line| line.starts_with("A new")));
         let fits = |line: &String| fonts.width(line, Weight::Regular, 16.0) <= 120.0;
         assert!(lines.iter().all(fits), "{lines:?}");
-        assert!(wrapped(&fonts, "", 16.0, 120.0).is_empty());
+        assert!(wrapped(&fonts, "", Weight::Regular, 16.0, 120.0).is_empty());
     }
 }

@@ -247,6 +247,16 @@ impl Scale {
         Self { unit, ..Self::REFERENCE }
     }
 
+    /// That of a picture of a number of pixels for each of the reference picture.
+    pub(super) fn at(unit: f64) -> Self {
+        Self { unit, ..Self::REFERENCE }
+    }
+
+    /// The same for things of another size.
+    pub(super) fn with_unit(self, unit: f64) -> Self {
+        Self { unit, ..self }
+    }
+
     /// The same with type, lines and margins as a scene asks for.
     pub(super) fn with(self, view: &View) -> Self {
         let ([margin, lower_margin], look) = (margins(view), &view.look);

@@ -1,5 +1,7 @@
 //! Numbers as a picture writes them: few digits, a unit that suits them, a minus that is one.
 
+use crate::sim::words::rounded;
+
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.
 pub(super) fn time(seconds: f64) -> String {
     let milliseconds = (seconds * 1e3).round();
@@ -12,6 +14,27 @@ pub(super) fn time(seconds: f64) -> String {
     };
     with_minus(text)
 }
+
+/// A moment (s) as exactly as someone typed it: milliseconds below a second, if zero is to be one of those, too; then
+/// seconds with so many decimals.
+pub(super) fn moment(seconds: f64, small: bool, decimals: usize) -> String {
+    let text = match seconds.abs() {
+        0.0 if !small => "0 s".to_owned(),
+        size if size < LEAST_SECOND => format!("{} ms", rounded(seconds * 1e3, 4)),
+        _ => format!("{seconds:.decimals$} s"),
+    };
+    with_minus(text)
+}
+
+/// How many decimals of a moment (s) from a second on are worth writing, at least one.
+pub(super) fn decimals(seconds: f64) -> usize {
+    let text = format!("{:?}", rounded(seconds, 4));
+    let plain = seconds.abs() >= LEAST_SECOND && !text.contains('e');
+    text.split_once('.').filter(|_| plain).map_or(1, |(_, decimals)| decimals.len())
+}
+
+/// What is shorter is written in milliseconds (s).
+const LEAST_SECOND: f64 = 0.999_95;
 
 /// A small length (m), in the unit that suits the size of the body (m) throughout a run.
 pub(super) fn length(metres: f64, extent: f64) -> String {
@@ -80,7 +103,7 @@ pub(super) fn metres(length: f64) -> String {
     let (factor, prefix) = prefix(length);
     let value = length / factor;
     let plain = (0.01..1e4).contains(&value);
-    if plain { format!("{} {prefix}m", crate::sim::words::rounded(value, 3)) } else { format!("{value:.0e} {prefix}m") }
+    if plain { format!("{} {prefix}m", rounded(value, 3)) } else { format!("{value:.0e} {prefix}m") }
 }
 
 /// A round length in metres, without a prefix as long as that is short.
@@ -113,7 +136,7 @@ impl Ticks {
         let text = |value: f64| match plain {
             true => with_minus(format!("{value:.decimals$}")),
             false if value == 0.0 => "0".to_owned(),
-            false => with_minus(format!("{:e}", crate::sim::words::rounded(value, digits))),
+            false => with_minus(format!("{:e}", rounded(value, digits))),
         };
         Self {
             places: values.iter().copied().map(place).collect(),
@@ -167,6 +190,14 @@ mod tests {
             "−20 ms",
         ];
         assert_eq!(times.map(time), expected);
+    }
+
+    #[test]
+    fn moments_are_what_was_typed() {
+        let times = [0.0, 0.07, 0.0125, 1.0 / 3.0, 0.999_96, 1.0, 1.46, 12.345_678, 1e5];
+        let expected = ["0 ms", "70 ms", "12.5 ms", "333.3 ms", "1.0 s", "1.0 s", "1.46 s", "12.35 s", "100000.0 s"];
+        assert_eq!(times.map(|time| moment(time, true, decimals(time))), expected);
+        assert_eq!((moment(0.0, false, 2), moment(1.5, false, 2)), ("0 s".to_owned(), "1.50 s".to_owned()));
     }
 
     #[test]

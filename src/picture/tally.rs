@@ -10,7 +10,7 @@ use glam::DVec3;
 /// Bodies of more elements get a bar instead of squares.
 const MOST_SQUARES: usize = 200;
 /// The height of all rows together (px in the reference picture).
-const HEIGHT: f64 = 36.0;
+pub(super) const HEIGHT: f64 = 36.0;
 /// The widest tally (px in the reference picture).
 const WIDTH: f64 = 200.0;
 /// Squares smaller than this (px in the reference picture) say less than a bar.
@@ -22,6 +22,8 @@ const BAR: [f64; 2] = [140.0, 14.0];
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tally {
     rows: Vec<Vec<usize>>,
+    /// Whether each row is a layer.
+    are_layers: bool,
     count: usize,
 }
 
@@ -31,7 +33,7 @@ impl Tally {
     pub(super) fn new(body: &Body, side: f64) -> Self {
         let count = body.elements.len();
         if count == 0 || count > MOST_SQUARES {
-            return Self { rows: Vec::new(), count };
+            return Self { rows: Vec::new(), are_layers: false, count };
         }
         let height = |element: usize| {
             let nodes = &body.elements[element];
@@ -48,12 +50,23 @@ impl Tally {
         }
         rows.iter_mut().for_each(|row| row.sort_unstable());
         let even = rows.iter().all(|row| row.len() == rows[0].len());
-        if !even || rows.len() > 12 {
+        let are_layers = even && rows.len() <= 12;
+        if !are_layers {
             let columns = if count <= 9 { count } else { count.div_ceil((count as f64 / 3.0).sqrt().ceil() as usize) };
             elements.sort_unstable();
             rows = elements.chunks(columns).map(<[usize]>::to_vec).collect();
         }
-        Self { rows, count }
+        Self { rows, are_layers, count }
+    }
+
+    /// Whether there are squares, one for each element, and not a bar.
+    pub(super) fn has_squares(&self) -> bool {
+        !self.rows.is_empty()
+    }
+
+    /// Whether its rows are several layers of the body.
+    pub(super) fn has_layers(&self) -> bool {
+        self.are_layers && self.rows.len() > 1
     }
 
     /// The marks of the tally with its lower left corner at a place (px), and its width (px).

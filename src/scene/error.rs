@@ -51,7 +51,9 @@ pub enum SceneError {
         limit: u64,
     },
     /// It holds nothing, or only spaces and comments.
-    #[error("{file}: the file is empty; a scene needs at least [time], [body] and one [[run]]")]
+    #[error(
+        "{file}: the file is empty; a scene needs at least [time], [body] and one [[run]], a figure [sheet] or [forces]"
+    )]
     Empty {
         /// The file, as named by the caller.
         file: String,

@@ -1,5 +1,6 @@
 //! Golden images: the last frame of each scene in this folder, against the picture of the same name beside it; and that
-//! of each scene that ships, drawn small, against the picture of the same name in `scenes/` here.
+//! of each scene that ships, drawn small, against the picture of the same name in `scenes/` here. Contact sheets stand in
+//! `figures/` here, drawn small, too.
 //!
 //! A golden is a frame as the program writes it, so it carries the digest of the state it shows. A failure can say
 //! whether the physics moved or only the drawing.
@@ -10,11 +11,14 @@
 
 use image::{DynamicImage, RgbImage};
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::moments::Moments;
 use localshape::output::{Tags, encode, read_tags};
-use localshape::picture::{Composer, compose};
+use localshape::picture::{Composer, compose, compose_figure};
 use localshape::render::Renderer;
+use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
+use localshape::sim::snapshot::Frame;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -131,12 +135,26 @@ fn judge(golden: &Path, actual: &DynamicImage, tags: &Tags) -> Option<String> {
     }
 }
 
+/// Compares a picture with its golden, or renews that; says what is wrong.
+fn complaint(stem: &str, golden: &Path, image: &DynamicImage, tags: &Tags) -> Option<String> {
+    let complaint = judge(golden, image, tags)?;
+    let bytes = encoded(image, tags);
+    if std::env::var_os("UPDATE_GOLDENS").is_some_and(|value| value == "1") {
+        assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
+        std::fs::write(golden, bytes).expect("a golden");
+        eprintln!("{stem}: renewed ({complaint})");
+        return None;
+    }
+    let failed = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+    std::fs::create_dir_all(&failed).expect("a folder for failures");
+    let actual = failed.join(stem).with_extension("png");
+    std::fs::write(&actual, bytes).expect("the picture of a failure");
+    Some(format!("{stem}: {complaint}\n  expected {}\n  actual   {}", golden.display(), actual.display()))
+}
+
 #[test]
 fn every_scene_looks_as_it_did() {
     let Some(gpu) = device() else { return };
-    let update = std::env::var_os("UPDATE_GOLDENS").is_some_and(|value| value == "1");
-    let failed = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
-    std::fs::create_dir_all(&failed).expect("a folder for failures");
     let mut complaints = Vec::new();
     for Set { scenes, goldens, width } in sets() {
         for stem in stems(&scenes, "toml") {
@@ -146,24 +164,41 @@ fn every_scene_looks_as_it_did() {
             scene.view.size = width.map_or(scene.view.size, |width| [width, width * height / whole]);
             let (image, tags) = draw(&gpu, &scene);
             let golden = goldens.join(&stem).with_extension("png");
-            let Some(complaint) = judge(&golden, &image, &tags) else { continue };
-            let bytes = encoded(&image, &tags);
-            if update {
-                assert!(bytes.len() as u64 <= LARGEST_FILE, "{stem}: {} bytes, make the picture smaller", bytes.len());
-                std::fs::write(&golden, bytes).expect("a golden");
-                eprintln!("{stem}: renewed ({complaint})");
-            } else {
-                let actual = failed.join(&stem).with_extension("png");
-                std::fs::write(&actual, bytes).expect("the picture of a failure");
-                complaints.push(format!(
-                    "{stem}: {complaint}\n  expected {}\n  actual   {}",
-                    golden.display(),
-                    actual.display()
-                ));
-            }
+            complaints.extend(complaint(&stem, &golden, &image, &tags));
         }
     }
     assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+}
+
+/// The contact sheets that have goldens.
+const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];
+/// Width of their pictures (px).
+const SHEET: u32 = 330;
+
+#[test]
+fn every_contact_sheet_looks_as_it_did() {
+    let Some(gpu) = device() else { return };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/figures");
+    let mut complaints = Vec::new();
+    for name in SHEETS {
+        let mut figure = Figure::built_in(name).expect("one of the program's");
+        let [width, height] = figure.size;
+        figure.size = [SHEET, SHEET * height / width];
+        let moments = Moments::new(&figure);
+        let picture = compose_figure(&figure, &moments);
+        let image = Renderer::new(&gpu, figure.size, 4).expect("a renderer").draw(&picture).expect("a picture").into();
+        let runs = moments.cells.concat();
+        let frame = Frame { index: 0, time: 0.0, runs };
+        let tags = Tags::new(&figure.scenes()[0], &frame, &gpu.description().to_string());
+        complaints.extend(complaint(name, &folder.join(name).with_extension("png"), &image, &tags));
+    }
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+    let pictures = stems(&folder, "png");
+    assert_eq!(pictures, SHEETS.map(str::to_owned).into(), "goldens and contact sheets");
+    for name in pictures {
+        let size = std::fs::metadata(folder.join(&name).with_extension("png")).expect("a golden").len();
+        assert!(size <= LARGEST_FILE, "{name}: {size} bytes");
+    }
 }
 
 #[test]

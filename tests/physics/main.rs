@@ -12,6 +12,7 @@ mod free_form;
 mod grips;
 mod integrators;
 mod readings;
+mod restore;
 mod support;
 mod table1;
 mod threads;

@@ -10,6 +10,7 @@ mod inside;
 mod look;
 mod obstacles;
 mod pictures;
+mod sheets;
 mod shown;
 mod smooth;
 mod steady;

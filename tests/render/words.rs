@@ -60,7 +60,7 @@ fn scenes() -> Vec<Scene> {
 }
 
 /// Two lines of text whose boxes share something.
-fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
+pub(crate) fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
     let words = &picture.words;
     for (at, one) in words.iter().enumerate() {
         for other in &words[at + 1..] {

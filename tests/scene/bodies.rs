@@ -1,6 +1,6 @@
 //! Bodies that are made by a rule, and elements of every shape.
 
-use super::{bad, good};
+use super::{WORLD, bad, good};
 use glam::DVec3;
 use localshape::scene::Scene;
 use localshape::sequence::Sequence;
@@ -278,5 +278,63 @@ fn bodies_beyond_the_limits_are_refused_before_they_are_made() {
         let [mistake] = error.mistakes() else { panic!("{error}") };
         assert!(error.to_string().contains(words), "{error}");
         assert!(mistake.line == 11, "{error}");
+    }
+}
+
+#[test]
+fn bodies_may_start_without_depth_inside_out_or_at_random() {
+    let scene = |start: &str| {
+        let body = format!("body = {{ lattice = {{ cells = [2, 1, 1], side = 0.5 }}, start = {start} }}");
+        good(&format!("{body}\n{WORLD}"))
+    };
+    let start = |typed: &str| {
+        let scene = scene(typed);
+        let middle = scene.body.rest.iter().sum::<DVec3>() / scene.body.len() as f64;
+        let rest: Vec<_> = scene.body.rest.iter().map(|at| *at - middle).collect();
+        (rest, scene.initial.position.iter().map(|at| *at - middle).collect::<Vec<_>>())
+    };
+    let near = |one: DVec3, other: DVec3| one.distance(other) < 1e-12;
+    let of = |typed: &str, expected: &dyn Fn(DVec3) -> DVec3| {
+        let (rest, start) = start(typed);
+        rest.iter().zip(&start).for_each(|(&rest, &at)| assert!(near(at, expected(rest)), "{typed}: {rest} {at}"));
+    };
+    of("{ shape = 'point' }", &|_| DVec3::ZERO);
+    of("{ shape = 'line' }", &|at| at.x * DVec3::X);
+    of("{ shape = 'line', direction = [0, -2, 0] }", &|at| at.y * DVec3::Y);
+    of("{ shape = 'plane', direction = [0, 0, 3] }", &|at| at.with_z(0.0));
+    of("{ shape = 'mirror-image' }", &|at| at.with_x(-at.x));
+    let (rest, cloud) = start("{ shape = 'cloud' }");
+    let size = rest.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    assert!(cloud.iter().all(|at| at.abs().cmple(size).all()), "{cloud:?}");
+    assert_eq!(cloud, start("{ shape = 'cloud', seed = 1 }").1);
+    assert_ne!(cloud, start("{ shape = 'cloud', seed = 2 }").1);
+    // At rest nothing has changed, and the rest of the start follows.
+    let moved = good(&format!(
+        "body = {{ lattice = {{ cells = [2, 1, 1], side = 0.5 }}, start = {{ shape = 'point' }}, lowest = 3 }}\n{WORLD}"
+    ));
+    assert!(
+        moved.initial.position.iter().all(|at| at.y == 3.0)
+            && moved.body.rest == scene("{ shape = 'point' }").body.rest
+    );
+}
+
+#[test]
+fn a_start_says_what_is_wrong_with_it() {
+    let body = |start: &str, more: &str| {
+        format!("body = {{ nodes = [[0, 0], [1, 0], [0, 1]], elements = [[0, 1, 2]], {more}start = {start} }}\n{WORLD}")
+    };
+    for (start, more, words) in [
+        ("{ shape = 'ball' }", "", "expected \"point\", \"line\", \"plane\", \"mirror-image\" or \"cloud\""),
+        ("{ seed = 2 }", "", "`body.start` has no `shape`"),
+        ("{ shape = 'line', direction = [0, 0, 1] }", "", "`body.start.direction` has 3 coordinates; expected 2"),
+        ("{ shape = 'line', direction = [0, 0] }", "", "`body.start.direction` is zero"),
+        (
+            "{ shape = 'point' }",
+            "positions = [[0, 0], [1, 0], [0, 1]], ",
+            "`positions` and `start`, which exclude each other",
+        ),
+    ] {
+        let error = bad(&body(start, more)).to_string();
+        assert!(error.contains(words), "{words:?} is not in\n{error}");
     }
 }

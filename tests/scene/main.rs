@@ -3,6 +3,7 @@
 mod archives;
 mod bodies;
 mod digest;
+mod figures;
 mod good;
 mod look;
 mod manipulators;

@@ -20,7 +20,7 @@ use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
-use super::text::Fonts;
+use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
 use crate::history::History;
@@ -229,8 +229,8 @@ impl<'a> Composer<'a> {
             return Vec::new();
         }
         // Panels' margins are no wider than those around them.
-        let lines =
-            wrapped(&self.fonts, &view.caption, around.caption(), f64::from(view.size[0]) - 2.0 * around.margin());
+        let room = f64::from(view.size[0]) - 2.0 * around.margin();
+        let lines = wrapped(&self.fonts, &view.caption, Weight::Regular, around.caption(), room);
         lines.into_iter().take(MOST_LINES).collect()
     }
 

@@ -6,7 +6,7 @@ use super::space::Staging;
 use crate::picture::narrow::narrow;
 use crate::picture::shadow::Plane;
 use crate::picture::{Pane, PaneCorner, Slab};
-use crate::sim::contact::{Obstacle, Pose};
+use crate::sim::contact::{Obstacle, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -38,6 +38,16 @@ pub(super) struct Loose {
 }
 
 impl Staging<'_> {
+    /// The corners of the drawn part of a plate's surface (m).
+    pub(in crate::picture) fn plate_corners(&self, obstacle: &Obstacle) -> Option<[DVec3; 4]> {
+        let Shape::Plate { normal, .. } = obstacle.shape else { return None };
+        let pose = obstacle.pose(self.site.time);
+        let (middle, half) = self.span(obstacle, &pose, normal);
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let corner = |[x, y]: [f64; 2]| middle + x * half.x * first + y * half.y * second;
+        Some([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
+    }
+
     /// The middle of the drawn part of a plate's surface (m), and half its sides (m).
     pub(super) fn span(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
         let pivot = obstacle.pivot;

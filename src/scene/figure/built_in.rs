@@ -28,6 +28,12 @@ texts! {
     "scenes/elements/square.toml",
     "scenes/elements/polygon.toml",
     "scenes/elements/cube.toml",
+    "scenes/elements/restore-point.toml",
+    "scenes/elements/restore-line.toml",
+    "scenes/elements/restore-plane.toml",
+    "scenes/elements/restore-mirror.toml",
+    "scenes/elements/restore-cloud-1.toml",
+    "scenes/elements/restore-cloud-2.toml",
 }
 
 /// The path of a figure's text.

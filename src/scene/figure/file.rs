@@ -54,6 +54,11 @@ pub(super) struct SheetFile {
     #[serde(default)]
     #[schemars(length(max = 6))]
     pub(super) strips: Vec<Diagnostic>,
+    /// A diagnostic written below each picture. Default: none.
+    pub(super) number: Option<Diagnostic>,
+    /// Where the axis of time begins (s), not after any moment shown. Default: 0.
+    #[schemars(range(min = 0.0))]
+    pub(super) from: Option<f64>,
     /// Where the axis of time changes its scale (s): what comes before takes most of the width. Default: nowhere.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) split: Option<f64>,

@@ -54,6 +54,10 @@ pub struct Sheet {
     pub rows: Vec<Row>,
     /// Diagnostics over time below the pictures. If there are any, all columns show the first scene.
     pub strips: Vec<Diagnostic>,
+    /// The diagnostic written below each picture.
+    pub number: Option<Diagnostic>,
+    /// Where the axis of time begins (s).
+    pub from: f64,
     /// Where the axis of time changes its scale (s).
     pub split: Option<f64>,
 }

@@ -6,6 +6,7 @@ use crate::scene::report::{Report, Way};
 use crate::scene::structure::Checked;
 use crate::scene::words::{list, nearest};
 use crate::scene::{Scene, SceneError};
+use crate::sim::snapshot::Diagnostic;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -88,6 +89,7 @@ impl Scenes<'_, '_, '_> {
     fn sheet(mut self, file: SheetFile) -> Result<Option<Sheet>, SceneError> {
         let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
         let before = self.report.total();
+        let are_moments = file.moments.is_some();
         let columns = match file.moments {
             Some(_) if !file.column.is_empty() => {
                 self.report.at_key(&at("moments"), "both `moments` and `column` are given; keep one of them", None);
@@ -98,6 +100,10 @@ impl Scenes<'_, '_, '_> {
             }
             None => file.column,
         };
+        if are_moments && file.scene.is_none() {
+            self.report.at_key(&at("moments"), "there is no `scene` beside the moments that are shown of it", None);
+            return Ok(None);
+        }
         if columns.is_empty() {
             self.report.at(&at(""), "the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
             return Ok(None);
@@ -128,14 +134,11 @@ impl Scenes<'_, '_, '_> {
         } else {
             file.row
         };
-        self.check_cells(&rows, &resolved);
+        self.check_cells(&rows, &resolved, are_moments);
         if !file.strips.is_empty() && self.scenes.len() > 1 {
             self.report.at_key(&at("strips"), "strips are of one scene, but the columns show several", None);
         }
-        if file.split.is_some_and(|split| split >= end(&self.scenes[0])) {
-            let message = format!("the scene ends at {} s; expected an earlier moment", end(&self.scenes[0]));
-            self.report.at(&at("split"), message, None);
-        }
+        self.check_times(&file.strips, file.from, file.split, &resolved);
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
             run: row.run,
@@ -144,12 +147,45 @@ impl Scenes<'_, '_, '_> {
         };
         let rows = rows.into_iter().map(row).collect();
         let Self { report, scenes, .. } = self;
-        let sheet = Sheet { scenes, columns: resolved, rows, strips: file.strips, split: file.split };
+        let sheet = Sheet {
+            scenes,
+            columns: resolved,
+            rows,
+            strips: file.strips,
+            number: file.number,
+            from: file.from.unwrap_or(0.0),
+            split: file.split,
+        };
         Ok((report.total() == before).then_some(sheet))
     }
 
+    /// Whether the axis of time holds its own beginning, the change of its scale, and the moments of columns.
+    fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
+        let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
+        for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
+            if strips.is_empty() {
+                self.report.at_key(&at(key), format!("`sheet.{key}` is about strips, but there are none"), None);
+                return;
+            }
+        }
+        let end = end(&self.scenes[0]);
+        let earliest = columns.iter().filter_map(|column| column.time).fold(end, f64::min);
+        if let Some(from) = from.filter(|&from| from > earliest || from >= end) {
+            let message = match earliest < end {
+                true => format!("the axis of time begins at {from} s, but there is a moment at {earliest} s"),
+                false => format!("the axis of time begins at {from} s, but the scene ends at {end} s"),
+            };
+            self.report.at(&at("from"), message, "expected an earlier one".to_owned());
+        } else if let Some(split) = split.filter(|&split| split >= end || split <= from.unwrap_or(0.0)) {
+            let from = from.unwrap_or(0.0);
+            let message =
+                format!("the axis of time goes from {from} to {end} s; expected a moment between, found {split}");
+            self.report.at(&at("split"), message, None);
+        }
+    }
+
     /// Whether each cell has a run and a moment.
-    fn check_cells(&mut self, rows: &[RowFile], columns: &[Column]) {
+    fn check_cells(&mut self, rows: &[RowFile], columns: &[Column], are_moments: bool) {
         for (index, row) in rows.iter().enumerate() {
             let path = |key: &'static str| [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key(key)];
             for scene in &self.scenes {
@@ -161,15 +197,19 @@ impl Scenes<'_, '_, '_> {
                     self.report.at(&path("time"), too_late(scene), None);
                 }
             }
-            if row.time.is_none() && columns.iter().any(|column| column.time.is_none()) {
-                self.report.at(&path("time"), "neither the row nor each column says at which `time`", None);
-            }
         }
+        let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
             let scene = &self.scenes[column.scene];
+            let path = |key: &'static str| [Way::Key("sheet"), Way::Key("column"), Way::Index(index), Way::Key(key)];
             if column.time.is_some_and(|time| time > end(scene)) {
                 let moments = [Way::Key("sheet"), Way::Key("moments"), Way::Index(index)];
-                self.report.at(&moments, too_late(scene), None);
+                let place: &[_] = if are_moments { &moments } else { &path("time") };
+                self.report.at(place, too_late(scene), None);
+            }
+            if let Some(row) = timeless.filter(|_| column.time.is_none()) {
+                let message = format!("the column has no `time`, and neither has the row “{}”", row.run);
+                self.report.at(&path("time"), message, "say it in one of them".to_owned());
             }
         }
     }

@@ -16,7 +16,10 @@ use serde::{Deserialize, Serialize};
         { "required": ["lattice"] }, { "required": ["polygon"] }, { "required": ["fan"] }, { "required": ["disc"] },
         { "required": ["bars"] }, { "required": ["nodes", "elements"] }, { "required": ["file"] }
     ],
-    "allOf" = [{ "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } }],
+    "allOf" = [
+        { "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } },
+        { "not": { "required": ["positions", "start"] } }
+    ],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
         "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"]
@@ -50,6 +53,9 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) faces: Option<Vec<Vec<u32>>>,
     /// Initial position of each node (m), before `rotation`, `offset` and `lowest`. Default: the rest positions.
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
+    /// A shape without depth, turned inside out or at random in which the body starts instead of its own. Default: its
+    /// own.
+    pub(in crate::scene) start: Option<StartFile>,
     /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not turned by `rotation`.
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass` for all.
@@ -77,6 +83,37 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) velocity: Option<Coordinates>,
     /// A rigid spin at the start about the mean of the nodes, on top of all other velocities. Default: none.
     pub(in crate::scene) spin: Option<SpinFile>,
+}
+
+/// A start from which bodies seldom come back, around the middle of the nodes at rest.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct StartFile {
+    /// Whether all nodes are at a `point`, on a `line` or in a `plane`, each as near as can be to where it is at rest; or
+    /// in a `mirror-image`; or at random places in the box around the body, a `cloud`.
+    pub(in crate::scene) shape: StartShape,
+    /// Where the line leads, or where plane and mirror face, at any length but zero. Default: along x.
+    pub(in crate::scene) direction: Option<Coordinates>,
+    /// Chooses among random clouds. The same seed makes the same cloud everywhere.
+    #[serde(default = "first")]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+    pub(in crate::scene) seed: u32,
+}
+
+/// What a body becomes at its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum StartShape {
+    /// All nodes at one place.
+    Point,
+    /// All nodes on a straight line.
+    Line,
+    /// All nodes in a plane.
+    Plane,
+    /// Turned inside out.
+    MirrorImage,
+    /// Random places.
+    Cloud,
 }
 
 /// A rigid spin.

@@ -11,7 +11,7 @@ mod obstacle;
 mod view;
 
 pub(in crate::scene) use body::{
-    BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile,
+    BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile, StartShape,
 };
 pub(in crate::scene) use look::{BackgroundFile, ColoursFile, FontFile, TypedColour};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};

@@ -7,6 +7,9 @@ mod lattice;
 mod mixed;
 pub(crate) mod random;
 mod shapes;
+mod start;
+
+pub(super) use start::brought_to_start;
 
 use super::file::BodyFile;
 use super::file::{BarsFile, CellsFile, DiscFile, LatticeFile, PolygonFile, SideFile};

@@ -3,8 +3,8 @@
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
-use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile};
-use crate::scene::generate::{Generator, Made};
+use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile, StartShape};
+use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
 use crate::scene::words::quoted;
@@ -212,7 +212,10 @@ fn start(
     dimension: Dimension,
     report: &mut Report<'_>,
 ) -> State {
-    let (turn, spin, offset, velocity) = check_start(file, dimension, report);
+    let (shape, turn, spin, offset, velocity) = check_start(file, dimension, report);
+    if let Some((shape, direction, seed)) = shape {
+        brought_to_start(&mut position, shape, direction, seed, dimension);
+    }
     let mut velocity = velocities.unwrap_or_else(|| vec![velocity; position.len()]);
     if let Some((axis, angle)) = turn {
         let centre = position.iter().sum::<DVec3>() / position.len() as f64;
@@ -231,12 +234,22 @@ fn start(
     State { position, velocity }
 }
 
-/// A turn (unit axis, angle), a spin (rad/s), a shift and a velocity, each with its mistakes reported and then left out.
+/// A start of another shape (with a unit direction and a seed), a turn (unit axis, angle), a spin (rad/s), a shift and a
+/// velocity, each with its mistakes reported and then left out.
+#[expect(clippy::type_complexity, reason = "a list of all that a start may have")]
 fn check_start(
     file: &BodyFile,
     dimension: Dimension,
     report: &mut Report<'_>,
-) -> (Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
+) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
+    let shape = file.start.as_ref().and_then(|typed| {
+        let path = [Way::Key("body"), Way::Key("start"), Way::Key("direction")];
+        let along = match &typed.direction {
+            Some(along) => direction(vector(along, dimension, &path, report)?, &path, report)?,
+            None => DVec3::X,
+        };
+        Some((typed.shape, along, typed.seed))
+    });
     let turn = file.rotation.as_ref().and_then(|typed| {
         let path = [Way::Key("body"), Way::Key("rotation")];
         Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
@@ -249,7 +262,7 @@ fn check_start(
         Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
-    (turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
+    (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.

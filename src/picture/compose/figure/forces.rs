@@ -1,7 +1,7 @@
 //! Diagrams of forces: what each model does to the nodes at the start of a scene.
 
+use super::header;
 use super::labels::Labels;
-use super::{Header, header};
 use crate::colour::{Colour, mixed};
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::camera::{Framing, Lens};
@@ -29,6 +29,8 @@ const KEY: f64 = 74.0;
 /// Baselines of a column's name and note, and of a row's name below its top (px in the reference picture).
 const NAME: f64 = 60.0;
 const UNDER_TITLE: f64 = 20.0;
+/// Free below the figure's title and caption (px in the reference picture).
+const BELOW_HEADER: f64 = 16.0;
 const NOTE: f64 = 86.0;
 const ROW_NAME: f64 = 20.0;
 /// Type of numbers at arrows, and the distance of two lines of it (px in the reference picture).
@@ -86,8 +88,9 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Picture {
     let scale = Scale::new(figure.size, [0, 0, figure.size[0] / columns as u32, figure.size[1]]).with(&scenes[0].view);
     let (marks, curves, words) = Default::default();
     let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
-    let Header { bottom: top } = header(&mut writer, figure);
     let unit = scale.unit;
+    let last = header::write(&mut writer, figure, &[]);
+    let top = if last > 0.0 { last + BELOW_HEADER * unit } else { 0.0 };
     // Below a title, names need no margin above them.
     let raised = if top > 0.0 { UNDER_TITLE * unit } else { 0.0 };
     let has_notes = runs > 1 && forces.notes.iter().any(|note| !note.is_empty());

@@ -1,0 +1,160 @@
+//! Contact sheets: rows of runs and columns of moments, and below them diagnostics over the time of the whole scene.
+//!
+//! ```text
+//! title
+//! caption                                    key
+//!              a 0 ms     b 20 ms     c 3.0 s
+//! Local shape  ┌ tile ──┐ ┌ tile ──┐ ┌ tile ──┐
+//! ─────────    │  body  │ │  body  │ │  body  │
+//!              └ tally ─┘ └ tally ─┘ └ tally ─┘
+//! Mass-spring  ┌ tile ──┐ …
+//! ─ ─ ─ ─ ─
+//!              ⓐ    ⓑ                       ⓒ
+//! Turned over  ┴────┴────────────────────────┴─
+//! ```
+
+mod charts;
+mod plan;
+mod sight;
+mod words;
+
+use super::header;
+use crate::moments::Moments;
+use crate::picture::caption::Writer;
+use crate::picture::compose::Composer;
+use crate::picture::compose::panel::Draft;
+use crate::picture::layout::Scale;
+use crate::picture::legend::Legend;
+use crate::picture::narrow::narrow;
+use crate::picture::text::Fonts;
+use crate::picture::{Colour, Curve, Framing, Picture};
+use crate::scene::figure::{Figure, Sheet};
+use crate::scene::{Labels, Scene, View};
+use crate::sim::snapshot::Frame;
+use charts::Charts;
+use glam::DVec2;
+use plan::Plan;
+use words::Below;
+
+/// Lengths hold for a picture of this size (px); of a larger or smaller one, they are as much longer or shorter.
+const REFERENCE: [f64; 2] = [1600.0, 900.0];
+/// Smaller pictures than this part of it have less in them, not smaller type.
+const LEAST_UNIT: f64 = 0.36;
+
+/// Width of bodies that are a line or a point (px at the tile's scale).
+const COLLAPSED: [f64; 2] = [3.0, 9.0];
+
+pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Picture {
+    let size = figure.size.map(|length| length.max(1));
+    let unit = (f64::from(size[0]) / REFERENCE[0]).min(f64::from(size[1]) / REFERENCE[1]).max(LEAST_UNIT);
+    let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
+    let fonts = Fonts::new(&figure.look.font);
+    let palette = &figure.look.palette;
+    let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
+    let scenes = plain(figure, sheet);
+
+    let header = header::write(&mut writer, figure, &words::key(&scenes));
+    let legend = legend(&scenes, size, scale);
+    let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &fonts, scale));
+    let labels = words::RowLabels::new(sheet, &fonts, scale, charts.is_some(), f64::from(size[0]));
+    let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
+    let plan = Plan::new(sheet, &writer, [size[0], bottom], header, &labels, charts.as_ref());
+    labels.write(&mut writer, &plan, sheet);
+    words::write_headings(&mut writer, &plan, sheet);
+    if let (Some(charts), Some(room)) = (&charts, &plan.charts) {
+        charts.draw(&mut writer, room);
+    }
+
+    let cells = sight::cells(&scenes, sheet, moments);
+    let framings = sight::framings(&scenes, &cells, &plan);
+    // What every tile of a scene shares follows from the first one of it.
+    let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
+    let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
+    let mut below = Vec::new();
+    for (row, cells) in moments.cells.iter().enumerate() {
+        for (column, run) in cells.iter().enumerate() {
+            let composer = &composers[sheet.columns[column].scene];
+            below.push(([row, column], Below::new(&writer, &plan, composer, run, sheet.number)));
+        }
+    }
+    let with_number = below.iter().all(|(_, below)| below.has_room(&writer, &plan));
+    below.into_iter().for_each(|(place, below)| below.write(&mut writer, &plan, place, with_number));
+    if let Some(legend) = legend.filter(|_| bottom < size[1]) {
+        let first = &composers[0];
+        let arrow = scenes[0].view.visible.displacements;
+        let arrow = arrow.then(|| first.key_arrow(legend, plan.tile(0, 0), &framings[0][0], plan.tile_scale));
+        let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
+        let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
+        let bars = Frame { index: 0, time: 0.0, runs };
+        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.bars(&bars));
+    }
+
+    let Writer { marks: above, mut curves, mut words, .. } = writer;
+    let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
+    for (row, cells) in moments.cells.iter().enumerate() {
+        for (column, run) in cells.iter().enumerate() {
+            let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
+            let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
+            panels.push(draft.panel(&mut under, &mut marks));
+            // Surfaces without width do not show.
+            let ends = sight::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
+            curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
+        }
+    }
+    marks.extend(above);
+    for word in &mut words {
+        word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
+    }
+    let ramp = composers.first().map_or_else(Vec::new, |composer| composer.ramp.clone());
+    Picture { size, palette: *palette, fonts, ramp, panels, under, marks, curves, words }
+}
+
+/// The scenes as their tiles show them: without words of their own, in the look of the figure.
+fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
+    let first = sheet.scenes.first().map(|scene| &scene.view);
+    let alike = |one: &Scene| {
+        first.is_some_and(|first| one.view.colour == first.colour && one.view.spring_strain == first.spring_strain)
+    };
+    let is_shared = sheet.scenes.iter().all(alike);
+    let one = |scene: &Scene| {
+        let mut scene = scene.clone();
+        let view = &mut scene.view;
+        view.size = figure.size;
+        view.look = figure.look.clone();
+        view.labels = Labels::default();
+        view.scale_bar = false;
+        view.strip = None;
+        // One scale of colours for all, or none.
+        view.colour = view.colour.filter(|_| is_shared);
+        view.spring_strain = view.spring_strain.filter(|_| is_shared);
+        scene
+    };
+    sheet.scenes.iter().map(one).collect()
+}
+
+/// A scene whose camera stands as in its first tile, so that nothing is drawn as if the camera had moved there.
+fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> Scene {
+    let mut scene = scene.clone();
+    let column = sheet.columns.iter().position(|column| column.scene == at);
+    if let Some(framing) = column.and_then(|column| framings.first()?.get(column)) {
+        let camera = &mut scene.view.camera;
+        (camera.target, camera.distance, camera.rise) = (framing.target, framing.distance, 0.0);
+    }
+    scene
+}
+
+/// A body without width, as a line or a dot.
+fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
+    let is_dot = ends[0].distance(ends[1]) < 1.0;
+    let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };
+    let points = ends.iter().take(if is_dot { 1 } else { 2 }).map(|end| [end.x, end.y].map(narrow)).collect();
+    Curve { points, width: narrow(width), dash: None, colour, alpha: 1.0 }
+}
+
+/// The key of colours and arrows, if there are any.
+fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
+    let view = &scenes.first()?.view;
+    let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
+    let any = view.legend && (view.visible.displacements || bars > 0);
+    any.then(|| Legend::new(size, scale, view.visible.displacements, bars)).flatten()
+}

@@ -1,0 +1,214 @@
+//! Where everything stands on a contact sheet.
+
+use super::charts::Charts;
+use super::words::{Heading, RowLabels};
+use crate::picture::caption::Writer;
+use crate::picture::layout::{Rectangle, Scale};
+use crate::scene::figure::Sheet;
+use crate::sim::body::Dimension;
+
+/// From the last line of the header to the first of the headings, between their lines, and from the last of them to the
+/// tiles (px in the reference picture).
+const ABOVE_HEADINGS: f64 = 37.0;
+pub(super) const HEADING_LINE: f64 = 20.0;
+const BELOW_HEADINGS: f64 = 9.0;
+/// Between the words of rows and the tiles (px in the reference picture).
+const BESIDE_LABELS: f64 = 18.0;
+/// The words beside rows and charts take at most this part of the picture's width.
+const MOST_LABELS: f64 = 0.4;
+/// Room for tally and count below the body in a tile, and how far these stand above its lower side (px in the reference
+/// picture). Tiles lower or narrower than the second length have none.
+const BELOW_BODY: f64 = 36.0;
+pub(super) const TALLY_RAISED: f64 = 9.0;
+const LEAST_TILE: [f64; 2] = [100.0, 62.0];
+/// Free beside the words in a tile, both sides together (px in the reference picture).
+const BESIDE_WORDS: f64 = 12.0;
+/// So far above the lower side of a tile the floor of the plane is drawn at least (px at the tile's scale).
+const BELOW_FLOOR: f64 = 44.0;
+/// Tiles are at most this many times higher than wide.
+const HIGHEST: f64 = 1.12;
+/// Lines of a tile of this size (px in the reference picture) are this part as thick as those of a panel, and in others
+/// thicker or thinner up to the limits.
+const USUAL_TILE: f64 = 240.0;
+const TILE_LINES: f64 = 0.78;
+const TILE_LIMITS: [f64; 2] = [0.34, 1.0];
+/// From the tiles to the middle of the rings, from there to the first chart, between charts at the most and at the least,
+/// and from the last chart to the end of the picture (px in the reference picture).
+const ABOVE_RINGS: f64 = 24.0;
+const BELOW_RINGS: f64 = 27.0;
+const BETWEEN_CHARTS: [f64; 2] = [40.0, 26.0];
+const BELOW_CHARTS: f64 = 44.0;
+/// Height of a chart at the least, usually and at the most (px in the reference picture).
+const CHART: [f64; 3] = [32.0, 68.0, 150.0];
+/// The part of the height for tiles and charts that the charts take at the most.
+const CHARTS_SHARE: f64 = 0.58;
+/// Free below the tiles if there are no charts (px in the reference picture).
+const BELOW_TILES: f64 = 22.0;
+
+/// Where everything stands (px).
+pub(super) struct Plan {
+    /// The left side of the first column, and the top of the first row.
+    origin: [u32; 2],
+    /// The sizes of a tile.
+    tile: [u32; 2],
+    columns: usize,
+    pub(super) tile_scale: Scale,
+    /// The height at the lower side of a tile that its body leaves free.
+    pub(super) below_body: f64,
+    /// Whether there is room for tallies.
+    pub(super) has_tally: bool,
+    /// The headings of the columns, and the baseline of their first lines.
+    pub(super) headings: Vec<Heading>,
+    pub(super) headings_baseline: f64,
+    /// The room of the words beside rows: left end and width; `None` if there is none.
+    pub(super) labels: Option<[f64; 2]>,
+    pub(super) charts: Option<ChartsRoom>,
+}
+
+/// Where charts stand (px).
+pub(super) struct ChartsRoom {
+    /// The middle of the rings above all charts.
+    pub(super) rings: f64,
+    /// Left and right end of all charts.
+    pub(super) span: [f64; 2],
+    /// Where their names begin.
+    pub(super) names: Option<f64>,
+    /// Top and bottom of each chart.
+    pub(super) charts: Vec<[f64; 2]>,
+}
+
+impl Plan {
+    /// Plans a sheet of a size (px) below the last baseline of a header (px).
+    pub(super) fn new(
+        sheet: &Sheet,
+        writer: &Writer<'_>,
+        size: [u32; 2],
+        header: f64,
+        labels: &RowLabels,
+        charts: Option<&Charts<'_>>,
+    ) -> Self {
+        let scale = writer.scale;
+        let [width, height] = size.map(f64::from);
+        let [unit, type_unit] = [scale.unit, scale.type_unit()];
+        let (columns, rows) = (sheet.columns.len().max(1), sheet.rows.len().max(1));
+        let margin = scale.margin();
+        let words = labels.width.max(charts.map_or(0.0, |charts| charts.names_width));
+        let numbers = charts.map_or(0.0, |charts| charts.numbers_width);
+        let labels_end = (labels.width + BESIDE_LABELS * unit).max(words + numbers);
+        let has_labels = words > 0.0 && margin + labels_end <= MOST_LABELS * width;
+        let left = (margin + if has_labels { labels_end } else { numbers.min(0.1 * width) }).round();
+        let pitch = ((width - margin - left) / columns as f64).floor().max(1.0);
+        let right = left + pitch * columns as f64;
+
+        let headings = Heading::all(sheet, writer, pitch, charts.is_some());
+        let lines = headings.iter().map(|heading| heading.lines.len()).max().unwrap_or(0) as f64;
+        let first = if header > 0.0 { header + ABOVE_HEADINGS * type_unit } else { 0.75 * margin + 16.0 * type_unit };
+        let top = match lines {
+            0.0 if header > 0.0 => header + 12.0 * unit,
+            0.0 => 0.5 * margin,
+            lines => first + (lines - 1.0) * HEADING_LINE * type_unit + BELOW_HEADINGS * unit,
+        };
+        let free = (height - top).max(0.0);
+        let shape = charts.and_then(|charts| ChartsShape::new(charts.count(), free, scale));
+        let below = shape.as_ref().map_or(BELOW_TILES * unit, |shape| shape.height(scale));
+        let usual = ((free - below) / rows as f64).max(1.0);
+        let tally = (BELOW_BODY * type_unit).max(TALLY_RAISED * unit);
+        let tile_height = usual.min(HIGHEST * pitch + tally).floor().max(1.0);
+        // What tiles leave over makes charts higher.
+        let left_over = (free - below - tile_height * rows as f64).max(0.0);
+        let shape = shape.map(|shape| shape.higher(left_over, scale));
+        let has_tally = pitch >= LEAST_TILE[1] * type_unit && tile_height >= LEAST_TILE[0] * type_unit;
+        let tile_unit = TILE_LINES * pitch.min(tile_height) / USUAL_TILE;
+        let tile_scale = scale.with_unit(tile_unit.clamp(TILE_LIMITS[0] * unit, TILE_LIMITS[1] * unit));
+        let flat = sheet.scenes.iter().any(|scene| scene.body.dimension == Dimension::Plane);
+        let below_body = if has_tally { tally } else { 6.0 * unit };
+        let below_floor = if flat { BELOW_FLOOR * tile_scale.unit } else { 0.0 };
+        let tiles_end = top.round() + tile_height * rows as f64;
+        Self {
+            origin: [left, top.round()].map(|at| at as u32),
+            tile: [pitch, tile_height].map(|length| length as u32),
+            columns,
+            tile_scale,
+            below_body: below_body.max(below_floor).min(0.5 * tile_height),
+            has_tally,
+            headings,
+            headings_baseline: first,
+            labels: has_labels.then_some([margin, words]),
+            charts: shape.map(|shape| shape.place(tiles_end, [left, right], has_labels.then_some(margin), scale)),
+        }
+    }
+
+    /// Where a tile stands.
+    pub(super) fn tile(&self, row: usize, column: usize) -> Rectangle {
+        let ([left, top], [width, height]) = (self.origin, self.tile);
+        debug_assert!(column < self.columns);
+        [left + width * column as u32, top + height * row as u32, width, height]
+    }
+
+    /// The part of a tile at the picture's origin that its body may touch: left, top, right and bottom (px).
+    pub(super) fn body_room(&self) -> [f64; 4] {
+        let [width, height] = self.tile.map(f64::from);
+        let beside = (0.045 * width).max(2.0).min(0.25 * width);
+        let above = (0.045 * height).max(2.0).min(0.25 * height);
+        [beside, above, width - beside, (height - self.below_body).max(0.5 * height)]
+    }
+
+    /// The width of the room for words in a tile (px).
+    pub(super) fn words_width(&self, scale: Scale) -> f64 {
+        f64::from(self.tile[0]) - BESIDE_WORDS * scale.unit
+    }
+
+    /// The sizes of a tile (px).
+    pub(super) fn tile_size(&self) -> [u32; 2] {
+        self.tile
+    }
+}
+
+/// How high charts are (px).
+struct ChartsShape {
+    count: usize,
+    chart: f64,
+    between: f64,
+}
+
+impl ChartsShape {
+    /// As many of a number of charts as there is room for in a height (px), with tiles above them; `None` for none.
+    fn new(count: usize, free: f64, scale: Scale) -> Option<Self> {
+        let [least, usual, _] = CHART;
+        let [wide, narrow] = BETWEEN_CHARTS;
+        let sizes = [(usual, wide), (0.75 * usual, wide), (0.75 * usual, narrow), (least, narrow)];
+        let all = (1..=count).rev().flat_map(|count| sizes.map(|size| (count, size)));
+        let shapes = all.map(|(count, (chart, between))| {
+            let [chart, between] = [chart, between].map(|length| length * scale.type_unit());
+            Self { count, chart, between }
+        });
+        { shapes }.find(|shape| shape.height(scale) <= CHARTS_SHARE * free)
+    }
+
+    /// The height of all charts with everything between and around them.
+    fn height(&self, scale: Scale) -> f64 {
+        let count = self.count as f64;
+        count * self.chart + (count - 1.0) * self.between + around(scale)
+    }
+
+    /// With room left over used.
+    fn higher(self, left_over: f64, scale: Scale) -> Self {
+        let chart = self.chart + left_over / self.count as f64;
+        Self { chart: chart.min(CHART[2] * scale.type_unit()).max(self.chart), ..self }
+    }
+
+    fn place(&self, top: f64, span: [f64; 2], names: Option<f64>, scale: Scale) -> ChartsRoom {
+        let rings = top + ABOVE_RINGS * scale.type_unit();
+        let first = rings + BELOW_RINGS * scale.type_unit();
+        let chart = |at: usize| {
+            let top = first + at as f64 * (self.chart + self.between);
+            [top, top + self.chart].map(f64::round)
+        };
+        ChartsRoom { rings, span, names, charts: (0..self.count).map(chart).collect() }
+    }
+}
+
+/// The room above and below all charts together.
+fn around(scale: Scale) -> f64 {
+    (ABOVE_RINGS + BELOW_RINGS + BELOW_CHARTS) * scale.type_unit()
+}

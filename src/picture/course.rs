@@ -1,0 +1,330 @@
+//! A diagnostic of a run over time, as a curve in a chart.
+
+use super::Curve;
+use super::axis::Axis;
+use super::caption::{DASHES, Writer};
+use super::chart::Chart;
+use super::narrow::narrow;
+use super::palette::Colour;
+use crate::history::Course;
+use crate::scene::Scene;
+use crate::sim::body::Dimension;
+use crate::sim::snapshot::Diagnostic;
+
+/// Widths of the curve that matters and of a cross, and the arms of a cross (px in the reference picture).
+pub(super) const OWN: f64 = 2.2;
+const CROSS: f64 = 1.8;
+const ARM: f64 = 4.0;
+/// Curves are simplified as long as no point moves by more than this (px).
+const EXACT: f64 = 0.08;
+
+/// What a run that blew up shows beyond this many times the largest value of the others sets no scale and leaves the chart.
+const BEYOND: f64 = 3.0;
+/// The range holds zero unless zero is farther away than this many times its width.
+const NEAR_ZERO: f64 = 1.5;
+/// A range is at least this part of its values, so that no rounding error fills a strip.
+const LEAST_RANGE: f64 = 0.02;
+
+/// The diagnostic of one run.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    pub(super) run: usize,
+    /// Whether its model has springs.
+    pub(super) has_springs: bool,
+    /// Whether it is a count, which goes in steps.
+    pub(super) is_count: bool,
+    /// Times (s) and values, as far as they are numbers.
+    pub(super) points: Vec<[f64; 2]>,
+    /// When it blew up (s).
+    pub(super) diverged: Option<f64>,
+}
+
+/// How a curve looks.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    width: f64,
+    colour: Colour,
+    dashed: bool,
+    alpha: f64,
+}
+
+impl Look {
+    pub(super) fn new(width: f64, colour: Colour, dashed: bool, alpha: f64) -> Self {
+        Self { width, colour, dashed, alpha }
+    }
+}
+
+impl Line {
+    /// A diagnostic of a run of a scene.
+    pub(super) fn new(diagnostic: Diagnostic, course: &Course, scene: &Scene) -> Self {
+        let values = course.diagnostics.iter().map(|all| diagnostic.of(all));
+        let points = course.times.iter().zip(values).map(|(&time, value)| [time, value]);
+        Self {
+            run: course.run,
+            has_springs: scene.runs.get(course.run).is_some_and(|run| !run.model.springs().is_empty()),
+            is_count: diagnostic == Diagnostic::TurnedOver,
+            points: points.filter(|[_, value]| value.is_finite()).collect(),
+            diverged: course.divergence.map(|divergence| divergence.time),
+        }
+    }
+
+    /// The part of it between two moments (s).
+    pub(super) fn between(&self, [start, end]: [f64; 2]) -> Self {
+        let (points, is_count) = (&self.points, self.is_count);
+        let at = |moment: f64| {
+            let after = points.partition_point(|&[time, _]| time <= moment);
+            let (&[from, one], &[to, other]) = (points.get(after.checked_sub(1)?)?, points.get(after)?);
+            let share = if is_count { 0.0 } else { (moment - from) / (to - from) };
+            Some([moment, one + share * (other - one)])
+        };
+        let inside = points.iter().copied().filter(|[time, _]| (start..=end).contains(time));
+        let ends = [start, end].map(|moment| at(moment).filter(|_| points.iter().all(|&[time, _]| time != moment)));
+        let points = ends[0].into_iter().chain(inside).chain(ends[1]).collect();
+        let diverged = self.diverged.filter(|time| (start..=end).contains(time));
+        Self { points, diverged, ..*self }
+    }
+
+    /// The curve, with a cross where the run blew up.
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2], look: Look) {
+        let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
+        let mut points: Vec<_> = points.collect();
+        if self.is_count {
+            points = steps(&points);
+        }
+        let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
+        let thickness = chart.thickness();
+        let curve = |points: &[[f64; 2]], width: f64, dash: Option<[f32; 2]>| Curve {
+            points: points.iter().map(|point| point.map(narrow)).collect(),
+            width: narrow(width * thickness),
+            dash,
+            colour: look.colour,
+            alpha: narrow(look.alpha),
+        };
+        let dash = look.dashed.then(|| DASHES.map(|length| narrow(length * thickness)));
+        for part in within(&points, borders) {
+            writer.curves.push(curve(&simplified(&part, EXACT), look.width, dash));
+        }
+        if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
+            let [x, y] = [chart.x(times, time), last.clamp(chart.top, chart.bottom)];
+            let arm = ARM * thickness;
+            for slope in [-1.0, 1.0] {
+                let ends = [[x - arm, y - slope * arm], [x + arm, y + slope * arm]];
+                writer.curves.push(curve(&ends, CROSS.min(look.width), None));
+            }
+        }
+    }
+}
+
+/// What a reader calls a diagnostic of a scene.
+pub(super) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
+    match (diagnostic, scene.body.dimension) {
+        (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
+        _ => diagnostic.name(),
+    }
+}
+
+/// The largest size of values.
+fn peak(points: &[[f64; 2]]) -> f64 {
+    points.iter().fold(0.0, |most, [_, value]| value.abs().max(most))
+}
+
+/// The values that strips show: all of runs that go on, and of those that blew up what is not far beyond those.
+pub(super) fn range(lines: &[Line], may_blow_up: bool) -> Option<[f64; 2]> {
+    let with_values = || lines.iter().filter(|line| !line.points.is_empty());
+    let is_wild = |line: &Line| may_blow_up && line.diverged.is_some();
+    let calm = with_values().filter(|line| !is_wild(line)).map(|line| peak(&line.points)).reduce(f64::max);
+    let limit = match calm {
+        Some(calm) if calm > 0.0 => BEYOND * calm,
+        // With nothing to compare with, half of what there is counts as ordinary.
+        _ => {
+            let mut sizes: Vec<_> = with_values().flat_map(|line| &line.points).map(|[_, value]| value.abs()).collect();
+            sizes.sort_by(f64::total_cmp);
+            BEYOND * sizes.get(sizes.len() / 2).copied()?
+        }
+    };
+    let shown = |line: &Line, value: f64| value.abs() <= limit || !is_wild(line);
+    let values = with_values().flat_map(|line| {
+        let shown = line.points.iter().filter(|[_, value]| shown(line, *value));
+        shown.map(|&[_, value]| value).collect::<Vec<_>>()
+    });
+    let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
+        Some(ends.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
+    });
+    ends.map(widened)
+}
+
+/// A range with zero, unless that is far away, and not too narrow.
+fn widened([low, high]: [f64; 2]) -> [f64; 2] {
+    let nearest = if low > 0.0 { low } else { (-high).max(0.0) };
+    if nearest <= NEAR_ZERO * (high - low) {
+        return [low.min(0.0), high.max(0.0)];
+    }
+    let largest = low.abs().max(high.abs());
+    let missing = (LEAST_RANGE * largest - (high - low)).max(0.0) / 2.0;
+    [low - missing, high + missing]
+}
+
+/// A count's course: level until it changes, and then straight up or down.
+fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut steps: Vec<[f64; 2]> = Vec::new();
+    for &[x, y] in points {
+        if let Some(&[_, before]) = steps.last().filter(|&&[_, before]| before != y) {
+            steps.push([x, before]);
+        }
+        steps.push([x, y]);
+    }
+    steps
+}
+
+/// The parts of a curve between an upper and a lower border.
+fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut open = false;
+    if let &[[x, y]] = points
+        && (top..=bottom).contains(&y)
+    {
+        parts.push(vec![[x, y]]);
+    }
+    for two in points.windows(2) {
+        let ([from, to], way) = ([two[0], two[1]], two[1][1] - two[0][1]);
+        let at = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / way).clamp(0.0, 1.0), y];
+        let clamped = [from[1], to[1]].map(|y| y.clamp(top, bottom));
+        // Wholly on one side of both borders, or all of it inside.
+        let outside = (from[1] < top && to[1] < top) || (from[1] > bottom && to[1] > bottom);
+        if outside {
+            open = false;
+            continue;
+        }
+        let end = |y: f64, inside: f64, whole: [f64; 2]| if y == inside { whole } else { at(inside) };
+        let ends = [end(from[1], clamped[0], from), end(to[1], clamped[1], to)];
+        if !open {
+            parts.push(vec![ends[0]]);
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push(ends[1]);
+        }
+        open = to[1] == clamped[1];
+    }
+    parts
+}
+
+/// A curve with fewer points, none of those left out farther from it than a distance (Douglas and Peucker).
+fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
+    let mut kept = vec![false; points.len()];
+    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
+    (kept[0], kept[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let [[ax, ay], [bx, by]] = [points[from], points[to]];
+        let [wx, wy] = [bx - ax, by - ay];
+        let squared = wx * wx + wy * wy;
+        let off = |&[x, y]: &[f64; 2]| {
+            let share = if squared > 0.0 { (((x - ax) * wx + (y - ay) * wy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            let [dx, dy] = [x - ax - share * wx, y - ay - share * wy];
+            dx * dx + dy * dy
+        };
+        let between = points[from..to].iter().enumerate().skip(1);
+        let farthest =
+            between.map(|(at, point)| (off(point), from + at)).max_by(|one, other| one.0.total_cmp(&other.0));
+        if let Some((_, at)) = farthest.filter(|(off, _)| *off > distance * distance) {
+            kept[at] = true;
+            open.extend([(from, at), (at, to)]);
+        }
+    }
+    points.iter().zip(kept).filter_map(|(&point, kept)| kept.then_some(point)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(values: &[f64], diverged: bool) -> Line {
+        let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
+        Line { run: 0, has_springs: false, is_count: false, points, diverged: diverged.then_some(values.len() as f64) }
+    }
+
+    #[test]
+    fn one_range_holds_all_runs_and_zero() {
+        let range = |lines: &[&[f64]]| range(&lines.iter().map(|values| line(values, false)).collect::<Vec<_>>(), true);
+        assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
+        assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
+        // A short peak is no blow-up, and neither is one run that does much more than the other.
+        assert_eq!(range(&[&[3000.0, 1.0, 0.1, 0.1, 0.1]]), Some([0.0, 3000.0]));
+        assert_eq!(range(&[&[0.001; 8], &[0.1; 8]]), Some([0.0, 0.1]));
+        // Zero is far from a volume that hardly changes, and what does not change has some room.
+        assert_eq!(range(&[&[1.0, 1.05, 0.97]]), Some([0.97, 1.05]));
+        let [low, high] = range(&[&[1.0, 1.0]]).unwrap();
+        assert!(low < 1.0 && 1.0 < high && high - low < 0.03, "{low} {high}");
+        assert_eq!((range(&[]), range(&[&[]])), (None, None));
+        assert_eq!(range(&[&[0.0, 0.0]]), Some([0.0, 0.0]));
+    }
+
+    #[test]
+    fn what_blows_up_flattens_nothing() {
+        let calm = line(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
+        let blown = line(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
+        assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
+        // What goes on is shown as it is, however late it begins.
+        let late = line(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
+        assert_eq!(range(&[line(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
+        // Counts are bounded by themselves.
+        let counted = line(&[0.0, 0.0, 8.0], true);
+        assert_eq!(range(&[line(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
+        // Alone, half of its values count.
+        let alone = line(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
+        assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
+    }
+
+    #[test]
+    fn counts_go_in_steps() {
+        let steps = steps(&[[0.0, 0.0], [1.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+        assert_eq!(steps, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+    }
+
+    #[test]
+    fn parts_of_a_line_begin_and_end_on_it() {
+        let whole = line(&[1.0, 3.0, 2.0, 2.0], true);
+        let part = whole.between([0.5, 2.25]);
+        assert_eq!(part.points, [[0.5, 2.0], [1.0, 3.0], [2.0, 2.0], [2.25, 2.0]]);
+        assert_eq!((part.diverged, whole.between([2.0, 9.0]).diverged), (None, Some(4.0)));
+        // Where there is a point already, none is made, and beyond the end there is nothing.
+        assert_eq!(whole.between([1.0, 2.0]).points, [[1.0, 3.0], [2.0, 2.0]]);
+        assert_eq!(whole.between([2.5, 9.0]).points, [[2.5, 2.0], [3.0, 2.0]]);
+        assert!(whole.between([5.0, 9.0]).points.is_empty());
+        // Counts keep their number until the next one.
+        let count = Line { is_count: true, ..whole };
+        assert_eq!(count.between([0.5, 1.5]).points, [[0.5, 1.0], [1.0, 3.0], [1.5, 3.0]]);
+    }
+
+    #[test]
+    fn curves_leave_at_the_border_and_come_back() {
+        let points = [[0.0, 5.0], [1.0, -5.0], [2.0, -50.0], [3.0, 5.0], [4.0, 25.0], [5.0, -15.0]];
+        let parts = within(&points, [0.0, 10.0]);
+        let expected: [&[[f64; 2]]; 3] = [
+            &[[0.0, 5.0], [0.5, 0.0]],
+            &[[2.0 + 50.0 / 55.0, 0.0], [3.0, 5.0], [3.25, 10.0]],
+            &[[4.375, 10.0], [4.625, 0.0]],
+        ];
+        assert_eq!(parts, expected);
+        assert_eq!(within(&points, [-100.0, 100.0]), [points]);
+        assert!(within(&[], [0.0, 1.0]).is_empty());
+        assert_eq!(within(&[[3.0, 0.5]], [0.0, 1.0]), [[[3.0, 0.5]]]);
+        assert!(within(&[[0.0, 1e300], [1.0, 1e300]], [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn simpler_curves_stay_near() {
+        let points: Vec<_> = (0..1000).map(|at| f64::from(at) * 0.4).map(|x| [x, 30.0 * libm::sin(x / 20.0)]).collect();
+        let simple = simplified(&points, 0.1);
+        assert!(simple.len() > 20 && simple.len() < 150, "{}", simple.len());
+        assert_eq!((simple[0], simple[simple.len() - 1]), (points[0], points[999]));
+        for [x, y] in points {
+            let at = simple.iter().rposition(|point| point[0] <= x).unwrap().min(simple.len() - 2);
+            let [from, to] = [simple[at], simple[at + 1]];
+            let on = from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]);
+            assert!((on - y).abs() < 0.15, "{x}: {on} {y}");
+        }
+        assert_eq!(simplified(&[[1.0, 2.0]], 0.1), [[1.0, 2.0]]);
+        assert!(simplified(&[], 0.1).is_empty());
+    }
+}

@@ -1,0 +1,36 @@
+//! Starts from which bodies seldom come back.
+
+use super::random;
+use crate::scene::file::StartShape;
+use crate::sim::body::{Dimension, bounds};
+use glam::DVec3;
+
+/// What the random numbers of clouds are for, besides the axis.
+const CLOUD: u64 = 16;
+
+/// Brings nodes (m) from where they are at rest to a start of a shape, with a unit direction for what has one and a seed
+/// for what is random.
+pub(in crate::scene) fn brought_to_start(
+    nodes: &mut [DVec3],
+    shape: StartShape,
+    direction: DVec3,
+    seed: u32,
+    dimension: Dimension,
+) {
+    let middle = nodes.iter().sum::<DVec3>() / nodes.len().max(1) as f64;
+    let (low, high) = bounds(nodes);
+    for (index, node) in nodes.iter_mut().enumerate() {
+        let along = direction.dot(*node - middle) * direction;
+        *node = match shape {
+            StartShape::Point => middle,
+            StartShape::Line => middle + along,
+            StartShape::Plane => *node - along,
+            StartShape::MirrorImage => *node - 2.0 * along,
+            StartShape::Cloud => {
+                let share = |axis: u64| random::unit(seed, index as u64, CLOUD + axis);
+                let flat = dimension == Dimension::Plane;
+                low + DVec3::new(share(0), share(1), if flat { 0.0 } else { share(2) }) * (high - low)
+            }
+        };
+    }
+}

@@ -1,0 +1,37 @@
+//! Starts from which a body of the shape model comes back and one of springs does not: the figure `restore`.
+
+use crate::support::{after, shipped};
+use localshape::sim::snapshot::Status;
+
+#[test]
+fn every_start_comes_back_with_local_shapes_and_none_with_springs() {
+    for start in ["point", "line", "plane", "mirror", "cloud-1", "cloud-2"] {
+        let scene = shipped(&format!("elements/restore-{start}"), &[]);
+        let extent = scene.body.extent();
+        let shape = after(&scene, "Local shape", 3.0).diagnostics;
+        assert!(shape.shape_error < 1e-6 * extent && shape.turned_over == 0, "{start}: {shape:?}");
+        assert!((shape.volume_ratio - 1.0).abs() < 1e-6, "{start}: {shape:?}");
+        let springs = after(&scene, "Mass-spring", 3.0);
+        let found = springs.diagnostics;
+        assert!(found.shape_error > 0.3 * extent, "{start}: {found:?}");
+        assert_eq!(springs.status, Status::Ok);
+        // What has no depth gets none, what is inside out stays so, and the rest is tangled.
+        match start {
+            "point" | "line" | "plane" => assert!(found.volume_ratio.abs() < 1e-9, "{start}: {found:?}"),
+            "mirror" => assert_eq!(found.turned_over, 27),
+            _ => assert!(found.turned_over >= 9 && found.volume_ratio < 0.5, "{start}: {found:?}"),
+        }
+    }
+}
+
+/// The two clouds of the figure are the first two, not the best of many.
+#[test]
+fn other_clouds_come_back_too() {
+    for seed in 3..9 {
+        let scene = shipped("elements/restore-cloud-1", &[("seed = 1", &format!("seed = {seed}"))]);
+        let found = after(&scene, "Local shape", 3.0).diagnostics;
+        assert!(found.shape_error < 1e-6 * scene.body.extent() && found.turned_over == 0, "{seed}: {found:?}");
+        let springs = after(&scene, "Mass-spring", 3.0).diagnostics;
+        assert!(springs.turned_over >= 9, "{seed}: {springs:?}");
+    }
+}

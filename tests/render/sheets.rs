@@ -1,0 +1,239 @@
+//! Contact sheets: nothing overlaps, nothing is cut, and what is said is what was simulated.
+
+use super::words::overlapping;
+use glam::Vec3;
+use localshape::moments::Moments;
+use localshape::picture::{MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
+use localshape::scene::Limits;
+use localshape::scene::figure::{Content, Figure, Sheet};
+use localshape::sim::snapshot::Status;
+
+const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];
+/// Type is never smaller than this (px).
+const SMALLEST_TYPE: f32 = 5.0;
+
+fn sheet(figure: &Figure) -> &Sheet {
+    let Content::Sheet(sheet) = &figure.content else { panic!("a contact sheet") };
+    sheet
+}
+
+/// A figure of a user's own of scenes that ship.
+fn own(text: &str) -> Figure {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("own.toml");
+    std::fs::write(&path, text.replace("scene = '", &format!("scene = '{scenes}"))).expect("a file");
+    Figure::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Sheets that are not like those of the paper.
+fn others() -> Vec<Figure> {
+    let moments = |count: usize| (0..count).map(|at| format!("{}", at as f64 * 0.07)).collect::<Vec<_>>().join(", ");
+    let rows = |count: usize| {
+        let row = |at: usize| format!("[[sheet.row]]\nrun = 'Mass-spring'\ntime = {}\n", at as f64 * 0.1);
+        (0..count).map(row).collect::<String>()
+    };
+    let long = "A text that goes on and on, as captions do. ".repeat(8);
+    [
+        format!("[sheet]\nscene = 'fig4b.toml'\nmoments = [{}]\nstrips = ['turned_over', 'kinetic']\n", moments(40)),
+        format!("[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\nlabel = 'A label that is long'\n{}", rows(20)),
+        format!(
+            "title = '{}'\ncaption = '{long}'\n[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 1, 2.99, 3]\n\
+             strips = ['turned_over', 'shape_error', 'volume_ratio', 'kinetic', 'elastic', 'residual']\n",
+            &long[..190]
+        ),
+        "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 0.3, 0.6, 1]\nnumber = 'volume_ratio'\n".to_owned(),
+        "[sheet]\nscene = 'fig4a.toml'\nmoments = [0, 0.7, 1.45, 2.2, 5]\n".to_owned(),
+        "[sheet]\nscene = 'fig4a.toml'\nmoments = [0.5]\n".to_owned(),
+        "title = 'x'\n[sheet]\nscene = 'explicit-euler.toml'\nmoments = [0, 0.5, 1]\nstrips = ['energy']\n".to_owned(),
+        "title = 'Several'\n[sheet]\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0.03\nlabel = 'dropped'\n\
+         [[sheet.column]]\nscene = 'fig4c.toml'\ntime = 1.2\nlabel = 'pressed'\n\
+         [[sheet.column]]\nscene = 'fig4a.toml'\ntime = 1.5\nlabel = 'in the plane'\n"
+            .to_owned(),
+    ]
+    .iter()
+    .map(|text| own(text))
+    .collect()
+}
+
+fn all() -> Vec<Figure> {
+    SHEETS.iter().filter_map(|name| Figure::built_in(name)).chain(others()).collect()
+}
+
+/// The words in a tile.
+fn within<'p>(picture: &'p Picture, panel: &'p Panel) -> impl Iterator<Item = &'p TextRun> {
+    let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+    let inside = move |word: &&TextRun| {
+        let [x, y, x2, y2] = word.bounds();
+        left <= x && x2 <= left + width && top <= y && y2 <= top + height
+    };
+    picture.words.iter().filter(inside)
+}
+
+#[test]
+fn no_words_overlap_and_all_can_be_read() {
+    for mut figure in all() {
+        let moments = Moments::new(&figure);
+        for size in [[2400, 1350], [1200, 675], [640, 360], [480, 270], [3000, 1700], [700, 1200], [200, 150], [64, 64]]
+        {
+            figure.size = size;
+            let picture = compose_figure(&figure, &moments);
+            if let Some([one, other]) = overlapping(&picture) {
+                panic!("“{}” lies over “{}” in {size:?} of {}", one.text, other.text, figure.title);
+            }
+            let [width, height] = size.map(|length| length as f32);
+            for word in &picture.words {
+                let [left, top, right, bottom] = word.bounds();
+                let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+                assert!(inside, "“{}” leaves the picture of {size:?}: {:?}", word.text, word.bounds());
+                assert!(word.size >= SMALLEST_TYPE, "“{}” in {size:?} is {} px high", word.text, word.size);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
+    for mut figure in all() {
+        let moments = Moments::new(&figure);
+        for size in [[2400, 1350], [640, 360], [900, 1400]] {
+            figure.size = size;
+            let picture = compose_figure(&figure, &moments);
+            let runs: Vec<_> = moments.cells.iter().flatten().collect();
+            assert_eq!(runs.len(), picture.panels.len());
+            let columns = &sheet(&figure).columns;
+            let mut scales = vec![None; sheet(&figure).scenes.len()];
+            for (at, (panel, run)) in picture.panels.iter().zip(runs).enumerate() {
+                // All tiles of a scene are seen from as far away.
+                let scale = panel.sight.element;
+                let first = *scales[columns[at % columns.len()].scene].get_or_insert(scale);
+                assert!((scale / first - 1.0).abs() < 1e-4, "{scale} and {first} in {}", figure.title);
+                if run.snapshot.status != Status::Ok {
+                    continue;
+                }
+                for vertex in panel.sound.vertices.iter().chain(&panel.turned_over.vertices) {
+                    let at = panel.sight.clip * Vec3::from(vertex.position).extend(1.0);
+                    let place = at.truncate().truncate() / at.w;
+                    assert!(place.abs().max_element() <= 0.999, "{place} in {:?} of {}", panel.viewport, figure.title);
+                }
+            }
+            // Tiles lie side by side, within the picture.
+            for (at, one) in picture.panels.iter().enumerate() {
+                let [x, y, width, height] = one.viewport;
+                assert!(x + width <= size[0] && y + height <= size[1], "{:?} in {size:?}", one.viewport);
+                for other in &picture.panels[..at] {
+                    let [x2, y2, width2, height2] = other.viewport;
+                    assert!(x + width <= x2 || x2 + width2 <= x || y + height <= y2 || y2 + height2 <= y);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn floors_of_the_paper_are_at_one_height() {
+    for name in ["fig4b", "fig4c"] {
+        let figure = Figure::built_in(name).expect("a figure of the paper");
+        let picture = compose_figure(&figure, &Moments::new(&figure));
+        let floors: Vec<_> = picture.panels.iter().map(|panel| panel.floor.as_ref().expect("a floor").height).collect();
+        assert!(floors.iter().all(|height| (height - floors[0]).abs() < 1e-6), "{name}: {floors:?}");
+        assert!(picture.panels.iter().all(|panel| panel.sight.eye == picture.panels[0].sight.eye));
+    }
+}
+
+#[test]
+fn counts_are_those_that_were_simulated() {
+    for figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)) {
+        let moments = Moments::new(&figure);
+        let picture = compose_figure(&figure, &moments);
+        for (panel, run) in picture.panels.iter().zip(moments.cells.iter().flatten()) {
+            let expected = run.snapshot.diagnostics.turned_over;
+            let count = within(&picture, panel).find(|word| word.weight == Weight::SemiBold).expect("a count");
+            assert_eq!(count.text, expected.to_string(), "{}", figure.title);
+            let colour = if expected > 0 { picture.palette.alarm_text } else { picture.palette.second_text };
+            assert_eq!(count.colour, colour);
+            let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+            let struck = picture.marks.iter().filter(|mark| {
+                let [x, y, ..] = mark.rectangle;
+                mark.shape == MarkShape::Struck && left <= x && x < left + width && top <= y && y < top + height
+            });
+            assert_eq!(struck.count(), expected, "{}", figure.title);
+            // One square for each element.
+            let squares = picture.marks.iter().filter(|mark| {
+                let [x, y, across, high] = mark.rectangle;
+                let inside = left <= x && x < left + width && top <= y && y < top + height;
+                inside && across == high && matches!(mark.shape, MarkShape::Filled | MarkShape::Struck)
+            });
+            assert_eq!(squares.count(), run.snapshot.turned_over.len(), "{}", figure.title);
+        }
+    }
+}
+
+/// What physics.md says of Fig. 4: which elements stay turned over, and what is left of the volume.
+#[test]
+fn the_last_columns_show_what_the_paper_tells() {
+    for (name, over, volume) in [("fig4a", 1, 0.86), ("fig4b", 9, 0.34), ("fig4c", 9, 0.33)] {
+        let figure = Figure::built_in(name).expect("a figure of the paper");
+        let moments = Moments::new(&figure);
+        let [shape, springs] = [0, 1].map(|row| &moments.cells[row].last().expect("a column").snapshot);
+        assert_eq!((shape.diagnostics.turned_over, springs.diagnostics.turned_over), (0, over), "{name}");
+        assert!((springs.diagnostics.volume_ratio - volume).abs() < 0.015, "{name}: {:?}", springs.diagnostics);
+        let least = if name == "fig4a" { 0.99 } else { 0.97 };
+        assert!(shape.diagnostics.volume_ratio > least, "{name}: {:?}", shape.diagnostics);
+    }
+    let figure = Figure::built_in("fig4a").expect("a figure of the paper");
+    let springs = &Moments::new(&figure).cells[1][4].snapshot;
+    assert_eq!(springs.turned_over, [false, false, false, false, false, true], "the triangle 1 0 6");
+}
+
+/// The letters in rings, from left to right, with the middles of their words.
+fn rings(picture: &Picture, top: f32) -> Vec<(&str, f32)> {
+    let letters = picture.words.iter().filter(|word| {
+        word.weight == Weight::SemiBold && word.baseline > top && word.text.chars().all(|c| c.is_ascii_lowercase())
+    });
+    letters.map(|word| (word.text.as_str(), (word.span[0] + word.span[1]) / 2.0)).collect()
+}
+
+#[test]
+fn letters_ascend_above_columns_and_over_time() {
+    let close = own(
+        "[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 0.023, 1, 2.99, 3]\nstrips = ['turned_over']\n",
+    );
+    for mut figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)).chain([close]) {
+        figure.size = [1600, 900];
+        let picture = compose_figure(&figure, &Moments::new(&figure));
+        let count = sheet(&figure).columns.len();
+        let letters: Vec<_> = (b'a'..).take(count).map(|byte| char::from(byte).to_string()).collect();
+        let top = picture.panels[0].viewport[1] as f32;
+        for (letter, panel) in letters.iter().zip(&picture.panels) {
+            let above =
+                picture.words.iter().find(|word| word.text == *letter && word.baseline < top).expect("a heading");
+            assert_eq!(above.span[0], panel.viewport[0] as f32);
+        }
+        let rings = rings(&picture, top);
+        let expected = if sheet(&figure).strips.is_empty() { &[][..] } else { &letters };
+        assert_eq!(rings.iter().map(|(letter, _)| *letter).collect::<Vec<_>>(), expected);
+        for two in rings.windows(2) {
+            assert!(two[1].1 - two[0].1 >= 20.0, "rings of 20 px do not touch: {rings:?}");
+        }
+    }
+}
+
+#[test]
+fn what_blew_up_is_said_and_has_no_count() {
+    let figure = own("[sheet]\nscene = 'explicit-euler.toml'\nmoments = [0, 1.5]\n");
+    let moments = Moments::new(&figure);
+    let picture = compose_figure(&figure, &moments);
+    let last = picture.panels.last().expect("a tile");
+    let said: Vec<_> = within(&picture, last).map(|word| word.text.as_str()).collect();
+    assert!(said.len() == 1 && said[0].starts_with("diverged at "), "{said:?}");
+}
+
+#[test]
+fn a_body_without_width_is_drawn_as_a_line_or_a_dot() {
+    let figure = Figure::built_in("restore").expect("a figure of the program");
+    let picture = compose_figure(&figure, &Moments::new(&figure));
+    let lengths: Vec<_> = picture.curves.iter().map(|curve| curve.points.len()).collect();
+    // The point, the line, and both once more for the springs.
+    assert_eq!(lengths, [1, 2, 1, 2]);
+}

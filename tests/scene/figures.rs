@@ -1,0 +1,155 @@
+//! Figure files: every mistake is said where it is, in words that help.
+
+use localshape::scene::figure::{Content, Figure, NAMES, Sheet};
+use localshape::scene::{Limits, SceneError};
+use std::path::Path;
+
+/// Reads a figure beside a scene `fig4b.toml` of 3 s, one of the plane and one without a run `Mass-spring`.
+fn load(text: &str) -> Result<Figure, SceneError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lone = "time.duration = 1\nbody.lattice = { cells = [1, 1, 1], side = 1 }\n\
+                run = [{ name = 'Local shape', model = { kind = 'shape-based', stiffness = 1 } }]\n";
+    for (name, scene) in [
+        ("fig4b.toml", super::shipped("fig4b.toml")),
+        ("fig4a.toml", super::shipped("fig4a.toml")),
+        ("lone.toml", lone.to_owned()),
+        ("broken.toml", "time.duration = -1\n".to_owned()),
+        ("figure.toml", text.to_owned()),
+    ] {
+        std::fs::write(folder.path().join(name), scene).expect("a file");
+    }
+    Figure::load(&folder.path().join("figure.toml"), &Limits::default())
+}
+
+fn sheet(text: &str) -> Sheet {
+    match load(text).map(|figure| figure.content) {
+        Ok(Content::Sheet(sheet)) => sheet,
+        Ok(Content::Forces(_)) => panic!("no sheet"),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn every_mistake_is_said_where_it_is() {
+    let cases: [(&str, usize, usize, &str); 22] = [
+        ("title = 'x'", 1, 1, "the figure shows nothing: expected a table `[sheet]` or `[forces]`"),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[forces]\nscenes = ['fig4b.toml']", 1, 1, "keep one of them"),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoment = [0]", 3, 1, "unknown key `moment` in `sheet`"),
+        ("[sheet]\nscene = 'fig4b.toml'", 1, 1, "the sheet has no columns: expected `moments` or `[[sheet.column]]`"),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoments = []", 3, 11, "`sheet.moments`"),
+        ("[sheet]\nscene = 'nowhere.toml'\nmoments = [0]", 2, 9, "nowhere.toml: there is no such file"),
+        ("[sheet]\nmoments = [0]", 2, 1, "there is no `scene` beside the moments that are shown of it"),
+        ("[sheet]\n[[sheet.column]]\ntime = 0", 2, 1, "the column has no scene: expected `scene` here or in `[sheet]`"),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[[sheet.column]]\ntime = 0",
+            3,
+            1,
+            "both `moments` and `column` are given",
+        ),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 3.5]", 3, 15, "ends at 3 s; expected a moment up to then"),
+        ("[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\ntime = 9", 4, 8, "ends at 3 s"),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoments = [-1]", 3, 12, "expected a number of at least 0"),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\nlabel = 'x'",
+            3,
+            1,
+            "the column has no `time`, and neither has the row “Local shape”",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[[sheet.row]]\nrun = 'Local shap'",
+            5,
+            7,
+            "has no run “Local shap”; its runs are “Local shape” and “Mass-spring”",
+        ),
+        (
+            "[sheet]\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0\n[[sheet.column]]\nscene = 'lone.toml'\ntime = 0",
+            1,
+            1,
+            "has no run “Mass-spring”; its runs are “Local shape”",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Local shape'\ntime = 4",
+            6,
+            8,
+            "ends at 3 s",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\nstrips = ['shape_eror']",
+            4,
+            11,
+            "did you mean \"shape_error\"?",
+        ),
+        (
+            "[sheet]\nstrips = ['energy']\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0\n[[sheet.column]]\n\
+             scene = 'fig4a.toml'\ntime = 0",
+            2,
+            1,
+            "strips are of one scene, but the columns show several",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 1]\nstrips = ['energy']\nfrom = 0.5",
+            5,
+            8,
+            "the axis of time begins at 0.5 s, but there is a moment at 0 s",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [3]\nstrips = ['energy']\nfrom = 4",
+            5,
+            8,
+            "but the scene ends at 3 s",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\nstrips = ['energy']\nfrom = 0.5\nsplit = 0.5",
+            6,
+            9,
+            "goes from 0.5 to 3 s; expected a moment between, found 0.5",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\nsplit = 1",
+            4,
+            1,
+            "`sheet.split` is about strips, but there are none",
+        ),
+    ];
+    for (text, line, column, words) in cases {
+        let Err(error) = load(text) else { panic!("this was taken for a good figure:\n{text}") };
+        let [mistake] = error.mistakes() else { panic!("one mistake in\n{text}\n{error}") };
+        assert_eq!((mistake.line, mistake.column), (line, column), "{error}");
+        let said = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        assert!(said.contains(words), "{words:?} is not in\n{error}");
+    }
+}
+
+#[test]
+fn mistakes_in_a_scene_are_shown_in_the_scene() {
+    let Err(error) = load("[sheet]\nscene = 'broken.toml'\nmoments = [0]") else { panic!("a broken scene") };
+    assert!(error.to_string().contains("broken.toml:1:"), "{error}");
+}
+
+#[test]
+fn what_is_not_said_follows_from_the_scene() {
+    let found = sheet("[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 1.5]");
+    let rows: Vec<_> = found.rows.iter().map(|row| (row.run.as_str(), row.label.as_str())).collect();
+    assert_eq!(rows, [("Local shape", "Local shape"), ("Mass-spring", "Mass-spring")]);
+    assert_eq!((found.scenes.len(), found.columns.len(), found.from, found.split), (1, 2, 0.0, None));
+    assert_eq!(found.cell(1, 1), (0, 1, 1.5));
+    // A row's own time comes before that of the column, and a scene named twice is read once.
+    let found = sheet(
+        "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\ntime = 1\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 2\n\
+         [[sheet.row]]\nrun = 'Mass-spring'\ntime = 0.5",
+    );
+    assert_eq!((found.scenes.len(), found.cell(0, 1)), (1, (0, 1, 0.5)));
+}
+
+#[test]
+fn figures_of_the_program_are_those_in_the_folder() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("figures");
+    for name in NAMES {
+        let there = Figure::load(&folder.join(name).with_extension("toml"), &Limits::default());
+        let there = there.unwrap_or_else(|error| panic!("{error}"));
+        let within = Figure::built_in(name).expect("one of the names");
+        let digests = |figure: &Figure| figure.scenes().iter().map(|scene| scene.digest.clone()).collect::<Vec<_>>();
+        assert_eq!(digests(&there), digests(&within));
+        assert_eq!((there.title, there.size), (within.title, within.size));
+    }
+}
