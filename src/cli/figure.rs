@@ -2,20 +2,20 @@
 
 use super::console;
 use super::driver;
-use super::failure::{Failure, Status};
+use super::failure::{Failure, Status, with_causes};
 use super::interrupt;
 use super::options::processors;
-use super::render::{samples, size};
+use super::record;
+use super::render::{failed, samples, size};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::moments::{Moments, Taking};
-use crate::output::{self, OutputError};
+use crate::output::{self, AtomicFile, OutputError};
 use crate::picture::compose_figure;
 use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, Theme, nearest_name};
 use crate::sim::snapshot::{RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
-use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -31,8 +31,8 @@ are a good start for your own.";
 
 /// Where figures go if nothing else is said.
 const FOLDER: &str = "output/figures";
-/// Steps of each simulation after which the user is listened to.
-const SLICE: u64 = 200;
+/// The shortest side of a figure (px).
+const LEAST_SIDE: u32 = 64;
 
 /// Draw the paper's figures, or figures of your own, as single pictures
 #[derive(Args, Debug)]
@@ -94,21 +94,16 @@ enum ThemeOption {
 impl FigureCommand {
     pub(super) fn run(self) -> Result<Status, Failure> {
         if self.figures.is_empty() {
+            if self.json {
+                console::print_json(&json!({ "names": NAMES }))?;
+                return Ok(Status::Done);
+            }
             console::print(&format!("figures: {}, fig4 (all of Fig. 4), all\n", NAMES.join(", ")))?;
             return Ok(Status::Done);
         }
         let mut figures = self.load()?;
         for figure in &mut figures {
-            figure.size = self.size.unwrap_or(figure.size);
-            if let Some(times) = self.scale {
-                figure.size = figure.size.map(|side| (f64::from(side) * times).round() as u32);
-            }
-            if let Some(theme) = self.theme {
-                figure.set_theme(match theme {
-                    ThemeOption::Light => Theme::Light,
-                    ThemeOption::Dark => Theme::Dark,
-                });
-            }
+            self.fit(figure)?;
         }
         let paths = self.paths(&figures)?;
         let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
@@ -118,72 +113,112 @@ impl FigureCommand {
             return Err(Failure::usage(message));
         }
         interrupt::listen();
-        let threads = self.threads.map_or_else(processors, usize::from);
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| {
-            Failure::usage(format!("--threads: the system does not start so many threads ({error})"))
-        })?;
-        std::fs::create_dir_all(&self.out)
-            .map_err(|source| Failure::from(OutputError::Write { path: self.out.clone(), source }))?;
+        let pool = record::pool(self.threads.map_or_else(processors, usize::from))?;
+        std::fs::create_dir_all(&self.out).map_err(OutputError::writing(&self.out))?;
         output::remove_leftovers(&self.out)?;
         let mut made = Vec::new();
+        let mut result = Ok(Status::Done);
         for (figure, path) in figures.iter().zip(&paths) {
-            let Some(moments) = pool.install(|| self.take(figure)) else {
-                self.tell(&made)?;
-                return Ok(Status::Interrupted);
-            };
-            let picture = compose_figure(figure, &moments);
-            let drawn = Renderer::new(&gpu, figure.size, self.samples).and_then(|mut one| one.draw(&picture));
-            let image = drawn.map_err(|error| Failure::adapter(&error))?;
-            let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
-            let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
-            output::write_whole(path, &output::encode_figure(figure.size, image.as_raw(), &tags))?;
-            made.push((figure, path, numbers(figure, &moments)));
+            match pool.install(|| self.make(figure, path, &gpu)) {
+                Ok(Some(numbers)) => made.push((figure, path, numbers)),
+                Ok(None) => result = Ok(Status::Interrupted),
+                Err(failure) => result = Err(failure),
+            }
+            if !matches!(result, Ok(Status::Done)) {
+                break;
+            }
         }
+        // What was finished is told before the failure.
         self.tell(&made)?;
-        Ok(Status::Done)
+        result
+    }
+
+    /// Gives a figure the size and the colours that are asked for.
+    fn fit(&self, figure: &mut Figure) -> Result<(), Failure> {
+        figure.size = self.size.unwrap_or(figure.size);
+        if let Some(times) = self.scale {
+            figure.size = figure.size.map(|side| (f64::from(side) * times).round() as u32);
+        }
+        let [width, height] = figure.size;
+        if width.min(height) < LEAST_SIDE {
+            let message = format!(
+                "{}: {width}×{height} is too small; a figure has at least {LEAST_SIDE} pixels a side",
+                figure.name
+            );
+            return Err(Failure::usage(message));
+        }
+        if let Some(theme) = self.theme {
+            figure.set_theme(match theme {
+                ThemeOption::Light => Theme::Light,
+                ThemeOption::Dark => Theme::Dark,
+            });
+        }
+        Ok(())
+    }
+
+    /// Makes one figure and returns the numbers behind it; `None` if the user asked to stop. That its file can be written
+    /// is found out before the work.
+    fn make(&self, figure: &Figure, path: &Path, gpu: &Gpu) -> Result<Option<Value>, Failure> {
+        let mut file = AtomicFile::create(path)?;
+        let Some(moments) = self.take(figure) else { return Ok(None) };
+        let picture = compose_figure(figure, &moments).map_err(|error| {
+            let [width, height] = figure.size;
+            Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
+        })?;
+        let drawn = Renderer::new(gpu, figure.size, self.samples).and_then(|mut renderer| renderer.draw(&picture));
+        let image = drawn.map_err(failed)?;
+        let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
+        let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
+        file.append(&output::encode_figure(figure.size, image.as_raw(), &tags))?;
+        file.commit()?;
+        Ok(Some(numbers(figure, &moments)))
     }
 
     /// All figures that are asked for, each once.
     fn load(&self) -> Result<Vec<Figure>, Failure> {
-        let mut figures: Vec<Figure> = Vec::new();
-        let mut add = |figure: Figure| {
-            if !figures.iter().any(|known| known.name == figure.name) {
-                figures.push(figure);
-            }
-        };
+        let mut figures: Vec<(Figure, PathBuf)> = Vec::new();
         for asked in &self.figures {
-            let meant = NAMES
-                .iter()
-                .filter(|name| asked == "all" || *name == asked || asked == "fig4" && name.starts_with("fig4"));
-            let meant: Vec<_> = meant.filter_map(|name| Figure::built_in(name)).collect();
-            if !meant.is_empty() {
-                meant.into_iter().for_each(&mut add);
-                continue;
-            }
+            let is_meant = |name: &str| asked == "all" || name == asked || asked == "fig4" && name.starts_with("fig4");
+            let meant: Vec<_> = NAMES.into_iter().filter(|name| is_meant(name)).collect();
             let is_path = asked.contains(['/', '\\']) || asked.ends_with(".toml") || Path::new(asked).exists();
-            if !is_path {
+            let found: Vec<(Figure, PathBuf)> = if !meant.is_empty() {
+                // A built-in figure is not at any path.
+                meant.into_iter().filter_map(|name| Some((Figure::built_in(name)?, PathBuf::new()))).collect()
+            } else if is_path {
+                let figure = Figure::load(Path::new(asked), &Limits::default()).map_err(|error| {
+                    match error.is_unreadable() {
+                        true => Failure::files(with_causes(&error)),
+                        false => Failure::usage(error.to_string()),
+                    }
+                })?;
+                vec![(figure, PathBuf::from(asked))]
+            } else {
                 return Err(Failure::usage(unknown(asked)));
-            }
-            let figure = Figure::load(Path::new(asked), &Limits::default());
-            add(figure.map_err(|error| {
-                if error.is_unreadable() {
-                    Failure::files(super::failure::with_causes(&error))
-                } else {
-                    Failure::usage(error.to_string())
+            };
+            for (figure, path) in found {
+                match figures.iter().find(|(known, _)| known.name == figure.name) {
+                    None => figures.push((figure, path)),
+                    Some((_, known)) if *known == path => {}
+                    Some(_) => {
+                        let file = self.out.join(format!("{}.png", figure.name));
+                        let message =
+                            format!("two figures would both go to {}; draw them one at a time with -o", file.display());
+                        return Err(Failure::usage(message));
+                    }
                 }
-            })?);
+            }
         }
-        Ok(figures)
+        Ok(figures.into_iter().map(|(figure, _)| figure).collect())
     }
 
     /// Where each figure goes; nothing of others is replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
         let path = |figure: &Figure| {
-            let path = self.out.join(format!("{}.png", figure.name));
-            if !self.overwrite && path.exists() && !output::is_figure(&path)? {
-                let what = "a file of that name that is no figure of this program".to_owned();
-                return Err(Failure::from(OutputError::Occupied { path, what }));
+            let name = format!("{}.png", figure.name);
+            let path = self.out.join(&name);
+            if path.is_dir() || !self.overwrite && path.exists() && !output::is_figure(&path)? {
+                let what = format!("{name}, which is no figure of this program");
+                return Err(Failure::from(OutputError::Occupied { path: self.out.clone(), what }));
             }
             Ok(path)
         };
@@ -193,10 +228,11 @@ impl FigureCommand {
     /// What a figure shows of its simulations; `None` if the user asked to stop.
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure);
+        let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
         let bar = console::progress(&figure.name, taking.steps()[1], self.quiet || self.json);
         let mut is_there = false;
         while !is_there && !interrupt::requested() {
-            is_there = taking.advance(SLICE);
+            is_there = taking.advance(slice);
             bar.set_position(taking.steps()[0]);
         }
         bar.finish_and_clear();

@@ -254,7 +254,7 @@ impl Recording<'_> {
 
 /// Steps of each run after which the user is listened to: some milliseconds' worth, at some 20 ns for each corner of an
 /// element. A frame seldom takes more.
-fn slice(body: &Body) -> u64 {
+pub(super) fn slice(body: &Body) -> u64 {
     const CORNERS: usize = 250_000;
     (CORNERS / body.elements.indices().len().max(1)).max(1) as u64
 }

@@ -162,7 +162,7 @@ impl Pictures for Drawing<'_> {
 }
 
 /// The device stopped working or refused.
-fn failed(error: RenderError) -> Failure {
+pub(super) fn failed(error: RenderError) -> Failure {
     Failure::adapter(&error)
 }
 

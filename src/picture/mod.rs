@@ -39,7 +39,7 @@ mod text;
 mod wire;
 
 pub use camera::{Framing, Lens, Middles, framing};
-pub use compose::{Composer, compose, compose_figure};
+pub use compose::{Composer, NoRoom, compose, compose_figure};
 pub use layout::Rectangle;
 pub use palette::{Colour, Palette};
 pub use ramp::SHADES;

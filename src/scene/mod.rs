@@ -41,6 +41,7 @@ pub use view::{
     Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
     Visible,
 };
+#[cfg(feature = "render")]
 pub(crate) use words::nearest as nearest_name;
 
 use crate::sim::body::{Body, State};

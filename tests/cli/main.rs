@@ -2,6 +2,8 @@
 
 mod check;
 mod disk;
+#[cfg(feature = "render")]
+mod figure;
 mod folders;
 mod info;
 mod interrupt;

@@ -5,7 +5,7 @@ use localshape::output::{Tags, read_tags};
 use std::path::Path;
 
 /// Whether something can be drawn here; says so if not. Machines that must be able to say `LOCALSHAPE_REQUIRE_GPU=1`.
-fn can_draw() -> bool {
+pub(crate) fn can_draw() -> bool {
     let found = Place::new().run("info --json").good().json();
     let any = !found["adapters"].as_array().unwrap().is_empty();
     assert!(any || std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no graphics adapter");

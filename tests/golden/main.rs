@@ -183,7 +183,7 @@ fn every_figure_looks_as_it_did() {
         let [width, height] = figure.size;
         figure.size = [SHEET, SHEET * height / width];
         let moments = Moments::new(&figure);
-        let picture = compose_figure(&figure, &moments);
+        let picture = compose_figure(&figure, &moments).expect("room");
         let image = Renderer::new(&gpu, figure.size, 4).expect("a renderer").draw(&picture).expect("a picture").into();
         let start = |scene: &Scene| {
             let snapshot = |run: usize| RunFrame { run, snapshot: scene.world(run).snapshot() };

@@ -7,7 +7,7 @@ use localshape::scene::figure::Figure;
 fn picture(name: &str, size: [u32; 2]) -> Picture {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.size = size;
-    compose_figure(&figure, &Moments::default())
+    compose_figure(&figure, &Moments::default()).expect("room")
 }
 
 fn texts(picture: &Picture) -> Vec<&str> {

@@ -77,7 +77,7 @@ fn no_words_overlap_and_all_can_be_read() {
         for size in [[2400, 1350], [1200, 675], [640, 360], [480, 270], [3000, 1700], [700, 1200], [200, 150], [64, 64]]
         {
             figure.size = size;
-            let picture = compose_figure(&figure, &moments);
+            let picture = compose_figure(&figure, &moments).expect("room");
             if let Some([one, other]) = overlapping(&picture) {
                 panic!("“{}” lies over “{}” in {size:?} of {}", one.text, other.text, figure.title);
             }
@@ -98,7 +98,7 @@ fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
         let moments = Moments::new(&figure);
         for size in [[2400, 1350], [640, 360], [900, 1400]] {
             figure.size = size;
-            let picture = compose_figure(&figure, &moments);
+            let picture = compose_figure(&figure, &moments).expect("room");
             let runs: Vec<_> = moments.cells.iter().flatten().collect();
             assert_eq!(runs.len(), picture.panels.len());
             let columns = &sheet(&figure).columns;
@@ -134,7 +134,7 @@ fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
 fn floors_of_the_paper_are_at_one_height() {
     for name in ["fig4b", "fig4c"] {
         let figure = Figure::built_in(name).expect("a figure of the paper");
-        let picture = compose_figure(&figure, &Moments::new(&figure));
+        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
         let floors: Vec<_> = picture.panels.iter().map(|panel| panel.floor.as_ref().expect("a floor").height).collect();
         assert!(floors.iter().all(|height| (height - floors[0]).abs() < 1e-6), "{name}: {floors:?}");
         assert!(picture.panels.iter().all(|panel| panel.sight.eye == picture.panels[0].sight.eye));
@@ -145,7 +145,7 @@ fn floors_of_the_paper_are_at_one_height() {
 fn counts_are_those_that_were_simulated() {
     for figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)) {
         let moments = Moments::new(&figure);
-        let picture = compose_figure(&figure, &moments);
+        let picture = compose_figure(&figure, &moments).expect("room");
         for (panel, run) in picture.panels.iter().zip(moments.cells.iter().flatten()) {
             let expected = run.snapshot.diagnostics.turned_over;
             let count = within(&picture, panel).find(|word| word.weight == Weight::SemiBold).expect("a count");
@@ -201,7 +201,7 @@ fn letters_ascend_above_columns_and_over_time() {
     );
     for mut figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)).chain([close]) {
         figure.size = [1600, 900];
-        let picture = compose_figure(&figure, &Moments::new(&figure));
+        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
         let count = sheet(&figure).columns.len();
         let letters: Vec<_> = (b'a'..).take(count).map(|byte| char::from(byte).to_string()).collect();
         let top = picture.panels[0].viewport[1] as f32;
@@ -223,7 +223,7 @@ fn letters_ascend_above_columns_and_over_time() {
 fn what_blew_up_is_said_and_has_no_count() {
     let figure = own("[sheet]\nscene = 'explicit-euler.toml'\nmoments = [0, 1.5]\n");
     let moments = Moments::new(&figure);
-    let picture = compose_figure(&figure, &moments);
+    let picture = compose_figure(&figure, &moments).expect("room");
     let last = picture.panels.last().expect("a tile");
     let said: Vec<_> = within(&picture, last).map(|word| word.text.as_str()).collect();
     assert!(said.len() == 1 && said[0].starts_with("diverged at "), "{said:?}");
@@ -232,7 +232,7 @@ fn what_blew_up_is_said_and_has_no_count() {
 #[test]
 fn a_body_without_width_is_drawn_as_a_line_or_a_dot() {
     let figure = Figure::built_in("restore").expect("a figure of the program");
-    let picture = compose_figure(&figure, &Moments::new(&figure));
+    let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
     let lengths: Vec<_> = picture.curves.iter().map(|curve| curve.points.len()).collect();
     // The point, the line, and both once more for the springs.
     assert_eq!(lengths, [1, 2, 1, 2]);

@@ -31,7 +31,7 @@ fn sheet(text: &str) -> Sheet {
 
 #[test]
 fn every_mistake_is_said_where_it_is() {
-    let cases: [(&str, usize, usize, &str); 22] = [
+    let cases: &[(&str, usize, usize, &str)] = &[
         ("title = 'x'", 1, 1, "the figure shows nothing: expected a table `[sheet]` or `[forces]`"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[forces]\nscenes = ['fig4b.toml']", 1, 1, "keep one of them"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoment = [0]", 3, 1, "unknown key `moment` in `sheet`"),
@@ -110,8 +110,23 @@ fn every_mistake_is_said_where_it_is() {
             1,
             "`sheet.split` is about strips, but there are none",
         ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
+            6,
+            1,
+            "both a row and a column say the moment of the same picture",
+        ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nstrips = ['energy']\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
+            7,
+            1,
+            "strips mark the moments of columns",
+        ),
+        ("[forces]\nscenes = ['fig4b.toml', 'none.toml']", 2, 26, "none.toml: there is no such file"),
+        ("[forces]\nscenes = ['fig4b.toml']\ncompare = 'Local shap'", 3, 11, "did you mean “Local shape”?"),
+        ("[forces]\nscenes = ['fig4b.toml']\nnotes = ['a', 'b', 'c']", 3, 9, "more notes (3) than runs (2)"),
     ];
-    for (text, line, column, words) in cases {
+    for &(text, line, column, words) in cases {
         let Err(error) = load(text) else { panic!("this was taken for a good figure:\n{text}") };
         let [mistake] = error.mistakes() else { panic!("one mistake in\n{text}\n{error}") };
         assert_eq!((mistake.line, mistake.column), (line, column), "{error}");
@@ -133,9 +148,9 @@ fn what_is_not_said_follows_from_the_scene() {
     assert_eq!(rows, [("Local shape", "Local shape"), ("Mass-spring", "Mass-spring")]);
     assert_eq!((found.scenes.len(), found.columns.len(), found.from, found.split), (1, 2, 0.0, None));
     assert_eq!(found.cell(1, 1), (0, 1, 1.5));
-    // A row's own time comes before that of the column, and a scene named twice is read once.
+    // Rows may say the moments, and a scene named twice is read once.
     let found = sheet(
-        "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\ntime = 1\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 2\n\
+        "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\n[[sheet.column]]\nscene = 'fig4b.toml'\n\
          [[sheet.row]]\nrun = 'Mass-spring'\ntime = 0.5",
     );
     assert_eq!((found.scenes.len(), found.cell(0, 1)), (1, (0, 1, 0.5)));

@@ -176,13 +176,14 @@ static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     schema
 });
 
-/// The look of a figure: that of its first scene, in another theme if it says so.
+/// The look of a figure: that of its first scene, in another theme if it says so, and never without a background.
 fn look(first: &Scene, theme: Option<Theme>) -> Look {
-    match theme {
+    let look = match theme {
         Some(theme) if theme != first.view.look.theme => {
             let Look { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
             Look { font, text_scale, line_scale, margin, ..Look::of(theme) }
         }
         _ => first.view.look.clone(),
-    }
+    };
+    Look { transparent: false, ..look }
 }

@@ -139,6 +139,11 @@ impl Scenes<'_, '_, '_> {
             self.report.at_key(&at("strips"), "strips are of one scene, but the columns show several", None);
         }
         self.check_times(&file.strips, file.from, file.split, &resolved);
+        if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {
+            let path = [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key("time")];
+            let message = "strips mark the moments of columns, but here a row has one of its own";
+            self.report.at_key(&path, message, "leave out `sheet.strips`, or say the moments in columns".to_owned());
+        }
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
             run: row.run,
@@ -198,6 +203,12 @@ impl Scenes<'_, '_, '_> {
                 }
             }
         }
+        let timed = rows.iter().position(|row| row.time.is_some());
+        if let Some(index) = timed.filter(|_| columns.iter().any(|column| column.time.is_some())) {
+            let path = [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key("time")];
+            let message = "both a row and a column say the moment of the same picture";
+            self.report.at_key(&path, message, "keep the moments of rows, or those of columns".to_owned());
+        }
         let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
             let scene = &self.scenes[column.scene];
@@ -239,6 +250,30 @@ impl Scenes<'_, '_, '_> {
             }
             place
         });
+        if file.notes.len() > runs.len() {
+            let message = format!("there are more notes ({}) than runs ({})", file.notes.len(), runs.len());
+            self.report.at(
+                &[Way::Key("forces"), Way::Key("notes")],
+                message,
+                "expected one for each at most".to_owned(),
+            );
+        }
+        if runs.len() == 1 && compare.is_some() {
+            let message = "there is a single run, and nothing to compare it with";
+            self.report.at_key(&[Way::Key("forces"), Way::Key("compare")], message, None);
+        }
+        let side = self.scenes[0].view.side;
+        if let Some(index) = self
+            .scenes
+            .iter()
+            .position(|scene| (scene.view.side / side - 1.0).abs() > 1e-3 && file.numbers == NumbersFile::Force)
+        {
+            let message = format!(
+                "the elements of this scene have sides of {} m, those of the first of {side} m: numbers in `k × side` would mean two things",
+                self.scenes[index].view.side
+            );
+            self.report.at(&path(index), message, "take bodies of one size, or `numbers = \"none\"`".to_owned());
+        }
         let mut notes = file.notes;
         notes.resize(runs.len(), String::new());
         let numbers = file.numbers == NumbersFile::Force;

@@ -1,5 +1,6 @@
 //! Diagrams of forces: what each model does to the nodes at the start of a scene.
 
+use super::NoRoom;
 use super::header;
 use super::labels::Labels;
 use crate::colour::{Colour, mixed};
@@ -76,7 +77,7 @@ struct Cell<'a> {
 }
 
 /// Composes a diagram.
-pub(super) fn compose(figure: &Figure, forces: &Forces) -> Picture {
+pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoom> {
     let scenes: Vec<Scene> = forces.scenes.iter().map(|scene| bare(scene, figure)).collect();
     let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
     let fonts = Fonts::new(&figure.look.font);
@@ -108,7 +109,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Picture {
     }
     let side_room = if forces.numbers { LABEL_ROOM } else { BARE_ROOM } * unit;
     let boxes = fit(&mut cells, columns, side_room, scale, runs > 1 && rows > 1);
-    let Some((pixels, centres)) = boxes else { return empty(figure, fonts) };
+    let (pixels, centres) = boxes.ok_or(NoRoom)?;
 
     let (mut panels, mut under, mut above) = (Vec::new(), Vec::new(), Vec::new());
     for (cell, &centre) in cells.iter().zip(&centres) {
@@ -151,7 +152,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Picture {
     Key { figure, forces, scene: &scenes[0], pixels, columns, scale }.draw(&mut writer, &mut above);
     let Writer { marks, curves, words, .. } = writer;
     above.extend(marks);
-    Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words }
+    Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
 }
 
 /// A scene as a diagram shows it: in the figure's colours, without what a film needs.
@@ -162,20 +163,6 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     (view.colour, view.strip, view.spring_strain, view.explode) = (None, None, None, 0.0);
     view.visible.displacements = false;
     scene
-}
-
-fn empty(figure: &Figure, fonts: Fonts) -> Picture {
-    Picture {
-        size: figure.size,
-        palette: figure.look.palette,
-        fonts,
-        ramp: Vec::new(),
-        panels: Vec::new(),
-        under: Vec::new(),
-        marks: Vec::new(),
-        curves: Vec::new(),
-        words: Vec::new(),
-    }
 }
 
 /// The largest scale at which all cells fit (px/m), and the pixel of the middle of each cell's body. The cells of a

@@ -1,0 +1,109 @@
+//! `figure`: the paper's figures and a user's own, as files and on standard output.
+use crate::render::can_draw;
+use crate::support::Place;
+
+const SHEET: &str = r#"
+title = "Two cubes"
+size = [320, 200]
+[sheet]
+scene = "small.toml"
+moments = [0.0, 0.1]
+strips = ["turned_over"]
+"#;
+
+fn place() -> Place {
+    let place = Place::with_small();
+    place.write("mine.toml", SHEET);
+    place
+}
+
+#[test]
+fn names_are_told() {
+    let place = Place::new();
+    assert!(place.run("figure").good().out.starts_with("figures: fig1, fig2, fig3, fig4a, fig4b, fig4c, restore"));
+    assert!(place.run("figure --json").good().out.contains("\"restore\""));
+}
+
+#[test]
+fn figures_are_made_told_and_made_again() {
+    if !can_draw() {
+        return;
+    }
+    let place = place();
+    let ran = place.run("figure fig2 mine.toml fig2 --scale 0.5").good();
+    assert_eq!(ran.out, "output/figures/fig2.png  1280×576\noutput/figures/mine.png  160×100\n");
+    place.run("figure all fig4 --scale 0.1 -o all").good();
+    let all = ["fig1", "fig2", "fig3", "fig4a", "fig4b", "fig4c", "restore"].map(|name| format!("{name}.png"));
+    assert_eq!(place.names("all"), all);
+}
+
+#[test]
+fn the_numbers_behind_a_figure_are_told() {
+    if !can_draw() {
+        return;
+    }
+    let place = place();
+    let ran = place.run("figure fig1 mine.toml fig1 -o all --json --size 320x200 --threads 1").good();
+    let told: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+    let [fig1, mine] = &told["figures"].as_array().expect("a list")[..] else { panic!("two figures: {}", ran.out) };
+    let apex = &fig1["numbers"][0]["runs"][0]["forces_over_stiffness"][2];
+    assert!((apex[1].as_f64().unwrap() - 0.5076).abs() < 5e-5, "{apex}");
+    let cell = &mine["numbers"][1][1];
+    assert_eq!((cell["run"].as_str(), cell["turned_over"].as_u64()), (Some("Mass-spring"), Some(0)));
+    assert!(cell["time"].as_f64().unwrap() > 0.09);
+    assert_eq!(place.names("all"), ["fig1.png", "mine.png"]);
+    let before = std::fs::read(place.path("all/mine.png")).unwrap();
+    assert!(!before.windows(4).any(|bytes| bytes == b"tIME"));
+    // Once more, with another number of threads: the same bytes, and nothing is refused.
+    place.run("figure mine.toml -o all --size 320x200 --threads 2 -q").good();
+    assert_eq!(std::fs::read(place.path("all/mine.png")).unwrap(), before);
+    let dark = place.run("figure mine.toml -o dark --size 320x200 --theme dark -q").good();
+    assert_eq!(dark.out, "");
+    assert_ne!(std::fs::read(place.path("dark/mine.png")).unwrap(), before);
+}
+
+#[test]
+fn wrong_names_and_files_are_told() {
+    let place = place();
+    place.run("figure fig9").bad(2, &["no figure `fig9`", "did you mean `fig1`?", "fig4, all"]);
+    place.run("figure restor").bad(2, &["did you mean `restore`?"]);
+    place.run("figure sheet.toml").bad(2, &["sheet.toml: there is no such file"]);
+    place.run("figure small.toml").bad(2, &["small.toml:", "unknown key `time`"]);
+    place.write("wrong.toml", &SHEET.replace("small.toml", "smal.toml"));
+    place.run("figure wrong.toml").bad(2, &["wrong.toml:5:9", "smal.toml: there is no such file", "small.toml"]);
+    place.write("late.toml", &SHEET.replace("[0.0, 0.1]", "[0.0, 7.0]"));
+    place.run("figure late.toml").bad(2, &["late.toml:6:17", "ends at 0.1 s"]);
+    place.write("other/mine.toml", &SHEET.replace("small.toml", "../small.toml"));
+    place.run("figure mine.toml other/mine.toml").bad(2, &["two figures would both go to", "-o"]);
+    place.run("figure fig1 --scale 9").bad(2, &["--scale", "0.1 to 4"]);
+    place.run("figure fig1 --scale 2 --size 100x100").bad(2, &["--size"]);
+    place.run("figure mine.toml --size 20x20").bad(2, &["mine: 20×20 is too small"]);
+    place.run("render mine.toml").bad(2, &["mine.toml:", "unknown key `sheet`"]);
+    assert!(!place.path("output").exists());
+}
+
+#[test]
+fn files_of_others_are_kept() {
+    if !can_draw() {
+        return;
+    }
+    let place = place();
+    place.write("out/mine.png", "mine");
+    place.run("figure mine.toml -o out").bad(2, &["out", "mine.png, which is no figure of this program"]);
+    assert_eq!(place.read("out/mine.png"), "mine");
+    place.run("figure mine.toml -o out --overwrite --size 80x64").good();
+    place.write("file", "");
+    place.run("figure mine.toml -o file").bad(4, &["file"]);
+    place.run("figure mine.toml -o file/below").bad(4, &["file"]);
+}
+
+/// Diagrams too small for what they show are no empty pictures.
+#[test]
+fn what_has_no_room_is_told() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.run("figure fig1 --size 64x64").bad(2, &["fig1: at 64×64 there is no room"]);
+    assert_eq!(place.names("output/figures"), [""; 0]);
+}
