@@ -3,6 +3,7 @@
 use crate::scene::Scene;
 use crate::sim::snapshot::{Frame, RunFrame};
 use crate::sim::world::{Stepping, Surroundings, World};
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Simulates runs of a scene and hands out frames in rising order.
@@ -68,6 +69,16 @@ impl<'a> Sequence<'a> {
 }
 
 impl Scene {
+    /// The internal forces of a run on each node at its start (N), after Eq. (1) or Eq. (4) of the paper, without gravity.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub fn forces(&self, run: usize) -> Vec<DVec3> {
+        let mut forces = vec![DVec3::ZERO; self.body.len()];
+        self.runs[run].model.prepare(&self.body, &self.initial).add_forces(&self.initial, &mut forces);
+        forces
+    }
+
     /// The world of one run, at its start.
     ///
     /// # Panics

@@ -11,11 +11,12 @@ use crate::moments::{Moments, Taking};
 use crate::output::{self, OutputError};
 use crate::picture::compose_figure;
 use crate::render::Renderer;
-use crate::scene::figure::{Figure, NAMES};
-use crate::scene::{Limits, Theme, nearest_name};
+use crate::scene::figure::{Content, Figure, NAMES};
+use crate::scene::{Limits, Scene, Theme, nearest_name};
+use crate::sim::snapshot::{RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
 use rayon::ThreadPoolBuilder;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -53,6 +54,10 @@ pub(super) struct FigureCommand {
     /// Width and height (px) [default: that of each figure]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// How many times as large as usual figures are drawn, from 0.1 to 4: 0.5 for web pages
+    #[arg(long, value_name = "TIMES", value_parser = times, conflicts_with = "size")]
+    scale: Option<f64>,
 
     /// The colours: light for papers, dark for talks [default: those of each figure]
     #[arg(long, value_name = "THEME")]
@@ -95,6 +100,9 @@ impl FigureCommand {
         let mut figures = self.load()?;
         for figure in &mut figures {
             figure.size = self.size.unwrap_or(figure.size);
+            if let Some(times) = self.scale {
+                figure.size = figure.size.map(|side| (f64::from(side) * times).round() as u32);
+            }
             if let Some(theme) = self.theme {
                 figure.set_theme(match theme {
                     ThemeOption::Light => Theme::Light,
@@ -130,7 +138,7 @@ impl FigureCommand {
             let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
             let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
             output::write_whole(path, &output::encode_figure(figure.size, image.as_raw(), &tags))?;
-            made.push((figure, path));
+            made.push((figure, path, numbers(figure, &moments)));
         }
         self.tell(&made)?;
         Ok(Status::Done)
@@ -196,16 +204,17 @@ impl FigureCommand {
     }
 
     /// Tells what was made.
-    fn tell(&self, made: &[(&Figure, &PathBuf)]) -> Result<(), Failure> {
+    fn tell(&self, made: &[(&Figure, &PathBuf, Value)]) -> Result<(), Failure> {
         if self.json {
-            let figures: Vec<_> = made
-                .iter()
-                .map(|(figure, path)| json!({ "name": figure.name, "file": path.to_string_lossy(), "size": figure.size }))
-                .collect();
+            let entry = |(figure, path, numbers): &(&Figure, &PathBuf, Value)| {
+                let file = path.to_string_lossy();
+                json!({ "name": figure.name, "file": file, "size": figure.size, "numbers": numbers })
+            };
+            let figures: Vec<_> = made.iter().map(entry).collect();
             return console::print_json(&json!({ "figures": figures }));
         }
         if !self.quiet {
-            for (figure, path) in made {
+            for (figure, path, _) in made {
                 let [width, height] = figure.size;
                 console::print(&format!("{}  {width}×{height}\n", path.display()))?;
             }
@@ -214,10 +223,49 @@ impl FigureCommand {
     }
 }
 
+/// The numbers behind a figure: forces over stiffness of every run (m), or what each cell of a sheet shows.
+fn numbers(figure: &Figure, moments: &Moments) -> Value {
+    match &figure.content {
+        Content::Forces(forces) => {
+            let of_scene = |scene: &Scene| {
+                let runs = scene.runs.iter().enumerate().map(|(at, run)| {
+                    let stiffness = run.model.stiffness();
+                    let forces: Vec<_> = scene.forces(at).iter().map(|force| (*force / stiffness).to_array()).collect();
+                    json!({ "run": run.name, "forces_over_stiffness": forces })
+                });
+                json!({ "scene": scene.title, "runs": runs.collect::<Vec<_>>() })
+            };
+            Value::Array(forces.scenes.iter().map(of_scene).collect())
+        }
+        Content::Sheet(sheet) => {
+            let cell = |row: usize, column: usize| {
+                let (scene, run, _) = sheet.cell(row, column);
+                let RunFrame { snapshot: Snapshot { time, diagnostics, .. }, .. } = &moments.cells[row][column];
+                json!({
+                    "scene": sheet.scenes[scene].title,
+                    "run": sheet.scenes[scene].runs[run].name,
+                    "time": time,
+                    "turned_over": diagnostics.turned_over,
+                    "volume_ratio": diagnostics.volume_ratio,
+                    "shape_error": diagnostics.shape_error,
+                })
+            };
+            let rows = 0..sheet.rows.len();
+            let all = rows.map(|row| (0..sheet.columns.len()).map(|column| cell(row, column)).collect::<Vec<_>>());
+            json!(all.collect::<Vec<_>>())
+        }
+    }
+}
+
+fn times(typed: &str) -> Result<f64, String> {
+    let times: f64 = typed.trim().parse().map_err(|_| "expected a number, such as 0.5".to_owned())?;
+    if (0.1..=4.0).contains(&times) { Ok(times) } else { Err("expected a number from 0.1 to 4".to_owned()) }
+}
+
 /// What is said of a name that no figure has.
 fn unknown(asked: &str) -> String {
     let names: Vec<_> = NAMES.iter().copied().chain(["fig4", "all"]).collect();
-    let hint = nearest_name(asked, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let hint = nearest_name(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!(
         "there is no figure `{asked}`{hint} The figures are {}; a figure of your own is a .toml file",
         names.join(", ")

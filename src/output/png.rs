@@ -72,7 +72,7 @@ impl Tags {
 /// # Panics
 /// If `pixels` has neither of the lengths that `size`, width and height (px), asks for, or the size is zero.
 pub fn encode(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
-    encode_with(size, pixels, &tags.chunks())
+    encode_with(size, pixels, &tags.chunks(), png::Compression::Fast)
 }
 
 /// What a figure says about itself, in text chunks.
@@ -103,7 +103,8 @@ impl FigureTags {
 pub fn encode_figure(size: [u32; 2], pixels: &[u8], tags: &FigureTags) -> Vec<u8> {
     let FigureTags { figure, scenes, version, adapter } = tags.clone();
     let chunks = [("figure", figure), ("scene", scenes.join("\n")), ("version", version), ("adapter", adapter)];
-    encode_with(size, pixels, &chunks)
+    // A single picture may take its time.
+    encode_with(size, pixels, &chunks, png::Compression::High)
 }
 
 /// Whether a file is a figure that this crate drew.
@@ -120,7 +121,12 @@ pub fn is_figure(path: &Path) -> Result<bool, OutputError> {
 }
 
 /// A picture as a PNG file in sRGB with text chunks.
-fn encode_with(size: [u32; 2], pixels: &[u8], chunks: &[(&'static str, String)]) -> Vec<u8> {
+fn encode_with(
+    size: [u32; 2],
+    pixels: &[u8],
+    chunks: &[(&'static str, String)],
+    compression: png::Compression,
+) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
     let colour = match pixels.len() as u64 {
@@ -132,7 +138,7 @@ fn encode_with(size: [u32; 2], pixels: &[u8], chunks: &[(&'static str, String)])
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
+    encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (name, text) in chunks {
         let name = format!("localshape:{name}");

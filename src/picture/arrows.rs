@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 const HALO: f64 = 3.0 / 17.0;
 const HEIGHT: f64 = 1.0 + 2.0 * HALO;
 /// Width of the head of a long arrow (px in the reference picture).
-const HEAD: f64 = 17.0;
+pub(super) const HEAD: f64 = 17.0;
 /// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
 const ROOMY_ELEMENT: f64 = 105.0;
 const SMALLEST: f64 = 0.36;

@@ -306,7 +306,7 @@ fn within(start: DVec2, along: DVec2, [left, top, width, height]: [f64; 4]) -> O
 }
 
 /// Whether a polygon winds around a point.
-fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
+pub(super) fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
     let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let crossed = sides.filter(|(a, b)| {
         (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)

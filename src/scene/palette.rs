@@ -88,6 +88,11 @@ impl Palette {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }
 
+    /// What ghosts of shapes on the background are tinted with.
+    pub fn edge_on_ground(&self) -> Colour {
+        if self.is_made_for_light() { self.edge } else { self.outline }
+    }
+
     /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].
     pub fn is_made_for_light(&self) -> bool {
         contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])

@@ -5,6 +5,7 @@
 
 mod fields;
 mod fine;
+mod forces;
 mod inside;
 mod look;
 mod obstacles;

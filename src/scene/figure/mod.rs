@@ -180,8 +180,8 @@ static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
 fn look(first: &Scene, theme: Option<Theme>) -> Look {
     match theme {
         Some(theme) if theme != first.view.look.theme => {
-            let Look { font, text_scale, line_scale, .. } = first.view.look.clone();
-            Look { font, text_scale, line_scale, ..Look::of(theme) }
+            let Look { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
+            Look { font, text_scale, line_scale, margin, ..Look::of(theme) }
         }
         _ => first.view.look.clone(),
     }

@@ -2,6 +2,7 @@
 
 mod forces;
 mod header;
+mod labels;
 mod sheet;
 
 use crate::moments::Moments;

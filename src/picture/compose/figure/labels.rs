@@ -1,0 +1,154 @@
+//! Places for labels at the tips of arrows and beside points, where they hide nothing.
+
+use crate::picture::plane::is_inside;
+use glam::DVec2;
+
+/// Distances between a point and its label that are tried (px in the reference picture).
+const DISTANCES: [f64; 3] = [7.0, 14.0, 24.0];
+/// Directions that are tried, as turns from the wanted one (rad).
+const TURNS: [f64; 9] = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2, 1.6, -1.6];
+/// What a turn (rad) and a distance (px in the reference picture) cost, beside a pixel that is hidden.
+const TURN_COST: f64 = 14.0;
+const DISTANCE_COST: f64 = 1.2;
+/// What it costs to stand at the tail of an arrow, and how far behind it the node there reaches (px in the reference
+/// picture).
+const TAIL_COST: f64 = 20.0;
+const TAIL: f64 = 5.0;
+/// What each corner and the middle of a label cost that lie on a surface.
+const SURFACE_COST: f64 = 9.0;
+/// What it costs to leave the room, and to cover a pixel of another label (per px).
+const OUTSIDE_COST: f64 = 500.0;
+const LABEL_COST: f64 = 8.0;
+/// Free around a label (px in the reference picture).
+const FREE: f64 = 3.0;
+
+/// A box: left, top, right, bottom (px).
+pub(super) type Edges = [f64; 4];
+
+/// What labels must not hide, and those that have their place.
+#[derive(Clone, Debug)]
+pub(super) struct Labels {
+    /// The room for labels.
+    pub(super) room: Edges,
+    /// Pixels for one pixel of the reference picture.
+    pub(super) unit: f64,
+    /// Straight pieces of arrows and edges.
+    pub(super) lines: Vec<[DVec2; 2]>,
+    /// Surfaces, which labels may lie on but rather do not.
+    pub(super) surfaces: Vec<Vec<DVec2>>,
+    boxes: Vec<Edges>,
+}
+
+impl Labels {
+    pub(super) fn new(room: Edges, unit: f64) -> Self {
+        Self { room, unit, lines: Vec::new(), surfaces: Vec::new(), boxes: Vec::new() }
+    }
+
+    /// The place of a label of a size beside a point, as far as possible in a direction from it: its left upper corner.
+    pub(super) fn place(&mut self, point: DVec2, away: DVec2, size: DVec2) -> DVec2 {
+        let best = self.best(point, away, size);
+        self.take(best, size)
+    }
+
+    /// The place of a label at the tip of an arrow or, where that is crowded, behind its tail.
+    pub(super) fn place_at_arrow(&mut self, [from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
+        let back = (from - to).normalize_or_zero() * TAIL * self.unit;
+        let (at_tip, mut at_tail) = (self.best(to, to - from, size), self.best(from + back, from - to, size));
+        at_tail.0 += TAIL_COST;
+        self.take(if at_tail.0 < at_tip.0 { at_tail } else { at_tip }, size)
+    }
+
+    fn take(&mut self, (_, corner): (f64, DVec2), size: DVec2) -> DVec2 {
+        self.boxes.push([corner.x, corner.y, corner.x + size.x, corner.y + size.y]);
+        corner
+    }
+
+    /// The cheapest place beside a point, and what it costs.
+    fn best(&self, point: DVec2, away: DVec2, size: DVec2) -> (f64, DVec2) {
+        let away = away.try_normalize().unwrap_or(DVec2::NEG_Y);
+        let mut best = (f64::INFINITY, DVec2::ZERO);
+        for distance in DISTANCES {
+            for turn in TURNS {
+                let (sine, cosine) = libm::sincos(turn);
+                let along = DVec2::new(cosine, sine).rotate(away);
+                // The middle of the label is so far away that the label only reaches up to the distance.
+                let reach = (0.5 * size * along.abs()).element_sum().min(0.5 * size.max_element());
+                let middle = point + (distance * self.unit + reach) * along;
+                let corner = (middle - 0.5 * size).round();
+                let cost = self.cost(corner, size) + TURN_COST * turn.abs() + DISTANCE_COST * distance;
+                if cost < best.0 {
+                    best = (cost, corner);
+                }
+            }
+        }
+        best
+    }
+
+    fn cost(&self, corner: DVec2, size: DVec2) -> f64 {
+        let free = FREE * self.unit;
+        let edges = [corner.x - free, corner.y - free, corner.x + size.x + free, corner.y + size.y + free];
+        let [left, top, right, bottom] = self.room;
+        let outside = (left - edges[0]).max(0.0)
+            + (top - edges[1]).max(0.0)
+            + (edges[2] - right).max(0.0)
+            + (edges[3] - bottom).max(0.0);
+        let covered: f64 = self.boxes.iter().map(|other| shared(edges, *other)).sum();
+        let hidden: f64 = self.lines.iter().map(|line| inside(*line, edges)).sum();
+        let points =
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]].map(|at| corner + size * DVec2::from(at));
+        let on_surface = |point: &&DVec2| self.surfaces.iter().any(|surface| is_inside(surface, **point));
+        let on_surfaces = points.iter().filter(on_surface).count() as f64;
+        OUTSIDE_COST * outside + LABEL_COST * covered + hidden + SURFACE_COST * on_surfaces
+    }
+}
+
+/// The area that two boxes share (px²).
+fn shared(one: Edges, other: Edges) -> f64 {
+    let width = one[2].min(other[2]) - one[0].max(other[0]);
+    let height = one[3].min(other[3]) - one[1].max(other[1]);
+    width.max(0.0) * height.max(0.0)
+}
+
+/// The length of a straight piece inside a box (px).
+fn inside([from, to]: [DVec2; 2], [left, top, right, bottom]: Edges) -> f64 {
+    let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+    for (at, way, low, high) in [(from.x, to.x - from.x, left, right), (from.y, to.y - from.y, top, bottom)] {
+        if way == 0.0 {
+            if at < low || at > high {
+                return 0.0;
+            }
+        } else {
+            let [one, other] = [(low - at) / way, (high - at) / way];
+            (begin, end) = (begin.max(one.min(other)), end.min(one.max(other)));
+        }
+    }
+    (end - begin).max(0.0) * from.distance(to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_stand_where_they_are_wanted_if_nothing_is_in_the_way() {
+        let mut labels = Labels::new([0.0, 0.0, 400.0, 400.0], 1.0);
+        let corner = labels.place(DVec2::splat(200.0), DVec2::X, DVec2::new(40.0, 12.0));
+        assert_eq!(corner, DVec2::new(207.0, 194.0));
+    }
+
+    #[test]
+    fn labels_hide_neither_lines_nor_each_other_and_stay_in_their_room() {
+        let mut labels = Labels::new([0.0, 0.0, 200.0, 200.0], 1.0);
+        let point = DVec2::new(150.0, 100.0);
+        labels.lines.push([point, DVec2::new(200.0, 100.0)]);
+        let size = DVec2::new(45.0, 14.0);
+        let corners: Vec<_> = (0..3).map(|_| labels.place(point, DVec2::X, size)).collect();
+        for (at, corner) in corners.iter().enumerate() {
+            let edges = [corner.x, corner.y, corner.x + size.x, corner.y + size.y];
+            assert!(edges[0] >= 0.0 && edges[2] <= 200.0 && inside(labels.lines[0], edges) == 0.0, "{edges:?}");
+            for other in &corners[..at] {
+                assert_eq!(shared(edges, [other.x, other.y, other.x + size.x, other.y + size.y]), 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Diagrams of forces: the numbers of Figs. 1 and 2, and that one can read them.
+
+use localshape::moments::Moments;
+use localshape::picture::{MarkShape, Picture, TextRun, compose_figure};
+use localshape::scene::figure::Figure;
+
+fn picture(name: &str, size: [u32; 2]) -> Picture {
+    let mut figure = Figure::built_in(name).expect("a figure of the paper");
+    figure.size = size;
+    compose_figure(&figure, &Moments::default())
+}
+
+fn texts(picture: &Picture) -> Vec<&str> {
+    picture.words.iter().map(|word| word.text.as_str()).collect()
+}
+
+/// How often each of some texts is written.
+fn counts(picture: &Picture, wanted: &[&str]) -> Vec<usize> {
+    let texts = texts(picture);
+    wanted.iter().map(|wanted| texts.iter().filter(|text| *text == wanted).count()).collect()
+}
+
+#[test]
+fn fig_1_says_the_forces_and_how_far_three_springs_are_off() {
+    let picture = picture("fig1", [1280, 720]);
+    // Shape forces (.0063, −.2023) (.0010, −.3053) (−.0072, .5076); .711 on the apex that has turned over.
+    assert_eq!(counts(&picture, &["0.202", "0.305", "0.508", "0.711"]), [1; 4]);
+    // Springs (−.3864, −.0644) (.5701, −.1425) (−.1837, .2069), wrong by 82°, 76° and 41°; .343 the wrong way.
+    assert_eq!(counts(&picture, &["0.392", "0.588", "0.277", "0.343"]), [1; 4]);
+    assert_eq!(counts(&picture, &["82° off", "76° off", "41° off", "180° off"]), [1; 4]);
+    assert!(!picture.panels[2].turned_over.triangles.is_empty() && picture.panels[0].turned_over.triangles.is_empty());
+}
+
+#[test]
+fn fig_2_says_that_one_diagonal_spring_prefers_a_direction() {
+    let picture = picture("fig2", [1280, 576]);
+    assert_eq!(counts(&picture, &["0.141", "0.495", "0.243", "1.051", "0.040", "0.061"]), [2; 6]);
+    // Outward where it should be inward.
+    assert_eq!(counts(&picture, &["180° off"]), [2]);
+}
+
+#[test]
+fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
+    let picture = picture("fig3", [1280, 720]);
+    assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
+    // An arrow for each node of the pentagon and of the cube, and that of the key.
+    let arrow = |shape: MarkShape| matches!(shape, MarkShape::Arrow | MarkShape::FaintArrow(_));
+    assert_eq!(picture.marks.iter().filter(|mark| arrow(mark.shape)).count(), 5 + 8 + 1);
+}
+
+/// Left, top, right and bottom of a word (px).
+fn edges(word: &TextRun) -> [f32; 4] {
+    [word.span[0], word.baseline - 0.74 * word.size, word.span[1], word.baseline + 0.06 * word.size]
+}
+
+#[test]
+fn no_label_overlaps_another_or_leaves_the_picture() {
+    for name in ["fig1", "fig2", "fig3"] {
+        for size in [[640, 360], [1280, 720], [2560, 1440], [900, 1200]] {
+            let picture = picture(name, size);
+            assert!(picture.words.len() > 4, "{name} {size:?}");
+            for (at, word) in picture.words.iter().enumerate() {
+                let [left, top, right, bottom] = edges(word);
+                let inside = left >= 0.0 && top >= 0.0 && right <= size[0] as f32 && bottom <= size[1] as f32;
+                assert!(inside, "{name} {size:?}: {:?} leaves the picture", word.text);
+                for other in &picture.words[..at] {
+                    let [left2, top2, right2, bottom2] = edges(other);
+                    let apart = right <= left2 || right2 <= left || bottom <= top2 || bottom2 <= top;
+                    // An index stands at the foot of its letter.
+                    let is_index = word.text == "i" || other.text == "i";
+                    assert!(apart || is_index, "{name} {size:?}: {:?} over {:?}", word.text, other.text);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_figure_is_the_same_each_time() {
+    assert_eq!(picture("fig1", [640, 360]), picture("fig1", [640, 360]));
+}
