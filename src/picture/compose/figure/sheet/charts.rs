@@ -29,8 +29,8 @@ const SPLIT_GAP: f64 = 12.0;
 /// reference picture).
 const RING: f64 = 10.0;
 const RIM: f64 = 1.3;
-const LETTER: f64 = 13.0;
-const BESIDE_LETTER: f64 = 4.5;
+const LETTER: f64 = 14.0;
+const BESIDE_LETTER: f64 = 4.0;
 const RINGS_APART: f64 = 3.0;
 /// How far above the charts the lines of moments become upright, their width (px in the reference picture), and their
 /// opacity.
@@ -259,13 +259,15 @@ mod tests {
 
     #[test]
     fn rings_part_as_little_as_they_must() {
-        assert_eq!(spread(&[0.0, 50.0, 100.0], 20.0, [0.0, 100.0]), [0.0, 50.0, 100.0]);
-        assert_eq!(
-            spread(&[50.0, 50.0, 54.0], 20.0, [0.0, 100.0]),
-            [32.0 - 2.0 / 3.0, 51.0 + 1.0 / 3.0, 71.0 + 1.0 / 3.0]
-        );
-        assert_eq!(spread(&[0.0, 2.0], 20.0, [0.0, 100.0]), [0.0, 20.0]);
-        assert_eq!(spread(&[98.0, 99.0], 20.0, [0.0, 100.0]), [80.0, 100.0]);
-        assert!(spread(&[], 20.0, [0.0, 100.0]).is_empty());
+        let near = |places: &[f64], expected: &[f64]| {
+            let found = spread(places, 20.0, [0.0, 100.0]);
+            let off = found.iter().zip(expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+            assert!(found.len() == expected.len() && off < 1e-9, "{places:?}: {found:?}");
+        };
+        near(&[0.0, 50.0, 100.0], &[0.0, 50.0, 100.0]);
+        near(&[50.0, 50.0, 53.0], &[31.0, 51.0, 71.0]);
+        near(&[0.0, 2.0], &[0.0, 20.0]);
+        near(&[98.0, 99.0], &[80.0, 100.0]);
+        near(&[], &[]);
     }
 }
