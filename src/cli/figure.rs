@@ -14,7 +14,7 @@ use crate::picture::compose_figure;
 use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, Theme, nearest_name};
-use crate::sim::snapshot::{RunFrame, Snapshot};
+use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -167,6 +167,9 @@ impl FigureCommand {
         })?;
         let drawn = Renderer::new(gpu, figure.size, self.samples).and_then(|mut renderer| renderer.draw(&picture));
         let image = drawn.map_err(failed)?;
+        if interrupt::requested() {
+            return Ok(None);
+        }
         let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
         let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
         file.append(&output::encode_figure(figure.size, image.as_raw(), &tags))?;
@@ -259,15 +262,16 @@ impl FigureCommand {
     }
 }
 
-/// The numbers behind a figure: forces over stiffness of every run (m), or what each cell of a sheet shows.
+/// The numbers behind a figure: forces over stiffness of every run in sides, as the figure writes them, or what each cell
+/// of a sheet shows (SI).
 fn numbers(figure: &Figure, moments: &Moments) -> Value {
     match &figure.content {
         Content::Forces(forces) => {
             let of_scene = |scene: &Scene| {
                 let runs = scene.runs.iter().enumerate().map(|(at, run)| {
-                    let stiffness = run.model.stiffness();
-                    let forces: Vec<_> = scene.forces(at).iter().map(|force| (*force / stiffness).to_array()).collect();
-                    json!({ "run": run.name, "forces_over_stiffness": forces })
+                    let unit = run.model.stiffness() * scene.view.side;
+                    let forces: Vec<_> = scene.forces(at).iter().map(|force| (*force / unit).to_array()).collect();
+                    json!({ "run": run.name, "forces_over_stiffness_and_side": forces })
                 });
                 json!({ "scene": scene.title, "runs": runs.collect::<Vec<_>>() })
             };
@@ -276,8 +280,15 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
         Content::Sheet(sheet) => {
             let cell = |row: usize, column: usize| {
                 let (scene, run, _) = sheet.cell(row, column);
-                let RunFrame { snapshot: Snapshot { time, diagnostics, .. }, .. } = &moments.cells[row][column];
+                let RunFrame { snapshot: Snapshot { time, diagnostics, status, .. }, .. } = &moments.cells[row][column];
+                let number = sheet.number.map(|number| number.of(diagnostics)).filter(|number| number.is_finite());
+                let diverged = match status {
+                    snapshot::Status::Diverged(divergence) => Some(divergence.time),
+                    snapshot::Status::Ok => None,
+                };
                 json!({
+                    "diverged_at": diverged,
+                    "number": number,
                     "scene": sheet.scenes[scene].title,
                     "run": sheet.scenes[scene].runs[run].name,
                     "time": time,

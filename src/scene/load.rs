@@ -2,7 +2,7 @@
 
 use super::error::{Mistakes, SceneError};
 use super::limits::Limits;
-use super::report::{Report, mistake};
+use super::report::{Report, Way, mistake};
 use super::resolve::{self, Parts};
 use super::schema::SCHEMA;
 use super::source::Source;
@@ -55,7 +55,7 @@ impl Scene {
 
     /// Reads a scene from a text; a body's own file and fonts are looked for in `folder`.
     fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        checked(text, name, &SCHEMA, |checked, report| {
+        checked(text, name, &SCHEMA, FIGURE, |checked, report| {
             let parts = Parts::new(&checked, folder, limits, report);
             let digest = match report.total() {
                 0 => SceneFile::deserialize(Value::Object(checked.sound))
@@ -69,12 +69,26 @@ impl Scene {
     }
 }
 
+/// A file of another kind, known by keys that it has, of which each is enough.
+#[derive(Clone, Copy)]
+pub(super) struct Other {
+    pub(super) keys: &'static [&'static str],
+    pub(super) message: &'static str,
+}
+
+/// What a scene may be taken for, and the other way round.
+const FIGURE: Other =
+    Other { keys: &["sheet", "forces"], message: "this is a figure, not a scene; `localshape figure` draws it" };
+pub(super) const SCENE: Other =
+    Other { keys: &["body", "run"], message: "this is a scene, not a figure; `localshape render` draws it" };
+
 /// Reads a text of TOML, checks it against a schema and gives it its meaning; all mistakes that anyone reports on the way
 /// are told together.
 pub(super) fn checked<T>(
     text: &str,
     name: &str,
     schema: &Value,
+    other: Other,
     resolve: impl FnOnce(Checked, &mut Report<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -88,6 +102,10 @@ pub(super) fn checked<T>(
         return Err(SceneError::Syntax(syntax(&source, &errors, name)));
     }
     let mut report = Report::new(&source, root.get_ref());
+    if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
+        report.at_key(&[Way::Key(key)], other.message, None);
+        return Err(SceneError::Mistakes(report.finish(name)));
+    }
     let checked = structure::check(schema, root.get_ref(), &mut report);
     match resolve(checked, &mut report)? {
         Some(meaning) if report.total() == 0 => Ok(meaning),

@@ -46,7 +46,7 @@ fn the_numbers_behind_a_figure_are_told() {
     let ran = place.run("figure fig1 mine.toml fig1 -o all --json --size 320x200 --threads 1").good();
     let told: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
     let [fig1, mine] = &told["figures"].as_array().expect("a list")[..] else { panic!("two figures: {}", ran.out) };
-    let apex = &fig1["numbers"][0]["runs"][0]["forces_over_stiffness"][2];
+    let apex = &fig1["numbers"][0]["runs"][0]["forces_over_stiffness_and_side"][2];
     assert!((apex[1].as_f64().unwrap() - 0.5076).abs() < 5e-5, "{apex}");
     let cell = &mine["numbers"][1][1];
     assert_eq!((cell["run"].as_str(), cell["turned_over"].as_u64()), (Some("Mass-spring"), Some(0)));
@@ -68,7 +68,9 @@ fn wrong_names_and_files_are_told() {
     place.run("figure fig9").bad(2, &["no figure `fig9`", "did you mean `fig1`?", "fig4, all"]);
     place.run("figure restor").bad(2, &["did you mean `restore`?"]);
     place.run("figure sheet.toml").bad(2, &["sheet.toml: there is no such file"]);
-    place.run("figure small.toml").bad(2, &["small.toml:", "unknown key `time`"]);
+    place
+        .run("figure small.toml")
+        .bad(2, &["small.toml:", "this is a scene, not a figure; `localshape render` draws it"]);
     place.write("wrong.toml", &SHEET.replace("small.toml", "smal.toml"));
     place.run("figure wrong.toml").bad(2, &["wrong.toml:5:9", "smal.toml: there is no such file", "small.toml"]);
     place.write("late.toml", &SHEET.replace("[0.0, 0.1]", "[0.0, 7.0]"));
@@ -78,7 +80,9 @@ fn wrong_names_and_files_are_told() {
     place.run("figure fig1 --scale 9").bad(2, &["--scale", "0.1 to 4"]);
     place.run("figure fig1 --scale 2 --size 100x100").bad(2, &["--size"]);
     place.run("figure mine.toml --size 20x20").bad(2, &["mine: 20×20 is too small"]);
-    place.run("render mine.toml").bad(2, &["mine.toml:", "unknown key `sheet`"]);
+    place
+        .run("render mine.toml")
+        .bad(2, &["mine.toml:4:2: this is a figure, not a scene; `localshape figure` draws it"]);
     assert!(!place.path("output").exists());
 }
 
@@ -103,7 +107,9 @@ fn what_has_no_room_is_told() {
     if !can_draw() {
         return;
     }
-    let place = Place::new();
-    place.run("figure fig1 --size 64x64").bad(2, &["fig1: at 64×64 there is no room"]);
+    let place = place();
+    place.write("tall.toml", &format!("[forces]\nscenes = [{}]", "'two.toml', 'small.toml', ".repeat(6)));
+    place.write("two.toml", &crate::support::SMALL.replace("duration = 0.1", "duration = 0.2"));
+    place.run("figure tall.toml --size 320x200").bad(2, &["tall: at 320×200 there is no room"]);
     assert_eq!(place.names("output/figures"), [""; 0]);
 }

@@ -154,7 +154,9 @@ impl Figure {
         scene: &dyn Fn(&Path) -> Result<Scene, SceneError>,
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
-        load::checked(text, name, &SCHEMA, |checked, report| resolve::resolve(checked, &stem, folder, scene, report))
+        load::checked(text, name, &SCHEMA, load::SCENE, |checked, report| {
+            resolve::resolve(checked, &stem, folder, scene, report)
+        })
     }
 }
 

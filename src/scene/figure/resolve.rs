@@ -262,6 +262,24 @@ impl Scenes<'_, '_, '_> {
             let message = "there is a single run, and nothing to compare it with";
             self.report.at_key(&[Way::Key("forces"), Way::Key("compare")], message, None);
         }
+        let stiffness = self.scenes[0].runs[0].model.stiffness();
+        for (index, scene) in self.scenes.iter().enumerate() {
+            if scene.runs.iter().any(|run| run.model.stiffness() != stiffness) {
+                let message = format!(
+                    "a run has another stiffness than {stiffness} N/m, that of the first: forces would be told in two units"
+                );
+                self.report.at(&path(index), message, "give all runs the same stiffness".to_owned());
+            }
+            if scene.body.len() > MOST_NODES {
+                let message = format!("the body has {} nodes, whose forces would hide each other", scene.body.len());
+                self.report.at(&path(index), message, format!("expected at most {MOST_NODES}"));
+            }
+        }
+        if file.vectors && (file.numbers == NumbersFile::Force || runs.len() > 1) {
+            let message = "vectors are drawn for one run, and without numbers";
+            let help = "leave one run in the scenes, and say `numbers = \"none\"`".to_owned();
+            self.report.at_key(&[Way::Key("forces"), Way::Key("vectors")], message, help);
+        }
         let side = self.scenes[0].view.side;
         if let Some(index) = self
             .scenes
@@ -282,6 +300,9 @@ impl Scenes<'_, '_, '_> {
         Ok((report.total() == before).then_some(forces))
     }
 }
+
+/// The most nodes of a body whose forces are drawn.
+const MOST_NODES: usize = 80;
 
 /// The last moment of a scene (s).
 fn end(scene: &Scene) -> f64 {

@@ -343,7 +343,9 @@ fn said(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String>
         Diagnostic::ShapeError => number::length(value, scene.body.extent()),
         _ => {
             let unit = diagnostic.unit();
-            number::with_minus(format!("{} {unit}", crate::sim::words::rounded(value, 3)))
+            let value = crate::sim::words::rounded(value, 3);
+            let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
+            number::with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
         }
     };
     Some(format!("{name} {value}"))
