@@ -19,6 +19,7 @@ mod limits;
 mod load;
 mod npz;
 mod palette;
+pub(crate) mod ramp;
 mod report;
 mod resolve;
 mod schema;
