@@ -164,7 +164,7 @@ fn of_very_many_elements_apart_all_is_drawn_that_can_be_seen() {
         }
         assert!(found.next().is_none() && kept.len() < 6 * MANY.pow(3) * 2 / 3);
         let [clear, opaque] = [clear, opaque].map(|picture| picture.panels[0].turned_over.clone());
-        assert_eq!((opaque.triangles.len(), &opaque), (12, &clear), "a turned-over element keeps all its faces");
+        assert!(opaque.triangles.len() == 12 && opaque == clear, "a turned-over element keeps all its faces");
     }
 }
 
