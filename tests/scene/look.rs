@@ -161,7 +161,7 @@ fn words_that_cannot_be_read_are_refused() {
 
 #[test]
 fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_elements() {
-    for (map, found) in [("mint-indigo", None), ("greys", None), ("viridis", Some("10.5")), ("magma", Some("7.8"))] {
+    for (map, found) in [("mint-indigo", None), ("greys", None), ("viridis", Some("10.5")), ("magma", Some("7.7"))] {
         let text = format!("hatch = false\ncolour = {{ by = 'speed', map = '{map}' }}");
         let Some(found) = found else {
             assert!(!good(&with(&text)).view.hatch);
