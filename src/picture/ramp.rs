@@ -1,8 +1,11 @@
 //! The colours of scalar fields, which the scene's maps name.
 
 use crate::colour::Colour;
-pub use crate::scene::ramp::SHADES;
+use crate::scene::ramp;
 pub(super) use crate::scene::ramp::ramp;
+
+/// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
+pub const SHADES: usize = ramp::SHADES;
 
 /// The colour of a place on a scale, from 0 to 1.
 pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {

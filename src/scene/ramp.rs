@@ -5,7 +5,7 @@ use crate::colour::{Colour, Oklab, from_oklab};
 use colorous::Gradient;
 
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
-pub const SHADES: usize = 64;
+pub(crate) const SHADES: usize = 64;
 
 /// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent
 /// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
