@@ -156,8 +156,8 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
     let kind = segment.kind;
     let scale = panel.line_scale;
-    let strength = min(1.0, panel.element / SMALL_ELEMENT)
-        * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
+    let element = panel.line_share * panel.element;
+    let strength = min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
     let hidden_alpha = mix(SEEN_THROUGH, HIDDEN, panel.opacity);
     var shares = vec2(0.0);
     for (var sample = 0u; sample < SAMPLES; sample++) {
@@ -215,7 +215,7 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
             );
             ends += select(0.0, 1.0, farther <= 0.0) / f32(SAMPLES);
         }
-        let smallness = min(1.0, panel.element / SMALL_FOLDED);
+        let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
         let fold = mix(smallness * smallness, 1.0, ends);
         through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * scale);
     }

@@ -38,6 +38,8 @@ struct Panel {
     hatch: f32,
     // 0 if nothing lies behind sound elements, 1 if something may.
     behind: f32,
+    // How much is drawn of the lines of elements, from 0 to 1.
+    line_share: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

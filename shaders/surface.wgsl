@@ -157,6 +157,23 @@ fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> v
     return vec4(saturate(mix(grey, alarm, 1.0 - 0.4 * deep)), 1.0);
 }
 
+// How deep every sample of what lies behind a pixel is, and the nearest of them; 0 where nothing is. Each counts, so that
+// borders of what lies behind are as smooth as those of the surface.
+struct Behind {
+    depths: array<f32, SAMPLES>,
+    nearest: f32,
+}
+
+fn all_behind(place: vec4<f32>) -> Behind {
+    let at = vec2<i32>(place.xy);
+    var behind: Behind;
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        behind.depths[sample] = load_alarm_depth(at, sample);
+        behind.nearest = max(behind.nearest, behind.depths[sample]);
+    }
+    return behind;
+}
+
 // What is stored of the mean of all samples: nothing that is seen through, be it a little, is as opaque as an obstacle.
 fn stored_mean(sum: vec4<f32>) -> vec4<f32> {
     let mean = sum / f32(SAMPLES);
@@ -170,20 +187,13 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     if panel.behind < 0.5 {
         return see_through(colour);
     }
-    // Each sample of what lies behind counts, so that its borders are as smooth as those of the surface.
-    let at = vec2<i32>(corner.place.xy);
-    var behind: array<f32, SAMPLES>;
-    var nearest = 0.0;
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        behind[sample] = load_alarm_depth(at, sample);
-        nearest = max(nearest, behind[sample]);
-    }
-    if nearest <= 0.0 {
+    var behind = all_behind(corner.place);
+    if behind.nearest <= 0.0 {
         return see_through(colour);
     }
     var sum = vec4(0.0);
     for (var sample = 0u; sample < SAMPLES; sample++) {
-        sum += over_behind(colour, corner, behind[sample], sample);
+        sum += over_behind(colour, corner, behind.depths[sample], sample);
     }
     return stored_mean(sum);
 }

@@ -1,6 +1,6 @@
 // Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
 // elements are coloured by it, too, and keep their hatch, in vermilion; through the body only that is seen. Without a
-// hatch they are vermilion.
+// hatch they are vermilion, lit like plain ones.
 
 // The colours of the scale, linear.
 @group(1) @binding(4) var<uniform> ramp: array<vec4<f32>, SHADES>;
@@ -50,34 +50,34 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     return colour * mix(SHADED, 1.0, smoothstep(DARKEST, 1.0, brightness));
 }
 
-// How much of a pixel of a turned-over element has the alarm's colour: the stripes of its hatch, or all of it.
-fn alarm_share(corner: TintedCorner) -> f32 {
+// The colour of a turned-over element, and how much of it is the alarm's: the stripes of its hatch, or all of it.
+fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
     let covered = stripes(corner.hatch, corner.place.xy);
-    return select(1.0, covered, panel.hatch > 0.5);
+    if panel.hatch > 0.5 {
+        return vec4(mix(tint(corner), panel.alarm, covered), covered);
+    }
+    // Nothing but light tells its faces from each other.
+    let light = light(corner.position, corner.normal);
+    return vec4(panel.alarm * light.diffuse + light.gloss, 1.0);
 }
 
 // The hatch of the turned-over set by itself, for those who look through the body: how much of a pixel it covers.
 @fragment
 fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let covered = alarm_share(corner);
-    if panel.opacity < 1.0 {
-        // Under a clear surface, their own colour is seen, too.
-        return vec4(sqrt(saturate(mix(tint(corner), panel.alarm, covered))), 0.5 * covered);
-    }
-    return vec4(0.0, 0.0, 0.0, covered);
+    let alarm = alarm_tint(corner);
+    // Under a clear surface, their own colour is seen, too.
+    let alpha = select(1.0, 0.5, panel.opacity < 1.0) * alarm.a;
+    return vec4(sqrt(saturate(alarm.rgb)), alpha);
 }
 
 @fragment
 fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let colour = mix(tint(corner), panel.alarm, alarm_share(corner));
-    return vec4(sqrt(saturate(colour)), 1.0);
+    return vec4(sqrt(saturate(alarm_tint(corner).rgb)), 1.0);
 }
 
 // As for plain surfaces.
-fn tinted_over(colour: vec3<f32>, corner: TintedCorner, sample: u32) -> vec4<f32> {
-    let at = vec2<i32>(corner.place.xy);
-    let behind = load_alarm_depth(at, sample);
-    let stored = load_alarm_colour(at, sample);
+fn tinted_over(colour: vec3<f32>, corner: TintedCorner, behind: f32, sample: u32) -> vec4<f32> {
+    let stored = load_alarm_colour(vec2<i32>(corner.place.xy), sample);
     if panel.opacity < 1.0 {
         let is_solid = stored.a > SOLID_BEHIND;
         if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
@@ -92,7 +92,9 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner, sample: u32) -> vec4<f32
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-    return vec4(saturate(mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a)), 1.0);
+    // Of a hatch only the stripes are seen, whatever lies between them.
+    let alarm = select(stored.rgb * stored.rgb, panel.alarm, panel.hatch > 0.5);
+    return vec4(saturate(mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a)), 1.0);
 }
 
 @fragment
@@ -101,9 +103,13 @@ fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
     if panel.behind < 0.5 {
         return see_through(colour);
     }
+    var behind = all_behind(corner.place);
+    if behind.nearest <= 0.0 {
+        return see_through(colour);
+    }
     var sum = vec4(0.0);
     for (var sample = 0u; sample < SAMPLES; sample++) {
-        sum += tinted_over(colour, corner, sample);
+        sum += tinted_over(colour, corner, behind.depths[sample], sample);
     }
     return stored_mean(sum);
 }

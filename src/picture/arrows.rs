@@ -3,6 +3,7 @@
 use super::camera::Lens;
 use super::layout::Rectangle;
 use super::narrow::narrow;
+use super::order::farthest_first;
 use super::palette::Colour;
 use super::{Mark, MarkShape};
 use crate::sim::snapshot::Placement;
@@ -22,8 +23,6 @@ const FAINTEST: f64 = 0.33;
 const SHORTEST: [f64; 2] = [9.0, 2.5];
 /// They fade over this part of that length above it.
 const FADING: f64 = 0.35;
-/// Depths that differ by less than this part of the largest are equal.
-const EQUALLY_DEEP: f64 = 1e-6;
 /// More arrows than this hide each other.
 const MOST_ARROWS: usize = 500;
 
@@ -42,6 +41,11 @@ pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
 /// How large arrows are beside those of the reference picture, for elements of a length (px) in type of a unit.
 pub(super) fn size(element: f64, unit: f64) -> f64 {
     (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
+}
+
+/// How large arrows of a height (px) with their halos are beside those of the reference picture.
+pub(super) fn size_of_height(height: f64) -> f64 {
+    height / (HEAD * HEIGHT)
 }
 
 /// An arrow from one pixel to another; the tip stands exactly at the second one.
@@ -92,14 +96,9 @@ impl Arrows<'_> {
             let end = start + self.times * (position[node as usize] - start);
             let (from, _) = self.lens.project(start)?;
             let (to, depth) = self.lens.project(end)?;
-            Some((depth, opacity, [from, to].map(DVec2::from)))
+            Some((depth, (opacity, [from, to].map(DVec2::from))))
         });
-        let mut ends: Vec<_> = ends.collect();
-        // What lies equally deep stays in order, whatever round-off says.
-        let step = EQUALLY_DEEP * ends.iter().map(|(depth, ..)| depth.abs()).fold(0.0, f64::max);
-        let rank = |depth: f64| (depth / step.max(f64::MIN_POSITIVE)).round();
-        ends.sort_by(|one, other| rank(other.0).total_cmp(&rank(one.0)));
-        let arrows = ends.into_iter().filter_map(|(_, opacity, ends)| {
+        let arrows = farthest_first(ends.collect()).filter_map(|(opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
             let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);
             Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })

@@ -123,7 +123,7 @@ impl Chart {
             let text = if is_last { format!("{text} {}", times.unit) } else { text.clone() };
             let width = wide(writer.fonts, &text, self.unit);
             let left = left.min(self.right - width).max(from);
-            if left + width <= free {
+            if left + width + GAP * self.unit <= free {
                 self.write(writer, &text, palette.second_text, left, self.bottom + (BELOW - 3.0) * self.unit);
                 free = left;
             }

@@ -32,6 +32,9 @@ const TICK: f64 = 5.0;
 const APART: f64 = 44.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
+/// How far a thick one stays from the words above, which stand half a margin above the ground or higher (px in the
+/// reference picture).
+const CLEAR: f64 = 2.0;
 
 /// A scale of colours.
 pub(super) struct Bar<'a> {
@@ -99,6 +102,10 @@ impl Legend {
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some([metres, length, size]) = arrow {
+            // However thick lines are, it stays on its ground and clear of the words above.
+            let free = middle - ground + 0.5 * margin - CLEAR * writer.scale.unit;
+            let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
+            let size = size.min(most.max(size / writer.scale.line_factor));
             left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
         }
         // Bars share what is left evenly.

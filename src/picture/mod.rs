@@ -25,6 +25,7 @@ mod legend;
 mod narrow;
 mod number;
 mod obstacle;
+mod order;
 mod palette;
 mod plane;
 mod pointer;
@@ -181,6 +182,8 @@ pub struct Sight {
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
+    /// How much is drawn of the lines of elements, from 0 to 1: less than all where many small ones are drawn apart.
+    pub line_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
     /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.

@@ -1,57 +1,11 @@
-//! The colours of scalar fields: named scales.
+//! The colours of scalar fields, which the scene's maps name.
 
-use crate::colour::{Colour, Oklab, from_oklab};
-use crate::scene::{ColourMap, Theme};
-use colorous::Gradient;
+use crate::colour::Colour;
+use crate::scene::ramp;
+pub(super) use crate::scene::ramp::ramp;
 
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
-pub const SHADES: usize = 64;
-
-/// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent
-/// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
-///
-/// Why these: lightness alone falls evenly over the scale, so that it reads in grey and by colour-blind eyes; hue turns
-/// with it, so that mild shading is not taken for another value; nowhere is there more red than green or blue together,
-/// so that nothing is taken for vermilion, "turned over"; and the dark end is light enough for edges to show on it.
-const POINTS: [[f64; 3]; 9] = [
-    [0.9550, -0.0193, 0.0230],
-    [0.8853, -0.0516, 0.0162],
-    [0.8150, -0.0785, 0.0059],
-    [0.7420, -0.0848, -0.0180],
-    [0.6692, -0.0882, -0.0422],
-    [0.5979, -0.0751, -0.0682],
-    [0.5265, -0.0613, -0.0936],
-    [0.4558, -0.0350, -0.1092],
-    [0.3850, -0.0087, -0.1247],
-];
-
-/// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong, of
-/// hues that are told apart by all eyes; the middle is grey, and nearer to the ground than they are.
-const DIVERGING: [[[f64; 3]; 3]; 2] = [
-    [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
-    [[0.7200, 0.0900, -0.1300], [0.4600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
-];
-
-/// Lightness of the two ends of the scale of greys: those of the usual one, for the same reasons.
-const GREYS: [f64; 2] = [0.9550, 0.3850];
-
-/// The colours of a scale, from its lowest to its highest value at equal steps. On the scales that go with the theme
-/// large values stand out from the ground: they are dark in the light theme and light in the dark one.
-pub(super) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
-    let share = |at: usize| at as f64 / (SHADES - 1) as f64;
-    let with_theme = |at: usize| if theme == Theme::Light { share(at) } else { 1.0 - share(at) };
-    let published =
-        |gradient: Gradient| (0..SHADES).map(|at| gradient.eval_rational(at, SHADES).into_array()).collect();
-    match map {
-        ColourMap::MintIndigo => (0..SHADES).map(|at| from_oklab(point(with_theme(at)))).collect(),
-        ColourMap::Greys => (0..SHADES).map(|at| from_oklab(grey(with_theme(at)))).collect(),
-        ColourMap::Viridis => published(colorous::VIRIDIS),
-        ColourMap::Cividis => published(colorous::CIVIDIS),
-        ColourMap::Magma => published(colorous::MAGMA),
-        ColourMap::VioletGreen => (0..SHADES).map(|at| from_oklab(diverging(share(at), theme))).collect(),
-        ColourMap::PurpleGreen => published(colorous::PURPLE_GREEN),
-    }
-}
+pub const SHADES: usize = ramp::SHADES;
 
 /// The colour of a place on a scale, from 0 to 1.
 pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
@@ -60,134 +14,17 @@ pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
     ramp.get(at).copied().unwrap_or_default()
 }
 
-/// A place on the usual scale.
-fn point(share: f64) -> Oklab {
-    let at = share * (POINTS.len() - 1) as f64;
-    let cell = (at as usize).min(POINTS.len() - 2);
-    Oklab(std::array::from_fn(|axis| {
-        let [from, to] = [POINTS[cell][axis], POINTS[cell + 1][axis]];
-        from + (to - from) * (at - cell as f64)
-    }))
-}
-
-/// A place on the diverging scale.
-fn diverging(share: f64, theme: Theme) -> Oklab {
-    let [low, middle, high] = DIVERGING[usize::from(theme == Theme::Dark)];
-    let (end, strength) = if share < 0.5 { (low, 1.0 - 2.0 * share) } else { (high, 2.0 * share - 1.0) };
-    Oklab(std::array::from_fn(|axis| middle[axis] + (end[axis] - middle[axis]) * strength))
-}
-
-/// A place on the scale of greys.
-fn grey(share: f64) -> Oklab {
-    let [from, to] = GREYS;
-    Oklab([from + (to - from) * share, 0.0, 0.0])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Sight, contrast, difference, oklab};
-    use crate::scene::Palette;
-
-    const USUAL: ColourMap = ColourMap::MintIndigo;
-
-    fn apart(one: Colour, other: Colour) -> f64 {
-        oklab(one).distance(oklab(other))
-    }
-
-    fn lightness(colour: Colour) -> f64 {
-        oklab(colour).0[0]
-    }
-
-    #[test]
-    fn equal_steps_look_equally_large() {
-        for theme in [Theme::Light, Theme::Dark] {
-            let ramp = ramp(USUAL, theme);
-            assert_eq!(ramp.len(), SHADES);
-            // Over eight steps at a time the rounding to bytes does not count.
-            let steps: Vec<_> = ramp.windows(9).map(|part| apart(part[0], part[8])).collect();
-            let (least, most) = steps.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
-            assert!(most / least < 1.12, "{least} {most}");
-        }
-    }
-
-    #[test]
-    fn lightness_tells_the_order_and_nothing_is_vermilion() {
-        for (theme, sign) in [(Theme::Light, -1.0), (Theme::Dark, 1.0)] {
-            let ramp = ramp(USUAL, theme);
-            assert!(ramp.windows(3).all(|part| sign * (lightness(part[2]) - lightness(part[0])) > 0.005));
-            for &shade in &ramp {
-                let [red, green, blue] = shade;
-                assert!(red <= green.max(blue), "{shade:x?}");
-                for alarm in [[0xe2, 0x66, 0x1c], [0xf2, 0x7a, 0x2e]] {
-                    assert!(apart(shade, alarm) > 0.2, "{shade:x?}");
-                }
-            }
-        }
-    }
+    use crate::scene::{ColourMap, Theme};
 
     #[test]
     fn any_place_has_a_colour() {
-        let ramp = ramp(USUAL, Theme::Light);
+        let ramp = ramp(ColourMap::MintIndigo, Theme::Light);
         assert_eq!(colour(&ramp, 0.0), ramp[0]);
         assert_eq!(colour(&ramp, 1.0), ramp[SHADES - 1]);
         assert_eq!([colour(&ramp, -3.0), colour(&ramp, 9.0)], [ramp[0], ramp[SHADES - 1]]);
         assert_eq!(colour(&[], 0.5), [0; 3]);
-    }
-
-    #[test]
-    fn published_scales_begin_and_end_as_published() {
-        for (map, low, high) in [
-            (ColourMap::Viridis, [0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]),
-            (ColourMap::Magma, [0x00, 0x00, 0x04], [0xfc, 0xfd, 0xbf]),
-            (ColourMap::Cividis, [0x00, 0x22, 0x4e], [0xfe, 0xe8, 0x38]),
-            (ColourMap::PurpleGreen, [0x40, 0x00, 0x4b], [0x00, 0x44, 0x1b]),
-        ] {
-            let ramp = ramp(map, Theme::Light);
-            assert_eq!((ramp.len(), &ramp), (SHADES, &super::ramp(map, Theme::Dark)));
-            // The polynomials of Cividis are a few bytes off its table.
-            assert!(apart(ramp[0], low) < 0.03 && apart(ramp[SHADES - 1], high) < 0.03, "{map:?}: {:x?}", ramp[0]);
-        }
-    }
-
-    #[test]
-    fn scales_of_one_direction_tell_the_order_in_grey_and_the_other_has_its_middle_in_the_middle() {
-        for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Magma, ColourMap::Greys] {
-            let ramp = ramp(map, Theme::Dark);
-            assert!(ramp.windows(3).all(|part| lightness(part[2]) > lightness(part[0])), "{map:?}");
-        }
-        let ramp = ramp(ColourMap::PurpleGreen, Theme::Light);
-        let lightest = (0..SHADES).max_by(|&a, &b| lightness(ramp[a]).total_cmp(&lightness(ramp[b])));
-        assert!(lightest.is_some_and(|at| at.abs_diff(SHADES / 2) <= 2), "{lightest:?}");
-        assert!(oklab(ramp[SHADES / 2]).chroma() < 0.02);
-    }
-
-    #[test]
-    fn all_eyes_tell_shortened_springs_from_lengthened_ones() {
-        for theme in [Theme::Light, Theme::Dark] {
-            let ramp = ramp(ColourMap::VioletGreen, theme);
-            let [low, middle, high] = [0, SHADES / 2, SHADES - 1].map(|at| ramp[at]);
-            for sight in Sight::ALL {
-                for (one, other) in [(low, high), (low, middle), (middle, high)] {
-                    let found = difference(one, other, sight);
-                    assert!(found >= 15.0, "{theme:?} {}: {one:x?} and {other:x?} differ by {found}", sight.name());
-                }
-            }
-            // The middle is seen on the ground of its theme.
-            assert!(contrast(middle, Palette::of(theme).background) >= 1.8);
-        }
-    }
-
-    /// `magma` is the one exception, and its description says so.
-    #[test]
-    fn nothing_is_taken_for_turned_over() {
-        use ColourMap::{Cividis, Greys, PurpleGreen, VioletGreen, Viridis};
-        let maps = [USUAL, Viridis, Cividis, Greys, PurpleGreen, VioletGreen];
-        for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
-            let alarm = Palette::of(theme).alarm;
-            for shade in ramp(map, theme) {
-                assert!(apart(shade, alarm) > 0.12, "{map:?}: {shade:x?} is {}", apart(shade, alarm));
-            }
-        }
     }
 }

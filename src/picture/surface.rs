@@ -163,7 +163,12 @@ impl Surroundings<'_> {
         mesh.vertices.reserve(faces.len() * per_face);
         mesh.triangles.reserve(faces.len() * 2 * cut * cut);
         mesh.shades.reserve(if self.shades.is_some() { faces.len() * per_face } else { 0 });
-        let hides_back = self.apart && self.opacity == 1.0 && total > VERY_MANY_FACES && !self.lens.orthographic;
+        // Faces of turned-over elements look inwards: of those, the ones turned away are the ones that are seen.
+        let hides_back = self.apart
+            && kinds.edge == LineKind::Edge
+            && self.opacity == 1.0
+            && total > VERY_MANY_FACES
+            && !self.lens.orthographic;
         let (mut patch, mut borders) = (Patch::default(), Borders::default());
         borders.sides.reserve(4 * faces.len());
         borders.facing.reserve(4 * cut * faces.len());
@@ -190,22 +195,21 @@ impl Surroundings<'_> {
     fn edge(&self, sides: &[([u32; 2], u32)], facing: &[f64], cut: usize, kinds: Lines, lines: &mut Vec<Line>) {
         let [a, b] = ordered(sides[0].0);
         let (start, end) = (self.at(a), self.at(b));
+        let share = self.own_lines();
+        if share == 0.0 {
+            return;
+        }
         let faces_away =
             |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
-        // Edges of turned-over elements are drawn in any case.
-        let share = self.own_lines();
+        // Those of turned-over elements are drawn whichever are asked for.
         let [in_front, behind] = match kinds.edge {
-            LineKind::Edge if share == 0.0 => return,
             LineKind::Edge => self.edges,
             _ => [true; 2],
         };
         let is_large = self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT };
         if is_large && if is_hidden { behind } else { in_front } {
             lines.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
-        }
-        if share == 0.0 {
-            return;
         }
         let along = (end - start) / cut as f64;
         for piece in 0..cut {
@@ -224,12 +228,12 @@ impl Surroundings<'_> {
 
     /// Whether a face of an element of its own is turned away from the viewer: the element hides it.
     fn is_hidden(&self, side: &Side, patch: &Patch) -> bool {
-        let is_solid = side.element.is_some_and(|element| self.body.elements[element as usize].len() > 3);
+        // One that is a face itself hides nothing.
+        let is_solid = side.element.is_some_and(|element| !self.body.topology().is_flat(element as usize));
         is_solid && patch.facing.iter().all(|&seen| seen == 0.0)
     }
 
-    /// How much is drawn of the contours of elements that are apart. Where nothing of them is drawn, neither are edges of
-    /// sound ones: gaps tell them from each other.
+    /// How much is drawn of the lines of elements that are apart. Where that is nothing, gaps tell them from each other.
     fn own_lines(&self) -> f64 {
         if self.apart { own_lines(self.element) } else { 1.0 }
     }

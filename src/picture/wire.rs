@@ -2,6 +2,7 @@
 
 use super::field::{self, NOWHERE};
 use super::narrow::{narrow, narrow_point};
+use super::order::farthest_first;
 use super::palette::{Colour, Palette};
 use super::ramp;
 use super::{Bead, Second, Stroke};
@@ -53,6 +54,9 @@ impl Edges {
     }
 }
 
+/// A line, and how far its middle is from the eye (m).
+type Placed = (f64, Stroke);
+
 /// What is needed to draw lines in one panel.
 pub(super) struct Wire<'a> {
     pub(super) body: &'a Body,
@@ -61,7 +65,8 @@ pub(super) struct Wire<'a> {
     pub(super) origin: DVec3,
     /// The panel's unit of length (m).
     pub(super) side: f64,
-    /// Unit vector away from the viewer.
+    /// The eye (m), and the unit vector away from the viewer.
+    pub(super) eye: DVec3,
     pub(super) forward: DVec3,
     pub(super) palette: &'a Palette,
     /// Thickness of lines, in parts of that in the reference picture.
@@ -99,22 +104,22 @@ impl Wire<'_> {
         }
         if self.surfaces && strain.is_none() {
             let second = Second::OnBody(self.palette.spring_on_body);
-            strokes.iter_mut().for_each(|stroke| stroke.second = second);
+            strokes.iter_mut().for_each(|(_, stroke)| stroke.second = second);
         }
-        self.sorted(strokes)
+        farthest_first(strokes).collect()
     }
 
     /// A spring in the colour of its strain.
-    fn strained(&self, ends: [u32; 2], ramp: &[Colour], range: [f64; 2], haze: &dyn Fn(DVec3) -> f64) -> Stroke {
+    fn strained(&self, ends: [u32; 2], ramp: &[Colour], range: [f64; 2], haze: &dyn Fn(DVec3) -> f64) -> Placed {
         let ends_now = ends.map(|node| self.position[node as usize]);
         let place = field::place(spring_strain(self.body, self.position, ends), range);
         let own = if place == NOWHERE { self.palette.spring } else { ramp::colour(ramp, place) };
         let middle = ends_now[0].midpoint(ends_now[1]);
         let faded = |colour| mixed(colour, self.palette.background, haze(middle));
-        let plain = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
+        let (depth, plain) = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
         // Beside surfaces, lines of all colours must stand out.
         let second = if self.surfaces { Second::Casing(faded(self.palette.casing)) } else { Second::None };
-        Stroke { second, ..plain }
+        (depth, Stroke { second, ..plain })
     }
 
     /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.
@@ -128,7 +133,7 @@ impl Wire<'_> {
             let elements = edges.of_elements.iter().enumerate().filter(|(_, edges)| edges.is_empty());
             elements.for_each(|(element, _)| self.spokes(element, self.palette.spring, EDGE, &mut strokes));
         }
-        let mut strokes = self.sorted(strokes);
+        let mut strokes: Vec<_> = farthest_first(strokes).collect();
         let mut alarm = Vec::new();
         let plain = Wire { shades: None, ..*self };
         for (element, of_element) in edges.of_elements.iter().enumerate() {
@@ -141,7 +146,7 @@ impl Wire<'_> {
                 }
             }
         }
-        strokes.extend(self.sorted(alarm));
+        strokes.extend(farthest_first(alarm));
         strokes
     }
 
@@ -160,15 +165,13 @@ impl Wire<'_> {
                 edges.iter().for_each(|&ends| plain.stroke(ends, self.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
             }
         }
-        strokes
+        strokes.into_iter().map(|(_, stroke)| stroke).collect()
     }
 
     /// Nodes, the farthest first.
     pub(super) fn beads(&self, radius: f64) -> Vec<Bead> {
         let haze = self.haze();
-        let mut order: Vec<usize> = (0..self.position.len()).collect();
-        let depth = |node: &usize| rounded(self.position[*node].dot(self.forward) / self.side);
-        order.sort_by(|a, b| depth(b).total_cmp(&depth(a)).then(a.cmp(b)));
+        let nodes = self.position.iter().enumerate().map(|(node, &at)| (self.depth(at), node));
         let bead = |node: usize| {
             // A disc is light so that its rim shows; the farther it is, the fainter is the rim.
             let faded = 0.8 * haze(self.position[node]);
@@ -183,11 +186,11 @@ impl Wire<'_> {
                 rim: mixed(self.palette.edge, self.palette.background, faded),
             }
         };
-        order.into_iter().map(bead).collect()
+        farthest_first(nodes.collect()).map(bead).collect()
     }
 
     /// Lines from the middle of an element that has no edges of its own to its nodes.
-    fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Stroke>) {
+    fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
         let nodes = &self.body.elements[element];
         let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
         for &node in nodes {
@@ -196,7 +199,8 @@ impl Wire<'_> {
                 None => self.straight(ends, [colour; 2], width),
                 Some(own) => {
                     let second = Second::Casing(self.palette.casing);
-                    Stroke { second, ..self.straight(ends, [own; 2], CASED * width) }
+                    let (depth, plain) = self.straight(ends, [own; 2], CASED * width);
+                    (depth, Stroke { second, ..plain })
                 }
             });
         }
@@ -209,7 +213,7 @@ impl Wire<'_> {
         colour: Colour,
         width: f64,
         haze: &dyn Fn(DVec3) -> f64,
-        strokes: &mut Vec<Stroke>,
+        strokes: &mut Vec<Placed>,
     ) {
         let [from, to] = [a, b].map(|node| self.position[node as usize]);
         let faded = |colour, point| mixed(colour, self.palette.background, haze(point));
@@ -224,22 +228,28 @@ impl Wire<'_> {
             let ends = shares.map(|share| from.lerp(to, share));
             let colours = shares.map(|share| ramp::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
             let casing = faded(self.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
-            let plain = self.straight(ends, colours, CASED * width);
-            strokes.push(Stroke { second: Second::Casing(casing), ..plain });
+            let (depth, plain) = self.straight(ends, colours, CASED * width);
+            strokes.push((depth, Stroke { second: Second::Casing(casing), ..plain }));
         }
     }
 
-    fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Stroke {
+    fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
         let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
         let behind = (CLEAR + (BEHIND - CLEAR) * self.opacity) * strength * strength;
         let behind = behind.round() as u8;
-        Stroke {
+        let stroke = Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,
             second: Second::None,
             behind: if self.surfaces { behind.max(1) } else { 0 },
             width: narrow(width * self.line * strength.max(THINNEST)),
-        }
+        };
+        (self.depth(ends[0].midpoint(ends[1])), stroke)
+    }
+
+    /// How far a point is from the eye (m), along its line of sight.
+    fn depth(&self, point: DVec3) -> f64 {
+        (point - self.eye).dot(self.forward)
     }
 
     fn place_colour(&self, node: u32) -> Option<Colour> {
@@ -261,22 +271,6 @@ impl Wire<'_> {
         let forward = self.forward;
         move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
-
-    /// The farthest first, so that nearer lines run over them; what is equally far stays in order.
-    fn sorted(&self, mut strokes: Vec<Stroke>) -> Vec<Stroke> {
-        let forward = narrow_point(self.forward);
-        let depth =
-            |stroke: &Stroke| (glam::Vec3::from(stroke.ends[0]) + glam::Vec3::from(stroke.ends[1])).dot(forward);
-        let rank = |stroke: &Stroke| rounded(f64::from(depth(stroke)));
-        strokes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
-        strokes
-    }
-}
-
-/// A depth (sides) without its last digits: what lies equally deep is not put in another order by round-off.
-fn rounded(depth: f64) -> f64 {
-    const STEP: f64 = 1e-5;
-    (depth / STEP).round()
 }
 
 /// The change of the distance of two nodes over their distance at rest; NaN where that is zero.

@@ -194,10 +194,12 @@ impl Renderer {
         }
         let gpu = self.gpu.clone();
         let (places, needed) = panel::place(picture);
-        let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed)) {
+        // Where nothing lies behind any surface, nobody asks for it but lines of turned-over elements without faces.
+        let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
+        let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
             None => {
-                let bodies = Bodies::new(&gpu, target::rounded(needed), self.samples);
+                let bodies = Bodies::new(&gpu, target::rounded(needed), self.samples, has_behind);
                 self.surfaces.retarget(&gpu, &bodies);
                 self.lines.retarget(&gpu, &bodies);
                 self.composite.retarget(&gpu, &bodies);
@@ -251,8 +253,7 @@ impl Renderer {
         let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        // Where nothing lies behind any surface, nobody asks for it but lines of turned-over elements without faces.
-        if picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel)) {
+        if has_behind {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
             self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint);
             if let Some(solids) = solids.filter(|_| with_clear) {

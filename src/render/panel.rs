@@ -31,7 +31,7 @@ pub(super) struct PanelUniform {
     pub(super) opacity: f32,
     pub(super) hatch: f32,
     pub(super) behind: f32,
-    pub(super) spare: f32,
+    pub(super) line_share: f32,
 }
 
 /// An sRGB colour as linear light.
@@ -114,7 +114,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         opacity: panel.opacity,
         hatch: if panel.hatch { 1.0 } else { 0.0 },
         behind: if has_behind(panel) { 1.0 } else { 0.0 },
-        spare: 0.0,
+        line_share: sight.line_share,
     }
 }
 

@@ -89,7 +89,8 @@ fn structs_are_laid_out_alike_on_both_sides() {
             place,
             opacity,
             hatch,
-            behind
+            behind,
+            line_share
         ]
     );
     same_layout!(

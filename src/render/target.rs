@@ -41,6 +41,8 @@ pub(super) struct Bodies {
     /// Everything of the bodies, with all samples.
     pub(super) colour: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
+    /// Whether the next two are as large as the others, or of a single pixel that nobody asks for.
+    has_behind: bool,
     /// The turned-over elements by themselves, with all samples.
     pub(super) alarm_colour: wgpu::TextureView,
     pub(super) alarm_depth: wgpu::TextureView,
@@ -49,8 +51,9 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    pub(super) fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
-        let texture = |label, format, sample_count| {
+    /// Textures of a size, also for what lies behind surfaces or not.
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2], samples: u32, has_behind: bool) -> Self {
+        let texture = |label, size, format, sample_count| {
             let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: extent(size),
@@ -63,21 +66,24 @@ impl Bodies {
             });
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
+        let behind = if has_behind { size } else { [1; 2] };
         Self {
             size,
-            colour: texture("bodies", BODY_FORMAT, samples),
-            depth: texture("depth of bodies", DEPTH_FORMAT, samples),
-            alarm_colour: texture("turned over", BODY_FORMAT, samples),
-            alarm_depth: texture("depth of turned over", DEPTH_FORMAT, samples),
-            lines: texture("lines", LINE_FORMAT, 1),
+            colour: texture("bodies", size, BODY_FORMAT, samples),
+            depth: texture("depth of bodies", size, DEPTH_FORMAT, samples),
+            has_behind,
+            alarm_colour: texture("turned over", behind, BODY_FORMAT, samples),
+            alarm_depth: texture("depth of turned over", behind, DEPTH_FORMAT, samples),
+            lines: texture("lines", size, LINE_FORMAT, 1),
         }
     }
 
-    /// Whether regions of a size fit, and fill enough of the textures that smaller ones would hardly be quicker.
-    pub(super) fn suit(&self, needed: [u32; 2]) -> bool {
+    /// Whether regions of a size fit, with what lies behind surfaces if anything does, and fill enough of the textures that
+    /// smaller ones would hardly be quicker.
+    pub(super) fn suit(&self, needed: [u32; 2], has_behind: bool) -> bool {
         let area = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
         let fits = needed[0] <= self.size[0] && needed[1] <= self.size[1];
-        fits && 2 * area(rounded(needed)) >= area(self.size)
+        fits && (self.has_behind || !has_behind) && 2 * area(rounded(needed)) >= area(self.size)
     }
 }
 

@@ -20,6 +20,7 @@ mod limits;
 mod load;
 mod npz;
 mod palette;
+pub(crate) mod ramp;
 mod report;
 mod resolve;
 mod schema;

@@ -36,7 +36,8 @@ pub struct Snapshot {
     pub position: Vec<DVec3>,
     /// Velocity of each node (m/s).
     pub velocity: Vec<DVec3>,
-    /// Whether each element has changed sign; see [`Diagnostics::turned_over`].
+    /// Whether each element has changed sign by more than round-off, to below −1e-9 of the value at rest; see
+    /// [`Diagnostics::turned_over`].
     pub turned_over: Vec<bool>,
     /// Where the best rigid placement of the rest shape is.
     pub placement: Placement,
@@ -82,8 +83,8 @@ pub struct Diagnostics {
     /// The largest angular acceleration that approximation errors of the rotations amount to, α of Eq. (18)
     /// (rad/s²); NaN for a model without rotations.
     pub residual: f64,
-    /// How many elements have changed sign: signed area in the plane, signed volume in space, for elements of
-    /// other kinds the determinant of `Σ r R0ᵀ`.
+    /// How many elements have changed sign by more than round-off, to below −1e-9 of the value at rest: signed area in
+    /// the plane, signed volume in space, for elements of other kinds the determinant of `Σ r R0ᵀ`.
     pub turned_over: usize,
     /// Total signed volume over the rest value; NaN for a body without any volume, such as a cloth.
     pub volume_ratio: f64,

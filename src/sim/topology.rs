@@ -148,7 +148,7 @@ impl Elements<'_> {
     }
 
     /// Whether an element is a face itself, with two equal sides, so that it bounds nothing.
-    fn is_flat(&self, element: usize) -> bool {
+    pub(crate) fn is_flat(&self, element: usize) -> bool {
         match self.kinds[element] {
             ElementKind::Polygon | ElementKind::Triangle => true,
             ElementKind::Other => self.hulls.of(element).len() == 1,

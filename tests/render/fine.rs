@@ -1,6 +1,6 @@
 //! Smooth borders everywhere, text included: pictures against themselves, drawn four times larger and averaged.
 
-use super::gpu;
+use super::{fig4b, gpu, linear};
 use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::{MarkShape, Picture, compose};
@@ -69,11 +69,6 @@ fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
     renderer.draw(picture).expect("the device works")
 }
 
-fn linear(byte: u8) -> f64 {
-    let encoded = f64::from(byte) / 255.0;
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
-
 fn encoded(light: f64) -> f64 {
     255.0 * if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
@@ -128,6 +123,7 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
         "obstacles",
         "obstacles-plane",
         "plane",
+        "see-through",
         "springs",
         "strip",
         "words",
@@ -142,5 +138,31 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
         let truth = means(&large, &light);
         let ours = summary(small.as_raw().iter().zip(&truth).map(|(&byte, &truth)| off(byte, truth)));
         assert!(ours.0 <= MEAN && ours.1 as f64 <= PART * small.as_raw().len() as f64, "{name}: {ours:?}");
+    }
+}
+
+#[test]
+fn borders_of_what_is_seen_through_a_body_are_as_smooth_as_in_larger_pictures() {
+    let Some(gpu) = gpu("borders_of_what_is_seen_through_a_body_are_as_smooth_as_in_larger_pictures") else { return };
+    let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
+    let (mut scene, mut frame) = fig4b(0);
+    scene.view.size = [320, 180];
+    frame.runs.truncate(1);
+    for opacity in [1.0, 0.35] {
+        scene.view.opacity = opacity;
+        let mut draw_both = |turned_over: bool| {
+            // The cube in the middle.
+            frame.runs[0].snapshot.turned_over[13] = turned_over;
+            let mut picture = compose(&scene, &frame);
+            picture.panels[0].lines.clear();
+            (draw(gpu, &picture), draw(gpu, &larger(&picture)))
+        };
+        let [(without, _), (small, large)] = [false, true].map(&mut draw_both);
+        let truth = means(&large, &light);
+        let channels = small.as_raw().iter().zip(without.as_raw()).zip(&truth);
+        let changed =
+            channels.filter(|((byte, without), _)| byte != without).map(|((&byte, _), &truth)| off(byte, truth));
+        let ours = summary(changed);
+        assert!(ours.0 <= MEAN, "opacity {opacity}: {ours:?}");
     }
 }

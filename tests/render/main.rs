@@ -54,3 +54,9 @@ fn fig4b(frame: u64) -> (Scene, Frame) {
     let frame = Sequence::new(&scene, &[0, 1]).frame(frame);
     (scene, frame)
 }
+
+/// A byte of sRGB as linear light, from 0 to 1.
+fn linear(byte: u8) -> f64 {
+    let encoded = f64::from(byte) / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}

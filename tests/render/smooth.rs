@@ -1,6 +1,6 @@
 //! Smooth borders, and nothing that flickers: what moves by a hair changes pixels by a hair.
 
-use super::gpu;
+use super::{gpu, linear};
 use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
@@ -49,12 +49,6 @@ fn empty_plane(obstacle: &str) -> Picture {
     picture.marks.clear();
     picture.words.clear();
     picture
-}
-
-/// Light as it is, not as it is stored.
-fn linear(byte: u8) -> f64 {
-    let encoded = f64::from(byte) / 255.0;
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Along a border with a slight slope, a row of pixels goes from the ground to the darkest of it in many even steps.

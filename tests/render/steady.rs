@@ -1,6 +1,6 @@
 //! Nothing flickers: where everything moves by a twentieth of a pixel a frame, no pixel jumps, and none goes to and fro.
 
-use super::gpu;
+use super::{gpu, linear};
 use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::Composer;
@@ -30,11 +30,6 @@ struct Unrest {
 /// that; where elements are a few pixels large, two samples may do so at once. Of what goes to and fro, less than one
 /// sample is left: an edge that stands still within the 1/256 px to which corners are rounded as they are drawn.
 const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
-
-fn linear(byte: u8) -> f64 {
-    let encoded = f64::from(byte) / 255.0;
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
 
 fn unrest(film: &[RgbImage]) -> Unrest {
     let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
@@ -115,7 +110,9 @@ fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
 fn way(scene: &Scene, from: &Frame, to: &Frame) -> f64 {
     let pixels = f64::from(Composer::new(scene).compose(from).panels[0].sight.element) / scene.view.side;
     let nodes = |frame: &Frame| frame.runs.iter().flat_map(|run| run.snapshot.position.clone()).collect::<Vec<_>>();
-    nodes(from).iter().zip(nodes(to)).map(|(one, other)| one.distance(other)).fold(0.0, f64::max) * pixels
+    // Elements drawn apart go as much farther as they are farther apart.
+    let times = pixels * (1.0 + scene.view.explode);
+    nodes(from).iter().zip(nodes(to)).map(|(one, other)| one.distance(other)).fold(0.0, f64::max) * times
 }
 
 fn assert_steady(name: &str, film: &[RgbImage]) {

@@ -1,7 +1,7 @@
 //! Where words stand: nowhere over each other, and in every frame at the same place.
 
 use super::fig4b;
-use localshape::picture::{Composer, Picture, TextRun, compose};
+use localshape::picture::{Composer, Mark, MarkShape, Picture, TextRun, compose};
 use localshape::scene::{Labels, Limits, Scene};
 use localshape::sequence::Sequence;
 
@@ -90,16 +90,51 @@ fn no_words_overlap_and_none_leaves_the_picture() {
     }
 }
 
+/// Left, top, right and bottom of what is drawn of the key's arrow.
+fn key_arrow(picture: &Picture) -> Option<[f32; 4]> {
+    let words = picture.words.iter().find(|word| word.text.starts_with("displacement "))?;
+    let [left, top, _, bottom] = words.bounds();
+    let is_beside = |mark: &&Mark| {
+        let [x, y, width, height] = mark.rectangle;
+        let middle = y + 0.5 * height;
+        mark.shape == MarkShape::Arrow
+            && mark.along == Mark::UPRIGHT
+            && x + width < left
+            && top < middle
+            && middle < bottom
+    };
+    let [x, y, width, height] = picture.marks.iter().rev().find(is_beside)?.rectangle;
+    let (halo, middle) = (3.0 / 23.0 * height, y + 0.5 * height);
+    // The head of a short arrow is lower than its mark.
+    let head = (17.0 / 23.0 * height).min(0.502 * (width - 2.0 * halo));
+    let half = 0.5 * head * (1.0 + 6.0 / 17.0);
+    Some([x, middle - half, x + width, middle + half])
+}
+
 #[test]
 fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
     let shown = "show = ['springs', 'displacements']\n";
-    for (margin, text_scale) in [(0.0, 0.5), (0.0, 1.0), (0.0, 1.5), (0.4, 1.0), (2.0, 0.5), (2.0, 1.0), (2.0, 1.5)] {
-        for strip in ["strip = 'shape_error'", ""] {
+    let mut arrows = 0;
+    for (margin, text_scale, line_scale) in [
+        (0.0, 0.5, 4.0),
+        (0.0, 1.0, 1.0),
+        (0.0, 1.0, 4.0),
+        (0.0, 1.5, 1.0),
+        (0.0, 3.0, 4.0),
+        (0.4, 1.0, 1.0),
+        (1.0, 1.0, 4.0),
+        (2.0, 0.5, 4.0),
+        (2.0, 1.0, 1.0),
+        (2.0, 1.5, 1.0),
+        (2.0, 3.0, 1.0),
+    ] {
+        // In low panels, strips with type of three times the size have no room for two rows.
+        for strip in ["", "strip = 'shape_error'"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
             for view in ["", "caption = ''", "caption = ''\nlegend = false", "panels = 'column'"] {
                 let text = ALL.lines().filter(|line| !line.starts_with("strip"));
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
-                let scales = format!("margin = {margin}\ntext_scale = {text_scale}");
+                let scales = format!("margin = {margin}\ntext_scale = {text_scale}\nline_scale = {line_scale}");
                 let mut scene = load(&format!("{}\n{strip}\n{shown}{scales}\n{view}\n", text.join("\n")));
                 for size in [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]] {
                     scene.view.size = size;
@@ -114,8 +149,19 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
                             other.bounds()
                         );
                     }
+                    let arrow = key_arrow(&picture);
+                    arrows += usize::from(arrow.is_some());
                     for word in &picture.words {
                         let [left, top, right, bottom] = word.bounds();
+                        if let Some([x, y, to_x, to_y]) = arrow {
+                            let is_over = x < right && left < to_x && y < bottom && top < to_y;
+                            assert!(
+                                !is_over,
+                                "“{}” at {:?} lies over the key's arrow in {place}: {arrow:?}",
+                                word.text,
+                                word.bounds()
+                            );
+                        }
                         let [width, height] = size.map(|length| length as f32);
                         let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
                         assert!(inside, "“{}” leaves the picture of {place}: {:?}", word.text, word.bounds());
@@ -124,6 +170,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
             }
         }
     }
+    assert!(arrows > 100, "{arrows}");
 }
 
 #[test]
@@ -143,7 +190,7 @@ fn margins_move_everything_that_stands_on_them() {
             ("a", &[0, 1]),
             ("Local shape", &[0, 1]),
             ("after release", &[1, 2]),
-            ("shape error", &[]),
+            ("shape error", &[2]),
             ("displacement ", &[0]),
             ("A caption of", &[0]),
         ] {

@@ -160,6 +160,23 @@ fn words_that_cannot_be_read_are_refused() {
 }
 
 #[test]
+fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_elements() {
+    for (map, found) in [("mint-indigo", None), ("greys", None), ("viridis", Some("10.5")), ("magma", Some("7.7"))] {
+        let text = format!("hatch = false\ncolour = {{ by = 'speed', map = '{map}' }}");
+        let Some(found) = found else {
+            assert!(!good(&with(&text)).view.hatch);
+            continue;
+        };
+        let expected = format!("(deuteranopia) they differ by {found} (CIEDE2000); expected at least 20");
+        view(&text, &[(20, 9, &expected)]);
+        view(&text, &[(20, 9, "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`")]);
+        // With a hatch, or where the field colours no surfaces, something else tells them.
+        good(&with(&format!("colour = {{ by = 'speed', map = '{map}' }}")));
+        good(&with(&format!("{text}\nshow = ['nodes']")));
+    }
+}
+
+#[test]
 fn turned_over_elements_that_anybody_could_overlook_are_refused() {
     view(
         "colours = { turned_over = '#8fa0c0' }",

@@ -119,6 +119,7 @@ impl Draft<'_> {
             position: &self.position,
             origin: self.origin,
             side: self.side,
+            eye: self.lens.eye,
             forward: self.lens.forward,
             palette: &self.composer.palette,
             line: self.scale.line(),

@@ -149,10 +149,8 @@ impl<'a> Draft<'a> {
             flat: self.flat,
             line_scale: narrow(self.scale.line()),
             soft: narrow(self.composer.soft),
-            // Lines of elements that are apart fade with this.
-            element: narrow(
-                self.element * if self.composer.exploded.is_some() { own_lines(self.element) } else { 1.0 },
-            ),
+            element: narrow(self.element),
+            line_share: narrow(if self.composer.exploded.is_some() { own_lines(self.element) } else { 1.0 }),
             middle: self.middle(),
         }
     }

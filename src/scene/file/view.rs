@@ -36,8 +36,8 @@ pub(in crate::scene) struct ViewFile {
     #[schemars(range(min = 0.25, max = 4.0))]
     pub(in crate::scene) line_scale: f64,
     /// How many times as wide as usual the margins of the picture and of each panel are: 40 pixels in a picture 720 high.
-    /// The body has what they leave. At 0 they are as narrow as words allow that must not touch, a quarter of that at the
-    /// usual size of type.
+    /// The body has what they leave. They are never narrower than a quarter of that times `text_scale`, whether anything is
+    /// written or not: words must not touch.
     #[schemars(range(min = 0.0, max = 2.0))]
     pub(in crate::scene) margin: f64,
     /// What the clock counts from, in the words shown under the time.
@@ -100,10 +100,11 @@ pub(in crate::scene) struct ViewFile {
     /// Which lines are drawn on surfaces.
     pub(in crate::scene) edges: EdgesFile,
     /// Whether silhouettes are drawn: the outlines of sound elements and of solid obstacles, and where folds of these end
-    /// before what is farther away. Those of turned-over elements are drawn in any case.
+    /// before what is farther away. Without them `edges = "outline"` leaves sound elements no line at all. Those of
+    /// turned-over elements are drawn in any case, unless elements drawn apart are too small for lines.
     pub(in crate::scene) outline: bool,
     /// Whether turned-over elements are hatched. Without it their colour tells of them; where a field colours surfaces
-    /// they have it instead of the field's.
+    /// they have it instead of the field's, which must then have a map that all eyes tell from it.
     pub(in crate::scene) hatch: bool,
     /// From where the scene is seen.
     pub(in crate::scene) camera: CameraFile,
@@ -201,12 +202,13 @@ pub(in crate::scene) struct LightFile {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(in crate::scene) enum EdgesFile {
-    /// The outline and all edges, those behind the body faintly.
+    /// The outline, unless `outline = false`, and all edges, those behind the body faintly.
     #[default]
     All,
-    /// The outline and the edges in front.
+    /// The outline, unless `outline = false`, and the edges in front.
     Visible,
-    /// The outline alone; edges of turned-over elements are drawn in any case.
+    /// The outline alone, unless `outline = false`. Edges of turned-over elements are drawn in any case, unless elements
+    /// drawn apart are too small for lines.
     Outline,
 }
 

@@ -1,10 +1,11 @@
 //! What the scene looks like: colours, type, lines and margins.
 
 use crate::colour::{Colour, Sight, contrast, difference, written};
-use crate::scene::file::{BackgroundFile, ColoursFile, ViewFile};
+use crate::scene::file::{BackgroundFile, ColoursFile, ShowFile, ViewFile};
 use crate::scene::palette::{LEAST_CONTRAST, Palette};
+use crate::scene::ramp::ramp;
 use crate::scene::report::{Report, Way};
-use crate::scene::view::{FloorStyle, FontFiles, Look};
+use crate::scene::view::{FloorStyle, FontFiles, Look, Theme};
 
 /// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
@@ -23,6 +24,7 @@ pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     let floor = typed.colours.floor.filter(|_| !transparent && typed.floor != FloorStyle::None);
     check_text(&typed.colours, floor.map(|floor| floor.0), &palette, report);
     check_alarm(&typed.colours, &palette, report);
+    check_field(typed, theme, &palette, report);
     (report.total() == known).then(|| {
         let (text_scale, line_scale, margin) = (typed.text_scale, typed.line_scale, typed.margin);
         Look { theme, palette, transparent, font, text_scale, line_scale, margin }
@@ -84,6 +86,27 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
         rounded_down(found)
     );
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
+}
+
+/// Nor for one that a field colours, where no hatch tells them apart.
+fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut Report<'_>) {
+    let shows_surfaces = typed.show.as_ref().is_none_or(|shown| shown.contains(&ShowFile::Surfaces));
+    let Some(colour) = typed.colour.as_ref().filter(|_| !typed.hatch && shows_surfaces) else { return };
+    let shades = ramp(colour.map, theme);
+    let seen = shades.iter().flat_map(|&shade| Sight::ALL.map(|sight| (shade, sight)));
+    let measured = seen.map(|(shade, sight)| (difference(shade, palette.alarm, sight), shade, sight));
+    let nearest = measured.min_by(|one, other| one.0.total_cmp(&other.0));
+    let Some((found, shade, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
+    let message = format!(
+        "without a hatch, turned-over elements are told from the field by their colour alone, and {} is too like {} on \
+         its scale: to {} they differ by {} (CIEDE2000); expected at least {LEAST_DIFFERENCE}",
+        written(palette.alarm),
+        written(shade),
+        sight.name(),
+        rounded_down(found)
+    );
+    let help = "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
+    report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 
 /// A number with one digit behind the point, never more than it is: what falls short by a little must not look enough.
