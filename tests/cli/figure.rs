@@ -108,8 +108,9 @@ fn what_has_no_room_is_told() {
         return;
     }
     let place = place();
-    place.write("tall.toml", &format!("[forces]\nscenes = [{}]", "'two.toml', 'small.toml', ".repeat(6)));
-    place.write("two.toml", &crate::support::SMALL.replace("duration = 0.1", "duration = 0.2"));
+    let names: Vec<_> = (0..12).map(|at| format!("'{at}.toml'")).collect();
+    names.iter().for_each(|name| place.write(name.trim_matches('\''), crate::support::SMALL));
+    place.write("tall.toml", &format!("[forces]\nscenes = [{}]", names.join(", ")));
     place.run("figure tall.toml --size 320x200").bad(2, &["tall: at 320×200 there is no room"]);
     assert_eq!(place.names("output/figures"), [""; 0]);
 }

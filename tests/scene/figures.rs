@@ -122,7 +122,7 @@ fn every_mistake_is_said_where_it_is() {
             1,
             "strips mark the moments of columns",
         ),
-        ("[forces]\nscenes = ['fig4b.toml', 'none.toml']", 2, 26, "none.toml: there is no such file"),
+        ("[forces]\nscenes = ['fig4b.toml', 'none.toml']", 2, 25, "none.toml: there is no such file"),
         ("[forces]\nscenes = ['fig4b.toml']\ncompare = 'Local shap'", 3, 11, "did you mean “Local shape”?"),
         ("[forces]\nscenes = ['fig4b.toml']\nnotes = ['a', 'b', 'c']", 3, 9, "more notes (3) than runs (2)"),
     ];

@@ -229,7 +229,9 @@ impl Scenes<'_, '_, '_> {
         let before = self.report.total();
         let path = |index: usize| [Way::Key("forces"), Way::Key("scenes"), Way::Index(index)];
         for (index, named) in file.scenes.iter().enumerate() {
-            self.scene(named, &path(index))?;
+            if self.scene(named, &path(index))?.is_some_and(|place| place < index) {
+                self.report.at(&path(index), "this scene is named a second time", None);
+            }
         }
         if self.report.total() > before {
             return Ok(None);

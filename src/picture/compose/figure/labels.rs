@@ -12,7 +12,7 @@ const TURN_COST: f64 = 14.0;
 const DISTANCE_COST: f64 = 1.2;
 /// What it costs to stand at the tail of an arrow, and how far behind it the node there reaches (px in the reference
 /// picture).
-const TAIL_COST: f64 = 20.0;
+const TAIL_COST: f64 = 38.0;
 const TAIL: f64 = 5.0;
 /// What each corner and the middle of a label cost that lie on a surface.
 const SURFACE_COST: f64 = 9.0;
