@@ -162,10 +162,9 @@ mod tests {
         assert_eq!(format!("{:?}", taking.finish()), format!("{whole:?}"));
         let last = sheet.scenes[0].last_frame();
         let frame = Sequence::new(&sheet.scenes[0], &[0, 1]).frame(last);
-        let time = sheet.columns.iter().position(|column| column.time == Some(sheet.scenes[0].frame_time(last)));
-        if let Some(column) = time {
-            assert_eq!(whole.cells[1][column].snapshot.position, frame.runs[1].snapshot.position);
-        }
+        let time = Some(sheet.scenes[0].frame_time(last));
+        let column = sheet.columns.iter().position(|column| column.time == time).expect("the last moment is shown");
+        assert_eq!(whole.cells[1][column].snapshot.position, frame.runs[1].snapshot.position);
         assert_eq!(whole.history.unwrap().courses.len(), 2);
     }
 }

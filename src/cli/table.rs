@@ -118,7 +118,7 @@ impl Table {
     /// How a table is made, by which its files are known again.
     fn mark(&self, name: Name) -> String {
         match name {
-            Name::Ratio => ratio::MARK.to_owned(),
+            Name::Ratio => ratio::mark(self.threads.map_or(1, usize::from)),
             _ => self.table1().mark(),
         }
     }

@@ -49,6 +49,14 @@ impl<'t> Report<'t> {
         self.total
     }
 
+    /// Whether the key at the end of `path` is typed; a default is not.
+    pub(super) fn is_typed(&self, path: &[Way<'_>]) -> bool {
+        match path {
+            [before @ .., Way::Key(key)] => table_at(self.root, before).is_some_and(|table| table.contains_key(*key)),
+            _ => false,
+        }
+    }
+
     /// A mistake at a span of the text.
     pub(super) fn at_span(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         self.total += 1;

@@ -9,16 +9,22 @@
 
 use super::sheet::figure;
 use super::{Sheet, Spread, Watch, scene};
-use crate::output::{Clock, exact};
+use crate::output::{Clock, Spent, exact};
 use crate::scene::Scene;
 use crate::sim::topology::Springs;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The names of the table's files: itself, and the same as CSV.
 pub const FILES: [&str; 2] = ["ratio.md", "ratio.csv"];
 
 /// The mark of the Markdown file, by which it is known again: how it is made.
-pub const MARK: &str = "localshape table ratio";
+pub fn mark(threads: usize) -> String {
+    match threads {
+        1 => "localshape table ratio".to_owned(),
+        threads => format!("localshape table ratio --threads {threads}"),
+    }
+}
 
 /// The computation time of the shape model over that of mass-spring, as printed in section 4.
 pub const PRINTED: f64 = 1.05;
@@ -69,10 +75,41 @@ pub struct Comparison {
     pub ratio: Spread,
 }
 
+/// What was measured with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Time {
+    /// Time of one thread on a processor.
+    Processor,
+    /// Time on the wall.
+    Wall,
+}
+
+impl Time {
+    /// One clock for all turns, so that no ratio is one of two kinds: the processor's for one thread, if the system
+    /// tells it.
+    fn of(threads: usize, told: bool) -> Self {
+        if threads == 1 && told { Self::Processor } else { Self::Wall }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Processor => "processor",
+            Self::Wall => "wall",
+        }
+    }
+
+    /// In seconds. Should a system stop telling, the wall goes on.
+    fn of_spent(self, spent: Spent) -> f64 {
+        spent.cpu.filter(|_| self == Self::Processor).unwrap_or(spent.wall)
+    }
+}
+
 /// The ratios, measured on a number of threads of one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratios {
     threads: usize,
+    time: Time,
     rounds: u32,
     /// Block by block, in the order of [`SPRINGS`].
     pub comparisons: Vec<Comparison>,
@@ -82,9 +119,11 @@ pub struct Ratios {
 /// it.
 pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Ratios> {
     let mut comparisons = Vec::new();
+    let threads = rayon::current_num_threads();
+    let time = Time::of(threads, Clock::thread().spent().cpu.is_some());
     for &side in &protocol.sides {
         let scene = block(side);
-        let times = take_turns(&scene, protocol, watch)?;
+        let times = take_turns(&scene, protocol, time, watch)?;
         let (shape, others) = times.split_first()?;
         for ((&springs, times), run) in SPRINGS.iter().zip(others).zip(&scene.runs[1..]) {
             comparisons.push(Comparison {
@@ -97,7 +136,7 @@ pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Ratios> {
             });
         }
     }
-    Some(Ratios { threads: rayon::current_num_threads(), rounds: protocol.rounds, comparisons })
+    Some(Ratios { threads, time, rounds: protocol.rounds, comparisons })
 }
 
 /// A block of cubes that stands on a floor: the shape model, then each arrangement of springs.
@@ -124,7 +163,7 @@ fn block(side: u32) -> Scene {
 }
 
 /// The time of each run's turns (ns for one cube and step), round by round.
-fn take_turns(scene: &Scene, protocol: &Protocol, watch: &Watch<'_>) -> Option<Vec<Vec<f64>>> {
+fn take_turns(scene: &Scene, protocol: &Protocol, time: Time, watch: &Watch<'_>) -> Option<Vec<Vec<f64>>> {
     let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
     let mut times = vec![Vec::new(); worlds.len()];
     let cubes = scene.body.elements.len() as u64;
@@ -137,10 +176,7 @@ fn take_turns(scene: &Scene, protocol: &Protocol, watch: &Watch<'_>) -> Option<V
             let run = (round + turn) % worlds.len();
             let clock = Clock::thread();
             worlds[run].advance(steps);
-            let spent = clock.spent();
-            let alone = rayon::current_num_threads() == 1;
-            let time = spent.cpu.filter(|_| alone).unwrap_or(spent.wall);
-            times[run].push(time * 1e9 / (steps * cubes) as f64);
+            times[run].push(time.of_spent(clock.spent()) * 1e9 / (steps * cubes) as f64);
             if !watch(1) {
                 return None;
             }
@@ -157,16 +193,16 @@ impl Ratios {
 
     /// The table for people.
     pub fn markdown(&self) -> String {
-        let (threads, rounds) = (self.threads, self.rounds);
+        let (threads, rounds, time) = (self.threads, self.rounds, self.time.name());
         let mut text = format!(
-            "<!-- {MARK} -->\n\
+            "<!-- {} -->\n\
             # Computation time of the shape model over that of mass-spring\n\n\
-            Whole steps of blocks of cubes on a floor, two passes of Eq. (15), {} of {threads} thread{} ({} {}). Medians \
+            Whole steps of blocks of cubes on a floor, two passes of Eq. (15), {time} time of {threads} thread{} ({} {}). Medians \
             of {rounds} rounds in which all models take turns, of ratios with their quartiles in parentheses. The paper \
             says {PRINTED}, for a body, springs and a machine that it does not tell. These are times of one machine: \
             another one, or this one while it does something else, gives others. Springs that cubes share are \
             computed once.\n\n",
-            if threads == 1 { "processor time" } else { "wall time" },
+            mark(threads),
             if threads == 1 { "" } else { "s" },
             std::env::consts::ARCH,
             std::env::consts::OS,
@@ -200,12 +236,13 @@ impl Ratios {
     }
 
     /// The table for programs, all digits.
-    fn sheet(&self) -> Sheet<16> {
+    fn sheet(&self) -> Sheet<17> {
         let mut sheet = Sheet::new([
             "cubes",
             "springs",
             "spring_count",
             "threads",
+            "time",
             "rounds",
             "shape_ns_median",
             "shape_ns_lower",
@@ -225,6 +262,7 @@ impl Ratios {
                 one.springs.name().to_owned(),
                 one.count.to_string(),
                 self.threads.to_string(),
+                self.time.name().to_owned(),
                 self.rounds.to_string(),
                 exact(one.shape.median),
                 exact(one.shape.lower),
@@ -255,7 +293,7 @@ impl Ratios {
             })
         };
         let rows: Vec<_> = self.comparisons.iter().map(row).collect();
-        json!({ "paper": PRINTED, "threads": self.threads, "rounds": self.rounds, "rows": rows })
+        json!({ "paper": PRINTED, "threads": self.threads, "time": self.time, "rounds": self.rounds, "rows": rows })
     }
 }
 
@@ -285,6 +323,19 @@ mod tests {
         assert_eq!(ratios.comparisons[4].count, 28);
         assert!(ratios.comparisons.iter().all(|one| one.ratio.least > 0.0 && one.ratio.most.is_finite()));
         assert_eq!(measure(&quick, &|_| false), None);
+    }
+
+    #[test]
+    fn the_clock_is_said() {
+        let times = [(1, true), (1, false), (2, true)].map(|(threads, told)| Time::of(threads, told));
+        assert_eq!(times, [Time::Processor, Time::Wall, Time::Wall]);
+        let spent = Spent { wall: 2.0, cpu: Some(1.0) };
+        assert_eq!(times.map(|time| time.of_spent(spent)), [1.0, 2.0, 2.0]);
+        for (threads, time) in [1, 1, 2].into_iter().zip(times) {
+            let ratios = Ratios { threads, time, rounds: 3, comparisons: Vec::new() };
+            assert!(ratios.markdown().contains(&format!("{} time of {threads} thread", time.name())));
+            assert_eq!(ratios.json()["time"], time.name());
+        }
     }
 
     /// One that blew up would take its steps in no time.

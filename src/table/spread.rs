@@ -26,8 +26,11 @@ impl Spread {
         let quantile = |quarters: usize| {
             let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
             let (below, rest) = (last * quarters / 4, (last * quarters % 4) as f64 / 4.0);
-            let above = sorted[(below + 1).min(last)];
-            sorted[below] + (above - sorted[below]) * rest
+            // What lies above does not count for one that is met: it may be no number.
+            if rest == 0.0 {
+                return sorted[below];
+            }
+            sorted[below] + (sorted[below + 1] - sorted[below]) * rest
         };
         let [least, lower, median, upper, most] = [0, 1, 2, 3, 4].map(quantile);
         Self { least, lower, median, upper, most }
@@ -46,5 +49,8 @@ mod tests {
         let one = Spread::of([5.0]);
         assert_eq!((one.least, one.median, one.most), (5.0, 5.0, 5.0));
         assert!(Spread::of([]).median.is_nan());
+        // What is no number is the greatest.
+        let odd = Spread::of([1.0, f64::NAN, 2.0]);
+        assert!((odd.least, odd.median) == (1.0, 2.0) && odd.most.is_nan());
     }
 }

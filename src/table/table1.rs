@@ -11,7 +11,6 @@ use super::{Sheet, Spread, Watch, scene};
 use crate::output::exact;
 use crate::scene::{Scene, random};
 use crate::sim::snapshot::Status;
-use crate::sim::words::rounded;
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -226,7 +225,7 @@ impl Orientation {
 /// What one start came to in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
-    /// How often α was taken; fewer than wanted if it blew up.
+    /// How often α was taken; fewer than wanted if it blew up. If never, all that follows is not-a-number.
     pub evaluations: u64,
     /// Its mean (rad/s²).
     pub mean: f64,
@@ -316,28 +315,64 @@ fn course(start: &Scene, case: usize, evaluations: u64, watch: &Watch<'_>) -> Op
     while world.status() == Status::Ok && world.state().velocity.iter().all(|velocity| velocity.y <= 0.0) {
         world.advance(1);
     }
-    let (mut mean, mut squares, mut maximum, mut taken) = (0.0, 0.0, 0.0f64, 0);
+    let mut residuals = Residuals::default();
     let mut told = 0;
-    while taken < evaluations && world.status() == Status::Ok {
+    while residuals.taken < evaluations && world.status() == Status::Ok {
         // The step that follows evaluates its forces here.
-        let residual = world.measure().residual.unwrap_or(f64::NAN);
-        taken += 1;
-        // Welford 1962: no difference of large sums.
-        let before = residual - mean;
-        mean += before / taken as f64;
-        squares += before * (residual - mean);
-        maximum = maximum.max(residual);
+        residuals.add(world.measure().residual.unwrap_or(f64::NAN));
         world.advance(1);
-        if taken % SLICE == 0 {
-            if !watch(taken - told) {
+        if residuals.taken % SLICE == 0 {
+            if !watch(residuals.taken - told) {
                 return None;
             }
-            told = taken;
+            told = residuals.taken;
         }
     }
-    let deviation = (squares / taken.max(1) as f64).sqrt();
     let diverged = world.status() != Status::Ok;
-    watch(evaluations - told).then_some(Course { evaluations: taken, mean, deviation, maximum, diverged })
+    watch(evaluations - told).then(|| residuals.course(diverged))
+}
+
+/// Values of α so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Residuals {
+    taken: u64,
+    mean: f64,
+    squares: f64,
+    maximum: Option<f64>,
+}
+
+impl Residuals {
+    fn add(&mut self, residual: f64) {
+        self.taken += 1;
+        // Welford 1962: no difference of large sums.
+        let before = residual - self.mean;
+        self.mean += before / self.taken as f64;
+        self.squares += before * (residual - self.mean);
+        // What is no number stays so, as in the mean.
+        self.maximum = match self.maximum {
+            Some(maximum) if maximum.is_nan() || maximum > residual => Some(maximum),
+            _ => Some(residual),
+        };
+    }
+
+    /// What they come to; not-a-number if there are none.
+    fn course(self, diverged: bool) -> Course {
+        let Self { taken, mean, squares, maximum } = self;
+        Course {
+            evaluations: taken,
+            mean: if taken > 0 { mean } else { f64::NAN },
+            deviation: (squares / taken as f64).sqrt(),
+            maximum: maximum.unwrap_or(f64::NAN),
+            diverged,
+        }
+    }
+}
+
+/// A figure of the paper in three digits, or fewer where its six decimals end before.
+fn as_printed(number: f64) -> String {
+    let short = format!("{number:.2e}");
+    let exponent = short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
+    format!("{number:.*}", (2 - exponent).clamp(0, 6) as usize)
 }
 
 impl Table1 {
@@ -370,10 +405,12 @@ impl Table1 {
             # Table 1: evaluation values of approximation errors\n\n\
             α of Eq. (18) in rad/s², at every evaluation of the forces in the {duration} s from the first contact on, of \
             a free cube of side 0.1 m with 1 kg in each corner that falls 1 m onto a floor with restitution 1. g = 9.8 \
-            m/s², neither damping nor friction, semi-implicit Euler. The paper's figures are those of one start that it \
+            m/s², neither damping nor friction, semi-implicit Euler. μ, σ and max are the mean of α, its standard deviation \
+            and its largest value; k/m is in 1/s². Row A has one pass of the solver at each evaluation and steps of a tenth \
+            of the cycle, row B steps of a hundredth, row C two passes, row D three. The paper's figures are those of one start that it \
             does not tell; ours are medians over {orientations} start{plural} at rest, turned at random, with the range \
-            over all of them in parentheses. A dash is the paper's: below the lower limit of the measurable range. \
-            Figures around 1e-9 and below are round-off.\n\n\
+            over all of them in parentheses, but for σ. A dash among the paper's figures: below the lower limit of its \
+            measurable range; a dash for passes: the solver has none. Figures around 1e-9 and below are round-off.\n\n\
             ## The paper's solver: Eq. (15), θ = atan |w|, true rotations accumulated, each evaluation starting from \
             the last\n\n",
             self.protocol.mark()
@@ -382,8 +419,7 @@ impl Table1 {
         let (ours, others): (Vec<_>, Vec<_>) = summaries.iter().partition(|summary| summary.case.printed().is_some());
         let range =
             |spread: Spread| format!("{} ({} – {})", figure(spread.median), figure(spread.least), figure(spread.most));
-        // As many digits as it prints, three at most.
-        let dash = |printed: Option<f64>| printed.map_or("–".to_owned(), |number| rounded(number, 3).to_string());
+        let dash = |printed: Option<f64>| printed.map_or("–".to_owned(), as_printed);
         let mut sheet = Sheet::new([
             "k/m",
             "row",
@@ -575,6 +611,39 @@ mod tests {
             let cycle = std::f64::consts::TAU / case.stiffness_over_mass().sqrt();
             let parts = if case.row.name == "B" { 100.0 } else { 10.0 };
             assert!((case.step() * parts / cycle - 1.0).abs() < 0.05, "{}", case.name());
+        }
+    }
+
+    #[test]
+    fn what_was_not_taken_is_no_number() {
+        let course = |residuals: &[f64]| {
+            let mut taken = Residuals::default();
+            residuals.iter().for_each(|&residual| taken.add(residual));
+            taken.course(false)
+        };
+        let Course { mean, deviation, maximum, .. } = course(&[1.0, 4.0, 1.0]);
+        assert_eq!((mean, deviation, maximum), (2.0, 2f64.sqrt(), 4.0));
+        for bad in [&[][..], &[f64::NAN, 1.0], &[1.0, f64::NAN, 2.0]] {
+            let Course { evaluations, mean, deviation, maximum, .. } = course(bad);
+            assert_eq!(evaluations, bad.len() as u64);
+            assert!(mean.is_nan() && deviation.is_nan() && maximum.is_nan(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn the_papers_figures_have_three_digits_or_six_decimals() {
+        for (number, text) in [
+            (30.875_97, "30.9"),
+            (4.498_62, "4.50"),
+            (1.297_613, "1.30"),
+            (9.999, "10.0"),
+            (0.320_008, "0.320"),
+            (0.030_974, "0.0310"),
+            (0.000_493, "0.000493"),
+            (0.000_017, "0.000017"),
+            (0.000_001, "0.000001"),
+        ] {
+            assert_eq!(as_printed(number), text);
         }
     }
 

@@ -28,6 +28,10 @@ fn the_schema_is_one_document() {
     let document = Place::new().run("schema").good().json();
     assert!(document["$schema"].is_string());
     assert!(document["properties"]["body"].is_object());
+    let document = Place::new().run("schema --figure").good().json();
+    assert!(document["$schema"].is_string());
+    assert!(document["properties"]["sheet"].is_object() && document["properties"]["body"].is_null());
+    Place::new().run("schema --figures").bad(2, &["--figure"]);
 }
 
 #[test]

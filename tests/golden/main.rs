@@ -1,5 +1,5 @@
 //! Golden images: the last frame of each scene in this folder, against the picture of the same name beside it; and that
-//! of each scene that ships, drawn small, against the picture of the same name in `scenes/` here. Contact sheets stand in
+//! of each scene that ships, drawn small, against the picture of the same name in `scenes/` here. All figures stand in
 //! `figures/` here, drawn small, too.
 //!
 //! A golden is a frame as the program writes it, so it carries the digest of the state it shows. A failure can say
@@ -189,9 +189,9 @@ fn every_figure_looks_as_it_did() {
             let snapshot = |run: usize| RunFrame { run, snapshot: scene.world(run).snapshot() };
             (0..scene.runs.len()).map(snapshot).collect::<Vec<_>>()
         };
-        // The states that are shown; diagrams show those at the start.
+        // The states that are shown; diagrams show those at the start of all their scenes.
         let runs = match moments.cells.concat() {
-            cells if cells.is_empty() => start(&figure.scenes()[0]),
+            cells if cells.is_empty() => figure.scenes().iter().flat_map(start).collect(),
             cells => cells,
         };
         let frame = Frame { index: 0, time: 0.0, runs };

@@ -169,7 +169,7 @@ fn counts_are_those_that_were_simulated() {
     }
 }
 
-/// What physics.md says of Fig. 4: which elements stay turned over, and what is left of the volume.
+/// What docs/paper.md says of Fig. 4: which elements stay turned over, and what is left of the volume.
 #[test]
 fn the_last_columns_show_what_the_paper_tells() {
     for (name, over, volume) in [("fig4a", 1, 0.86), ("fig4b", 9, 0.34), ("fig4c", 9, 0.33)] {

@@ -400,8 +400,10 @@ fn a_scene_does_not_say_what_its_file_says() {
     let arrays = with(|arrays| {
         arrays.push(doubles("masses", "(4,)", &[1.0; 4]));
         arrays.push(doubles("velocities", "(4, 2)", &[0.0; 8]));
+        arrays.push(doubles("positions", "(4, 2)", &[0.0; 8]));
     });
-    let both = SCENE.replace("file = 'body.npz'", "file = 'body.npz'\nmass = 1\nvelocity = [0, 1]");
+    let both = SCENE
+        .replace("file = 'body.npz'", "file = 'body.npz'\nmass = 1\nvelocity = [0, 1]\nstart = { shape = 'point' }");
     let error = Place::new(&arrays).load(&both, &Limits::default()).unwrap_err();
     let lines: Vec<_> = error.mistakes().iter().map(|mistake| (mistake.line, mistake.message.as_str())).collect();
     assert_eq!(
@@ -409,6 +411,7 @@ fn a_scene_does_not_say_what_its_file_says() {
         [
             (5, "`body.mass` and `body.npz: masses` exclude each other"),
             (6, "`body.velocity` and `body.npz: velocities` exclude each other"),
+            (7, "`body.start` and `body.npz: positions` exclude each other"),
         ]
     );
 }

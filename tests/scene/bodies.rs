@@ -329,12 +329,24 @@ fn a_start_says_what_is_wrong_with_it() {
         ("{ shape = 'line', direction = [0, 0, 1] }", "", "`body.start.direction` has 3 coordinates; expected 2"),
         ("{ shape = 'line', direction = [0, 0] }", "", "`body.start.direction` is zero"),
         (
+            "{ shape = 'point', direction = [0, 1] }",
+            "",
+            "`body.start.direction` is about lines, planes and mirror images, but the shape is \"point\"",
+        ),
+        ("{ shape = 'cloud', direction = [0, 1] }", "", "but the shape is \"cloud\""),
+        // A seed that is the default says as little.
+        ("{ shape = 'plane', seed = 1 }", "", "`body.start.seed` is about clouds, but the shape is \"plane\""),
+        ("{ shape = 'mirror-image', seed = 2 }", "", "but the shape is \"mirror-image\""),
+        (
             "{ shape = 'point' }",
             "positions = [[0, 0], [1, 0], [0, 1]], ",
             "`positions` and `start`, which exclude each other",
         ),
     ] {
-        let error = bad(&body(start, more)).to_string();
+        let error = bad(&body(start, more));
+        let [mistake] = error.mistakes() else { panic!("one mistake in {start}\n{error}") };
+        assert_eq!(mistake.line, 1, "{error}");
+        let error = error.to_string();
         assert!(error.contains(words), "{words:?} is not in\n{error}");
     }
 }

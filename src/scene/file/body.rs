@@ -92,9 +92,10 @@ pub(in crate::scene) struct StartFile {
     /// Whether all nodes are at a `point`, on a `line` or in a `plane`, each as near as can be to where it is at rest; or
     /// in a `mirror-image`; or at random places in the box around the body, a `cloud`.
     pub(in crate::scene) shape: StartShape,
-    /// Where the line leads, or where plane and mirror face, at any length but zero. Default: along x.
+    /// Where the line leads, or where plane and mirror face, at any length but zero. Points and clouds have none.
+    /// Default: along x.
     pub(in crate::scene) direction: Option<Coordinates>,
-    /// Chooses among random clouds. The same seed makes the same cloud everywhere.
+    /// Chooses among random clouds; nothing else has one. The same seed makes the same cloud everywhere.
     #[serde(default = "first")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub(in crate::scene) seed: u32,
@@ -114,6 +115,29 @@ pub(in crate::scene) enum StartShape {
     MirrorImage,
     /// Random places.
     Cloud,
+}
+
+impl StartShape {
+    /// As scenes call it.
+    pub(in crate::scene) fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Line => "line",
+            Self::Plane => "plane",
+            Self::MirrorImage => "mirror-image",
+            Self::Cloud => "cloud",
+        }
+    }
+
+    /// Whether it leads or faces anywhere.
+    pub(in crate::scene) fn has_direction(self) -> bool {
+        matches!(self, Self::Line | Self::Plane | Self::MirrorImage)
+    }
+
+    /// Whether there are many of it.
+    pub(in crate::scene) fn is_random(self) -> bool {
+        self == Self::Cloud
+    }
 }
 
 /// A rigid spin.

@@ -172,6 +172,7 @@ fn listed(
         check_exclusive(&lists, lists.masses.is_some() && file.mass.is_some(), "mass", "masses", report);
         let both = lists.velocities.is_some() && file.velocity.is_some();
         check_exclusive(&lists, both, "velocity", "velocities", report);
+        check_exclusive(&lists, lists.positions.is_some() && file.start.is_some(), "start", "positions", report);
     }
     let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
     let mass = masses.unwrap_or_else(|| vec![file.mass.unwrap_or(1.0); count]);
@@ -243,8 +244,11 @@ fn check_start(
     report: &mut Report<'_>,
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let shape = file.start.as_ref().and_then(|typed| {
+        check_use(typed.shape, report);
         let path = [Way::Key("body"), Way::Key("start"), Way::Key("direction")];
         let along = match &typed.direction {
+            // Said above, and reason enough.
+            Some(_) if !typed.shape.has_direction() => DVec3::X,
             Some(along) => direction(vector(along, dimension, &path, report)?, &path, report)?,
             None => DVec3::X,
         };
@@ -263,6 +267,21 @@ fn check_start(
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
+}
+
+/// Reports keys of a start that say nothing about its shape.
+fn check_use(shape: StartShape, report: &mut Report<'_>) {
+    let about = [
+        ("direction", shape.has_direction(), "lines, planes and mirror images"),
+        ("seed", shape.is_random(), "clouds"),
+    ];
+    for (key, used, about) in about {
+        let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
+        if !used && report.is_typed(&path) {
+            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(shape.name()));
+            report.at_key(&path, message, "leave it out, or take another shape".to_owned());
+        }
+    }
 }
 
 /// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.
