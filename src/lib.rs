@@ -44,6 +44,7 @@
 
 pub mod cli;
 pub mod colour;
+pub mod golden;
 #[cfg(feature = "render")]
 pub mod gpu;
 pub mod history;

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Status {
     Done = 0,
+    Difference = 1,
     Usage = 2,
     #[cfg(feature = "render")]
     Adapter = 3,

@@ -5,6 +5,7 @@
 //! 130 interrupted.
 
 mod check;
+mod compare;
 mod completions;
 mod console;
 #[cfg(feature = "render")]
@@ -76,6 +77,7 @@ enum Command {
     #[cfg(feature = "render")]
     Figure(figure::FigureCommand),
     Check(check::Check),
+    Compare(compare::Compare),
     Table(table::Table),
     Info(info::Info),
     Schema(schema::Schema),
@@ -108,6 +110,7 @@ impl Command {
             #[cfg(feature = "render")]
             Self::Figure(figure) => figure.run(),
             Self::Check(check) => check.run(),
+            Self::Compare(compare) => compare.run(),
             Self::Table(table) => table.run(),
             Self::Info(info) => info.run(),
             Self::Schema(schema) => schema.run(),

@@ -22,6 +22,7 @@ pub use digest::state_digest;
 pub use error::OutputError;
 pub use folder::{FRAME_FILES, Folder, Look, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
+pub(crate) use png::tags_of;
 pub use png::{FigureTags, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
 pub use sheets::SheetFiles;
 pub use states::{STATES_FILE, StatesWriter};

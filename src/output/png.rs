@@ -178,13 +178,17 @@ pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> 
         Err(_) => return Ok(None),
     };
     let info = reader.info();
-    let tags = Tags::parse(|name| {
+    Ok(tags_of(info).map(|tags| ([info.width, info.height], tags)))
+}
+
+/// What the header of a picture says of what it shows, if it was written by this crate.
+pub(crate) fn tags_of(info: &png::Info<'_>) -> Option<Tags> {
+    Tags::parse(|name| {
         let keyword = format!("localshape:{name}");
         let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
         let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
         plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
-    });
-    Ok(tags.map(|tags| ([info.width, info.height], tags)))
+    })
 }
 
 #[cfg(test)]

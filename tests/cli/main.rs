@@ -1,6 +1,7 @@
 //! Every command as a user runs it: the program itself, its files, its words and its exit status.
 
 mod check;
+mod compare;
 mod disk;
 #[cfg(feature = "render")]
 mod figure;
