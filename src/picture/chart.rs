@@ -173,7 +173,7 @@ pub(super) fn wide(fonts: &Fonts, text: &str, unit: f64) -> f64 {
     fonts.width(text, Weight::Regular, NUMBERS * unit)
 }
 
-fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
+pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
     Mark { rectangle: rectangle.map(narrow), along: Mark::UPRIGHT, colour, second: colour, shape: MarkShape::Filled }
 }
 

@@ -7,6 +7,7 @@ use crate::colour::{Colour, mixed};
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::caption::Writer;
+use crate::picture::chart::filled;
 use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::{Rectangle, Scale};
@@ -29,11 +30,11 @@ const HEADS: f64 = 106.0;
 const KEY: f64 = 74.0;
 /// Baselines of a column's name and note, and of a row's name below its top (px in the reference picture).
 const NAME: f64 = 60.0;
-const UNDER_TITLE: f64 = 20.0;
-/// Free below the figure's title and caption (px in the reference picture).
-const BELOW_HEADER: f64 = 16.0;
 const NOTE: f64 = 86.0;
 const ROW_NAME: f64 = 20.0;
+/// Free below the figure's title and caption, below which heads stand so much higher (px in the reference picture).
+const BELOW_HEADER: f64 = 16.0;
+const UNDER_TITLE: f64 = 20.0;
 /// Type of numbers at arrows, and the distance of two lines of it (px in the reference picture).
 const NUMBERS: f64 = 14.0;
 const LINE: f64 = 18.0;
@@ -70,6 +71,7 @@ struct Cell<'a> {
     compared: Option<Vec<DVec3>>,
     /// The nodes of the ghost (m).
     ghost: Vec<DVec3>,
+    /// The camera of the scene, turned to the middle of the body.
     framing: Framing,
     /// Left, top, width and height (px).
     room: [f64; 4],
@@ -385,14 +387,10 @@ impl<'a> Drawn<'a> {
         let palette = &self.figure.look.palette;
         let unit = scale.unit;
         let position = &cell.snapshot().position;
-        let seen: Vec<f64> = if self.draft.flat {
-            vec![1.0; position.len()]
-        } else {
-            let mut seen = vec![1.0; position.len()];
-            let visible = cell.composer.skin.visible(position, &self.draft.lens);
-            cell.composer.skin.nodes.iter().for_each(|&node| seen[node as usize] = visible[node as usize]);
-            seen
-        };
+        // In the plane all nodes are seen; in space those of no face are, too.
+        let visible = cell.composer.skin.visible(position, &self.draft.lens);
+        let on_skin = |node: usize| cell.composer.skin.holds(node as u32);
+        let seen: Vec<_> = (0..position.len()).map(|at| if on_skin(at) { visible[at] } else { 1.0 }).collect();
         let [left, top, width, height] = cell.room;
         let inset = 6.0 * unit;
         let room = [left + inset, top + inset, left + width - inset, top + height - inset];
@@ -463,8 +461,7 @@ impl<'a> Drawn<'a> {
         for (row, (text, colour)) in [(number, colour), (second, palette.second_text)].into_iter().enumerate() {
             let left = if on_left { corner.x + extent.x - wide(&text) } else { corner.x };
             let baseline = corner.y + size * 0.78 + row as f64 * line;
-            writer.left(&text, Weight::Regular, size, colour, left, baseline);
-            writer.words.iter_mut().rev().take(1).for_each(|word| word.has_halo = true);
+            over_lines(writer, |writer| writer.left(&text, Weight::Regular, size, colour, left, baseline));
         }
     }
 
@@ -516,12 +513,10 @@ impl<'a> Drawn<'a> {
             let extent = DVec2::new(wide + narrow, size * 0.95);
             let corner = labels.place(at, away, extent);
             let baseline = corner.y + 0.76 * size;
-            writer.left(letter, Weight::SemiBold, size, palette.text, corner.x, baseline);
-            writer.words.iter_mut().rev().take(1).for_each(|word| word.has_halo = true);
-            if !index.is_empty() {
+            over_lines(writer, |writer| {
+                writer.left(letter, Weight::SemiBold, size, palette.text, corner.x, baseline);
                 writer.left(index, Weight::SemiBold, small, palette.text, corner.x + wide, baseline + 0.2 * size);
-                writer.words.iter_mut().rev().take(1).for_each(|word| word.has_halo = true);
-            }
+            });
         }
     }
 }
@@ -652,6 +647,13 @@ fn wide([from, to]: [DVec2; 2], half: f64) -> [[DVec2; 2]; 3] {
     [-1.0, 0.0, 1.0].map(|side| [from + side * across, to + side * across])
 }
 
+/// Writes what stands out from the lines that it may lie on.
+fn over_lines(writer: &mut Writer<'_>, write: impl FnOnce(&mut Writer<'_>)) {
+    let before = writer.words.len();
+    write(writer);
+    writer.words[before..].iter_mut().for_each(|word| word.has_halo = true);
+}
+
 /// A straight line with smooth borders.
 fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Mark {
     let along = (to - from).try_normalize().unwrap_or(DVec2::X);
@@ -669,10 +671,6 @@ fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Mark {
 fn disc(at: DVec2, radius: f64, colour: Colour, rim: Colour) -> Mark {
     let rectangle = [at.x - radius, at.y - radius, 2.0 * radius, 2.0 * radius].map(narrow);
     Mark { rectangle, along: Mark::UPRIGHT, colour, second: rim, shape: MarkShape::Node }
-}
-
-fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
-    Mark { rectangle: rectangle.map(narrow), along: Mark::UPRIGHT, colour, second: colour, shape: MarkShape::Filled }
 }
 
 #[cfg(test)]
