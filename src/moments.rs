@@ -1,10 +1,12 @@
 //! What figures need of their simulations: states of runs at chosen moments, and the course of a scene for strips.
 
 use crate::history::{History, Rehearsal};
+use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
 use crate::sim::snapshot::{RunFrame, Snapshot, Status};
 use crate::sim::world::World;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// What a figure shows of its simulations.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +25,30 @@ impl Moments {
         let mut taking = Taking::new(figure);
         while !taking.advance(u64::MAX) {}
         taking.finish()
+    }
+
+    /// The states behind a figure, each with a name of its own: those of a contact sheet cell by cell; of a diagram of
+    /// forces those at the start of all runs of its scenes.
+    pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
+        let named = |scene: &Scene, run: usize| format!("{} · {}", scene.title, scene.runs[run].name);
+        match &figure.content {
+            Content::Sheet(sheet) => {
+                let rows = self.cells.iter().enumerate();
+                rows.flat_map(|(row, cells)| {
+                    cells.iter().enumerate().map(move |(column, cell)| {
+                        let (scene, run, _) = sheet.cell(row, column);
+                        let name = named(&sheet.scenes[scene], run);
+                        (format!("{name}, row {}, column {}", row + 1, column + 1), Cow::Borrowed(&cell.snapshot))
+                    })
+                })
+                .collect()
+            }
+            Content::Forces(forces) => {
+                let runs = |scene: &'a Scene| (0..scene.runs.len()).map(move |run| (scene, run));
+                let states = forces.scenes.iter().flat_map(runs);
+                states.map(|(scene, run)| (named(scene, run), Cow::Owned(scene.world(run).snapshot()))).collect()
+            }
+        }
     }
 }
 

@@ -2,33 +2,70 @@
 
 use super::console;
 use super::failure::{Failure, Status, with_causes};
-use crate::golden::{Comparison, ComparisonError};
+#[cfg(feature = "render")]
+use super::{
+    driver,
+    frames::FrameRanges,
+    interrupt,
+    render::{samples, size},
+    scenes::status_of,
+};
+#[cfg(feature = "render")]
+use crate::golden::draw::{DrawError, Subject, Wish, draw, usual_gpu};
+use crate::golden::{BlessError, Comparison, ComparisonError, Side};
+#[cfg(feature = "render")]
+use crate::gpu::{AdapterChoice, Gpu};
+use crate::output::write_whole;
+#[cfg(feature = "render")]
+use crate::scene::Limits;
 use clap::{Args, ValueHint};
-use serde_json::json;
-use std::path::PathBuf;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
   localshape compare expected.png actual.png
-  localshape compare golden/ output/fig4b/       all pictures of both folders, by name
-  localshape compare golden/ output/fig4b/ --json
+  localshape compare before/ after/ --report what-moved.html
+  localshape compare golden/fig4b scenes/fig4b.toml          draws the golden's frames and compares them
+  localshape compare --bless golden/fig4b scenes/fig4b.toml  makes that golden, or renews its pictures
+
+A golden is a folder with a few small pictures of a scene and golden.toml, which records the states of all its frames: \
+then it is told which state moved first, which node, and by how far. Of two folders of frames that is told if both hold \
+states.npz (render --states).
 
 Frames know which states they show: so a difference is either of the state (`state moved`) or of the drawing (`same \
-state, drawn differently`). Pictures drawn by one adapter must be equal in every byte; those of two may differ by more \
-than 2 of 255 in at most 0.01 % of their pixels, or in 8. Pictures that were not drawn by this program have no state, and \
-pixels alone are compared.";
+state, drawn differently`). Pictures drawn by one adapter must be equal in every byte; those of one kind of adapter may \
+differ by more than 2 of 255 in at most 0.01 % of their pixels, or in 8; those of another kind also along silhouettes, but \
+hardly between them. Pictures that were not drawn by this program have no state, and pixels alone are compared.";
 
-/// Compare two pictures or two folders of frames
+/// Compare pictures, folders of frames, or a scene with its golden
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Compare {
-    /// A picture, or a folder of pictures: what was expected
+    /// A picture, a folder of pictures, or a golden: what was expected
     #[arg(value_name = "EXPECTED", value_hint = ValueHint::AnyPath)]
     expected: PathBuf,
 
-    /// A picture, or a folder of pictures: what there is
+    /// A picture or a folder of pictures, or for a golden its scene or figure file: what there is
     #[arg(value_name = "ACTUAL", value_hint = ValueHint::AnyPath)]
     actual: PathBuf,
+
+    /// Accept what there is: replace the expected pictures that failed, or make a golden that is missing. Refused if the
+    /// state moved
+    #[arg(long)]
+    bless: bool,
+
+    /// Accept what there is, also if the state moved
+    #[arg(long)]
+    bless_state: bool,
+
+    /// Write a page to look at in a browser: both pictures of each pair, their difference, the error over time
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    report: Option<PathBuf>,
+
+    #[cfg(feature = "render")]
+    #[command(flatten)]
+    drawing: Drawing,
 
     /// Only the exit status
     #[arg(short, long)]
@@ -39,19 +76,159 @@ pub(super) struct Compare {
     json: bool,
 }
 
+/// How a scene is drawn to be compared.
+#[cfg(feature = "render")]
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Options for scenes and figures")]
+struct Drawing {
+    /// The frames that the golden has pictures of: 0-119x30, or 5,9,40-60 [default: those it has; three of a new one]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
+    frames: Option<FrameRanges>,
+
+    /// Width and height of the pictures (px) [default: those of the golden; 320 wide for a new one]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+
+    /// Samples per pixel [default: those of the golden; 4 for a new one]
+    #[arg(long, value_name = "N", value_parser = samples())]
+    samples: Option<u32>,
+
+    /// Graphics adapter: auto, cpu, gpu, or a part of its name [default: one of the kind that drew the golden, else cpu:
+    /// every machine can draw in software]
+    #[arg(long, value_name = "ADAPTER")]
+    adapter: Option<AdapterChoice>,
+}
+
 impl Compare {
     pub(super) fn run(self) -> Result<Status, Failure> {
-        let comparison = Comparison::of(&self.expected, &self.actual).map_err(|error| match error {
-            ComparisonError::Read { .. } => Failure::files(with_causes(&error)),
-            ComparisonError::Unlike { .. } | ComparisonError::Empty { .. } => Failure::usage(error.to_string()),
-        })?;
-        if self.json {
-            let first = comparison.first_moved().map(|picture| &picture.name);
-            let (passes, pictures) = (comparison.passes(), &comparison.pictures);
-            console::print_json(&json!({ "passes": passes, "first_moved": first, "pictures": pictures }))?;
-        } else if !self.quiet {
-            console::print(&comparison.to_string())?;
+        let Some(comparison) = self.comparison()? else { return Ok(Status::Interrupted) };
+        if let Some(path) = &self.report {
+            write_whole(path, comparison.report().page().as_bytes())?;
         }
-        Ok(if comparison.passes() { Status::Done } else { Status::Difference })
+        let blesses = self.bless || self.bless_state;
+        let blessed = blesses.then(|| comparison.bless(self.bless_state)).transpose();
+        let accepted = matches!(blessed, Ok(Some(_)));
+        if self.json {
+            let written = match &blessed {
+                Ok(Some(blessed)) => {
+                    json!({ "written": blessed.written, "removed": blessed.removed, "left": blessed.left })
+                }
+                _ => Value::Null,
+            };
+            console::print_json(&document(&comparison, &written))?;
+        } else if !self.quiet {
+            console::print(&comparison.told(!blesses))?;
+            if let Ok(Some(blessed)) = &blessed {
+                console::print(&blessed.to_string())?;
+            }
+        }
+        match blessed {
+            Ok(_) => Ok(if comparison.passes() || accepted { Status::Done } else { Status::Difference }),
+            Err(error @ BlessError::Write(_)) => Err(Failure::files(with_causes(&error))),
+            Err(error) => Err(Failure::difference(error.to_string())),
+        }
     }
+
+    /// Both sides beside each other; `None` if the user asked to stop.
+    fn comparison(&self) -> Result<Option<Comparison>, Failure> {
+        let failed = |error: ComparisonError| match error {
+            ComparisonError::Read { .. } => Failure::files(with_causes(&error)),
+            _ => Failure::usage(error.to_string()),
+        };
+        let is_scene = self.actual.extension().is_some_and(|ending| ending == "toml") && !self.actual.is_dir();
+        if !is_scene {
+            self.no_drawing()?;
+            return Comparison::of(&self.expected, &self.actual).map(Some).map_err(failed);
+        }
+        let expected = Side::read_or_absent(&self.expected).map_err(failed)?;
+        if !expected.is_golden() {
+            let (expected, actual) = (self.expected.display(), self.actual.display());
+            let message = format!(
+                "{expected} is no golden (a folder with golden.toml), and {actual} is a scene or figure, which is compared \
+                 with its golden; name another folder to make one"
+            );
+            return Err(Failure::usage(message));
+        }
+        let Some(actual) = self.draw(&expected)? else { return Ok(None) };
+        Comparison::between(expected, actual).map(Some).map_err(failed)
+    }
+
+    /// Refuses options that only scenes have.
+    #[cfg(feature = "render")]
+    fn no_drawing(&self) -> Result<(), Failure> {
+        let Drawing { frames, size, samples, adapter } = &self.drawing;
+        let given = [
+            ("--frames", frames.is_some()),
+            ("--size", size.is_some()),
+            ("--samples", samples.is_some()),
+            ("--adapter", adapter.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((option, _)) => Err(Failure::usage(format!(
+                "{option} is for scenes and figures, which are drawn to be compared; {} is neither",
+                self.actual.display()
+            ))),
+        }
+    }
+
+    #[cfg(not(feature = "render"))]
+    fn no_drawing(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// The scene or figure, simulated and drawn as its golden was.
+    #[cfg(feature = "render")]
+    fn draw(&self, expected: &Side) -> Result<Option<Side>, Failure> {
+        let path: &Path = &self.actual;
+        let subject = Subject::load(path, &Limits::default()).map_err(|error| match status_of(&error) {
+            Status::Files => Failure::files(with_causes(&error)),
+            _ => Failure::usage(error.to_string()),
+        })?;
+        let Drawing { frames, size, samples, adapter } = &self.drawing;
+        let frames = match (frames, &subject) {
+            (None, _) => None,
+            (Some(frames), Subject::Scene(scene)) => {
+                let told = |what: String| Failure::usage(format!("--frames of “{}”: {what}", scene.title));
+                Some(frames.select(scene.last_frame()).map_err(told)?)
+            }
+            (Some(_), Subject::Figure(_)) => {
+                return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
+            }
+        };
+        let wish = Wish { frames, size: *size, samples: *samples, ..Wish::default() };
+        let open = || adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new);
+        let gpu = driver::hushed(open).map_err(|error| Failure::adapter(&error))?;
+        interrupt::listen();
+        draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested()).map_err(
+            |error| match error {
+                DrawError::Render(error) => super::render::failed(error),
+                DrawError::Wish(message) => Failure::usage(message),
+            },
+        )
+    }
+
+    #[cfg(not(feature = "render"))]
+    fn draw(&self, _expected: &Side) -> Result<Option<Side>, Failure> {
+        let path: &Path = &self.actual;
+        Err(Failure::usage(format!(
+            "{} would have to be drawn, and this program was built without the feature `render`; give a picture or a folder \
+             of pictures",
+            path.display()
+        )))
+    }
+}
+
+/// All that is known, for machines.
+fn document(comparison: &Comparison, blessed: &Value) -> Value {
+    let head = json!({
+        "passes": comparison.passes(),
+        "verdict": comparison.verdict(),
+        "first_moved": comparison.first_moved().map(|picture| &picture.name),
+        "accept": comparison.command_to_accept(),
+        "blessed": blessed,
+    });
+    let mut document = head;
+    super::record::merge(&mut document, serde_json::to_value(comparison).expect("plain data"));
+    document
 }

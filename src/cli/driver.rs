@@ -15,7 +15,9 @@ pub fn settle(words: &[std::ffi::OsString]) {
     let [program, command, rest @ ..] = words else { return };
     let [variable, width] = VECTOR_WIDTH;
     // A process environment can be changed safely only from outside, so a new image of the program gets it.
-    if (command != "render" && command != "figure") || std::env::var_os(variable).is_some() {
+    let is_scene = |word: &std::ffi::OsString| word.to_string_lossy().ends_with(".toml");
+    let draws = command == "render" || command == "figure" || command == "compare" && rest.iter().any(is_scene);
+    if !draws || std::env::var_os(variable).is_some() {
         return;
     }
     let Ok(image) = std::env::current_exe() else { return };

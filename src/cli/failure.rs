@@ -38,6 +38,11 @@ impl Failure {
         Self { status: Status::Usage, message: Some(message.into()) }
     }
 
+    /// A check found what it was not to find.
+    pub(super) fn difference(message: impl Into<String>) -> Self {
+        Self { status: Status::Difference, message: Some(message.into()) }
+    }
+
     /// Nothing to draw with.
     #[cfg(feature = "render")]
     pub(super) fn adapter(error: &dyn Error) -> Self {

@@ -170,8 +170,7 @@ impl FigureCommand {
         if interrupt::requested() {
             return Ok(None);
         }
-        let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
-        let tags = output::FigureTags::new(&figure.name, scenes, &gpu.description().to_string());
+        let tags = output::FigureTags::new(figure, &moments, &gpu.description().to_string());
         file.append(&output::encode_figure(figure.size, image.as_raw(), &tags))?;
         file.commit()?;
         Ok(Some(numbers(figure, &moments)))

@@ -1,6 +1,9 @@
 //! Comparing pictures so that a difference says what moved: the simulation, or the drawing of it.
 //!
-//! Frames carry digests of the states that they show, so two of them are told apart by physics first and by pixels then.
+//! Frames carry digests of the states that they show, and a golden, a folder with a few small pictures and a record of all
+//! its scene's states, also knows roughly where the nodes were. So the verdict is about physics first and about pixels then.
+//!
+//! Two pictures, or two folders of them:
 //!
 //! ```no_run
 //! use localshape::golden::Comparison;
@@ -9,15 +12,40 @@
 //! assert!(comparison.passes(), "{comparison}");
 //! # Ok::<(), localshape::golden::ComparisonError>(())
 //! ```
+//!
+//! To test scenes of one's own against goldens, in `cargo test`, there is `Suite` (with the feature `render`).
 
+mod archive;
+mod bless;
+mod distance;
+#[cfg(feature = "render")]
+pub(crate) mod draw;
+mod page;
 mod picture;
+mod record;
+pub mod report;
+mod side;
+mod states;
+#[cfg(feature = "render")]
+mod suite;
 mod verdict;
 
+pub use bless::{BlessError, Blessed};
+pub use distance::{Count, Distance, Machines};
 pub use picture::{PictureError, Pixels};
-pub use verdict::{Distance, Verdict};
+pub use record::RECORD_FILE;
+pub(crate) use side::Side;
+pub use states::{Change, Course, Displacement, Moment, Moved, Numbers};
+#[cfg(feature = "render")]
+pub use suite::Suite;
+pub use verdict::{MovedHere, Verdict};
 
+use crate::output::{Label, read_label};
+use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use side::{Kind, Source, frame_of, states_of};
+use states::{States, courses, moved};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -49,13 +77,35 @@ pub enum ComparisonError {
         /// The other folder.
         actual: PathBuf,
     },
+    /// The record of a golden makes no sense.
+    #[error("{}: this is no record of a golden that can be read: {what}", path.join(RECORD_FILE).display())]
+    Record {
+        /// The golden's folder.
+        path: PathBuf,
+        /// What is wrong with the record.
+        what: String,
+    },
 }
 
-/// Two pictures, or two folders of them, beside each other.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Pictures beside each other, and the states behind them.
+#[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// One for each picture on either side, in the order of their names.
     pub pictures: Vec<Compared>,
+    /// The runs whose states are not those that were expected, in any frame that is known on both sides, drawn or not.
+    pub moved: Vec<Moved>,
+    /// Runs that are known on both sides, frame by frame.
+    pub courses: Vec<Course>,
+    /// Whether both sides say that they come from the same scene; `None` if they do not say. Another scene with the same
+    /// states is no difference of physics or drawing.
+    pub same_scene: Option<bool>,
+    /// What else is worth knowing, in words.
+    pub notes: Vec<String>,
+    #[serde(skip)]
+    sides: [Side; 2],
+    /// The states of the actual side, for a record of them.
+    #[serde(skip)]
+    actual_states: States,
 }
 
 /// The verdict on one picture.
@@ -63,103 +113,323 @@ pub struct Comparison {
 pub struct Compared {
     /// Its file's name.
     pub name: String,
+    /// The frame that it shows, if it says so.
+    pub frame: Option<u64>,
     /// What is said of it.
     #[serde(flatten)]
     pub verdict: Verdict,
-    /// Whether both say that they come from the same scene; `None` if they do not say. Another scene with the same states is
-    /// no difference of physics or drawing.
-    pub same_scene: Option<bool>,
 }
 
 /// So many pictures are told one by one.
 const MOST_TOLD: usize = 12;
 
 impl Comparison {
-    /// Compares a picture, or a folder of pictures, with what was expected. Pictures of folders belong together by name.
+    /// Compares a picture, a folder of pictures, or what stands for a golden's scene, with what was expected. Pictures of
+    /// folders belong together by name.
     ///
     /// # Errors
     /// If there is nothing to compare on one of the sides. What is wrong with single pictures is told in their verdicts.
     pub fn of(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
-        let is_folder = |path: &Path| match path.metadata() {
-            Ok(found) => Ok(found.is_dir()),
-            Err(source) => Err(ComparisonError::Read { path: path.into(), source }),
-        };
-        let pictures = match (is_folder(expected)?, is_folder(actual)?) {
-            (false, false) => {
-                let name = actual.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                vec![compare(name, Some(expected), Some(actual))]
+        Self::between(Side::read_or_absent(expected)?, Side::read(actual)?)
+    }
+
+    /// Compares two sides.
+    pub(crate) fn between(expected: Side, actual: Side) -> Result<Self, ComparisonError> {
+        let pairs = pairs(&expected, &actual)?;
+        let read: Vec<Read> = pairs.into_par_iter().map(|(name, sources)| Read::new(name, sources)).collect();
+        // Frames beside those of a golden tell of states, too.
+        let beside = Self::beside(&expected, &actual);
+        let labels = [0, 1].map(|side| -> Vec<&Label> {
+            let more = beside.iter().filter(|_| side == 1);
+            read.iter().filter_map(|read| read.labels[side].as_ref()).chain(more).collect()
+        });
+        let mut notes = Vec::new();
+        let [before, after] = Self::states([&expected, &actual], &labels, &mut notes);
+        let courses = courses(&before, &after);
+        let moved = moved(&before, &after, &courses);
+        let scenes = [(&expected, &labels[0]), (&actual, &labels[1])].map(|(side, labels)| scenes(side, labels));
+        let same_scene = scenes.iter().all(|scenes| !scenes.is_empty()).then(|| scenes[0] == scenes[1]);
+        if !beside.is_empty() {
+            notes.push(format!(
+                "{} more frames have no picture in the golden; only their states were compared",
+                beside.len()
+            ));
+        }
+        if let Some(note) = lost(&expected, &actual) {
+            notes.push(note);
+        }
+        let mut pictures: Vec<Compared> = read.into_iter().map(Read::compared).collect();
+        for picture in &mut pictures {
+            complete(picture, &expected, &courses);
+        }
+        if actual.is_undrawn {
+            pictures.clear();
+            notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
+        }
+        Ok(Self { pictures, moved, courses, same_scene, notes, sides: [expected, actual], actual_states: after })
+    }
+
+    /// What is known of the states of both sides.
+    fn states(sides: [&Side; 2], labels: &[Vec<&Label>; 2], notes: &mut Vec<String>) -> [States; 2] {
+        let of_labels = [0, 1].map(|side| states_of(&labels[side]));
+        let has_record = sides.iter().any(|side| side.record.is_some());
+        let differs = !moved(&of_labels[0], &of_labels[1], &courses(&of_labels[0], &of_labels[1])).is_empty();
+        let mut of_labels = of_labels.into_iter();
+        [0, 1].map(|at| {
+            let of_labels = of_labels.next().unwrap_or_default();
+            if let Some(record) = &sides[at].record {
+                return record.states.clone();
             }
-            (true, true) => {
-                let mut pairs: BTreeMap<String, [Option<PathBuf>; 2]> = BTreeMap::new();
-                for (side, folder) in [expected, actual].into_iter().enumerate() {
-                    for path in pictures_in(folder)? {
-                        let name =
-                            path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                        pairs.entry(name).or_default()[side] = Some(path);
-                    }
-                }
-                if pairs.is_empty() {
-                    return Err(ComparisonError::Empty { expected: expected.into(), actual: actual.into() });
-                }
-                let compared = |(name, [before, after]): (String, [Option<PathBuf>; 2])| {
-                    compare(name, before.as_deref(), after.as_deref())
-                };
-                pairs.into_iter().map(compared).collect()
+            // Archives may be large: they are read only to tell how far states are apart, or where pictures do not tell.
+            if !has_record && !differs {
+                return of_labels;
             }
-            (true, false) => return Err(ComparisonError::Unlike { folder: expected.into(), file: actual.into() }),
-            (false, true) => return Err(ComparisonError::Unlike { folder: actual.into(), file: expected.into() }),
+            match sides[at].archive(&labels[at]) {
+                Ok(Some(states)) => states,
+                Ok(None) => of_labels,
+                Err(note) => {
+                    notes.push(note);
+                    of_labels
+                }
+            }
+        })
+    }
+
+    /// What frames say that are not among the pictures of a golden.
+    fn beside(expected: &Side, actual: &Side) -> Vec<Label> {
+        if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
+            return Vec::new();
+        }
+        let more = actual.pictures.iter().filter(|(name, _)| !expected.pictures.contains_key(*name));
+        let label = |(_, source): (_, &Source)| match source {
+            Source::File(path) => read_label(path).ok().flatten(),
+            Source::Memory(_) => None,
         };
-        Ok(Self { pictures })
+        more.filter_map(label).collect()
     }
 
     /// Whether nothing is wrong.
     pub fn passes(&self) -> bool {
-        self.pictures.iter().all(|picture| picture.verdict.passes())
+        self.moved.is_empty() && self.pictures.iter().all(|picture| picture.verdict.passes())
+    }
+
+    /// Whether there are other states than those that were expected.
+    pub fn state_moved(&self) -> bool {
+        let moved = |picture: &Compared| matches!(picture.verdict, Verdict::StateMoved { .. });
+        !self.moved.is_empty() || self.pictures.iter().any(moved)
+    }
+
+    /// The verdict on the whole, in the words of the gravest on a picture.
+    pub fn verdict(&self) -> &'static str {
+        // From the gravest on.
+        const ORDER: [&str; 8] = [
+            "unreadable",
+            "state moved",
+            "missing",
+            "extra",
+            "same state, drawn differently",
+            "no state recorded",
+            "same state, pixels within tolerance",
+            "identical",
+        ];
+        let kinds = self.pictures.iter().map(|picture| picture.verdict.kind());
+        let kinds: BTreeSet<_> = kinds.chain(self.state_moved().then_some("state moved")).collect();
+        ORDER.into_iter().find(|kind| kinds.contains(kind)).unwrap_or("identical")
     }
 
     /// The first picture whose state moved.
     pub fn first_moved(&self) -> Option<&Compared> {
         self.pictures.iter().find(|picture| matches!(picture.verdict, Verdict::StateMoved { .. }))
     }
-}
 
-fn compare(name: String, expected: Option<&Path>, actual: Option<&Path>) -> Compared {
-    let (Some(expected), Some(actual)) = (expected, actual) else {
-        let verdict = if actual.is_none() { Verdict::Missing } else { Verdict::Extra };
-        return Compared { name, verdict, same_scene: None };
-    };
-    match (Pixels::read(expected), Pixels::read(actual)) {
-        (Ok(expected), Ok(actual)) => {
-            let scenes = expected.tags.as_ref().zip(actual.tags.as_ref());
-            let same_scene = scenes.map(|(before, after)| before.scene == after.scene);
-            Compared { name, verdict: Verdict::new(&expected, &actual), same_scene }
+    /// The command that accepts what is actually there; `None` if nothing is to be accepted, or nothing can be.
+    pub fn command_to_accept(&self) -> Option<String> {
+        if self.passes() || self.unreadable_actual().is_some() {
+            return None;
         }
-        (Err(error), _) | (_, Err(error)) => {
-            Compared { name, verdict: Verdict::Unreadable { message: told(&error) }, same_scene: None }
-        }
+        let [expected, actual] = &self.sides;
+        let is_other = self.needs_state() && expected.kind != Kind::Absent;
+        let option = if is_other { "--bless-state" } else { "--bless" };
+        Some(format!("localshape compare {option} {} {}", expected.typed(), actual.typed()))
+    }
+
+    /// The states that were compared.
+    fn states_compared(&self) -> usize {
+        self.courses.iter().map(|course| course.moments.len()).sum()
     }
 }
 
-/// An error with its cause.
-fn told(error: &PictureError) -> String {
-    use std::error::Error;
-    error.source().map_or_else(|| error.to_string(), |cause| format!("{error}: {cause}"))
+/// The pictures that belong together by name.
+type Pairs = Vec<(String, [Option<Source>; 2])>;
+
+fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
+    let unlike = |folder: &Side, file: &Side| {
+        Err(ComparisonError::Unlike { folder: folder.origin.clone(), file: file.origin.clone() })
+    };
+    match (expected.kind, actual.kind) {
+        (Kind::Picture, Kind::Picture) => {
+            let source = |side: &Side| side.pictures.values().next().cloned();
+            let name = actual.pictures.keys().next().cloned().unwrap_or_default();
+            return Ok(vec![(name, [source(expected), source(actual)])]);
+        }
+        (Kind::Absent, Kind::Picture) => {
+            return Ok(actual
+                .pictures
+                .iter()
+                .map(|(name, source)| (name.clone(), [None, Some(source.clone())]))
+                .collect());
+        }
+        (Kind::Picture, _) => return unlike(actual, expected),
+        (_, Kind::Picture) => return unlike(expected, actual),
+        _ => {}
+    }
+    let mut pairs: BTreeMap<String, [Option<Source>; 2]> = BTreeMap::new();
+    for (name, source) in &expected.pictures {
+        pairs.entry(name.clone()).or_default()[0] = Some(source.clone());
+    }
+    // A picture that the record names belongs to the golden, also if its file is gone.
+    for drawn in expected.record.iter().flat_map(|record| &record.pictures) {
+        pairs.entry(drawn.file.clone()).or_default();
+    }
+    for (name, source) in &actual.pictures {
+        // A golden has a few pictures of many frames.
+        if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) || pairs.contains_key(name) {
+            pairs.entry(name.clone()).or_default()[1] = Some(source.clone());
+        }
+    }
+    if pairs.is_empty() && expected.record.is_none() && !actual.is_undrawn {
+        return Err(ComparisonError::Empty { expected: expected.origin.clone(), actual: actual.origin.clone() });
+    }
+    Ok(pairs.into_iter().collect())
 }
 
-/// The PNG files in a folder.
-fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, ComparisonError> {
-    let failed = |source| ComparisonError::Read { path: folder.into(), source };
-    let paths: io::Result<Vec<PathBuf>> =
-        std::fs::read_dir(folder).map_err(failed)?.map(|entry| Ok(entry?.path())).collect();
-    let is_picture = |path: &PathBuf| {
-        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        !is_hidden && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+/// A pair of pictures as it was read.
+struct Read {
+    name: String,
+    labels: [Option<Label>; 2],
+    verdict: Verdict,
+}
+
+impl Read {
+    fn new(name: String, [expected, actual]: [Option<Source>; 2]) -> Self {
+        let pixels = |source: &Source, side: &str| {
+            source.pixels().map_err(|error| {
+                use std::error::Error;
+                let place = match source {
+                    Source::File(path) => path.display().to_string(),
+                    Source::Memory(_) => format!("the {side} picture"),
+                };
+                error.source().map_or_else(|| format!("{place}: {error}"), |cause| format!("{place}: {error}: {cause}"))
+            })
+        };
+        let (expected, actual) = match (expected, actual) {
+            (Some(expected), Some(actual)) => (pixels(&expected, "expected"), pixels(&actual, "actual")),
+            (expected, None) => {
+                let label = expected.and_then(|source| source.pixels().ok()?.label);
+                return Self { name, labels: [label, None], verdict: Verdict::Missing };
+            }
+            (None, Some(actual)) => {
+                let label = actual.pixels().ok().and_then(|pixels| pixels.label);
+                return Self { name, labels: [None, label], verdict: Verdict::Extra };
+            }
+        };
+        match (expected, actual) {
+            (Ok(expected), Ok(actual)) => {
+                let verdict = Verdict::new(&expected, &actual);
+                Self { name, labels: [expected.label, actual.label], verdict }
+            }
+            (expected, actual) => {
+                let errors: Vec<String> =
+                    [expected.as_ref().err(), actual.as_ref().err()].into_iter().flatten().cloned().collect();
+                let labels = [expected, actual].map(|side| side.ok().and_then(|pixels| pixels.label));
+                Self { name, labels, verdict: Verdict::Unreadable { message: errors.join("; ") } }
+            }
+        }
+    }
+
+    fn compared(self) -> Compared {
+        let frame = self.labels.iter().flatten().find_map(frame_of);
+        Compared { name: self.name, frame, verdict: self.verdict }
+    }
+}
+
+/// Adds what is known besides the two pictures: by how much a state moved, and whether a golden contradicts itself.
+fn complete(picture: &mut Compared, expected: &Side, courses: &[Course]) {
+    if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
+        for here in runs {
+            let course = courses.iter().find(|course| course.run == here.run);
+            let frame = picture.frame.unwrap_or(0);
+            let moment = course.and_then(|course| course.moments.iter().find(|moment| moment.frame == frame));
+            here.displacement = moment.and_then(|moment| moment.displacement);
+        }
+    }
+    let (Some(record), Some(source)) = (&expected.record, expected.pictures.get(&picture.name)) else { return };
+    if expected.kind != Kind::Golden || matches!(picture.verdict, Verdict::Unreadable { .. }) {
+        return;
+    }
+    let contradiction = match record.pictures.iter().find(|drawn| drawn.file == picture.name) {
+        None => Some(format!("{RECORD_FILE} does not know this picture")),
+        Some(drawn) => source.pixels().ok().and_then(|pixels| pixels.label).and_then(|label| {
+            let frame = frame_of(&label).unwrap_or(0);
+            let is_other = label.states().iter().any(|(digest, run)| {
+                let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
+                state.is_none_or(|state| !digest.starts_with(&state.digest))
+            });
+            (is_other || frame != drawn.frame)
+                .then(|| format!("{RECORD_FILE} records another state than this picture shows"))
+        }),
     };
-    Ok(paths.map_err(failed)?.into_iter().filter(is_picture).collect())
+    if let Some(what) = contradiction {
+        let path = expected.origin.join(&picture.name);
+        picture.verdict =
+            Verdict::Unreadable { message: format!("{}: the golden contradicts itself: {what}", path.display()) };
+    }
+}
+
+/// Digests of the scenes of a side.
+fn scenes(side: &Side, labels: &[&Label]) -> BTreeSet<String> {
+    match &side.record {
+        Some(record) => record.scenes.iter().cloned().collect(),
+        None => labels.iter().flat_map(|label| label.scenes()).map(str::to_owned).collect(),
+    }
+}
+
+/// What is said if a scene does not go as far as its golden.
+fn lost(expected: &Side, actual: &Side) -> Option<String> {
+    let last = |side: &Side| {
+        let runs = side.record.iter().flat_map(|record| &record.states.runs);
+        runs.filter_map(|run| run.states.keys().next_back()).max().copied()
+    };
+    let (expected, actual) = (last(expected)?, last(actual)?);
+    (expected > actual).then(|| format!("the golden goes on to frame {expected}, the scene ends with frame {actual}"))
 }
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(true))
+    }
+}
+
+impl Comparison {
+    /// All of it in words, with the command that accepts what is there if that is asked for.
+    pub(crate) fn told(&self, with_command: bool) -> String {
+        let mut text = String::new();
+        self.tell(&mut text).expect("a string takes all");
+        if let Some(command) = self.command_to_accept().filter(|_| with_command) {
+            let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
+            text += &format!("{what}: {command}\n");
+        }
+        text
+    }
+
+    fn tell(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        if self.sides[0].kind == Kind::Absent {
+            writeln!(f, "the golden {} is missing", self.sides[0].origin.display())?;
+            return self.tell_end(f);
+        }
+        for moved in &self.moved {
+            writeln!(f, "state moved: {moved}")?;
+        }
         let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
         for Compared { name, verdict, .. } in wrong.iter().take(MOST_TOLD) {
             writeln!(f, "{name}: {verdict}")?;
@@ -167,29 +437,45 @@ impl fmt::Display for Comparison {
         if wrong.len() > MOST_TOLD {
             writeln!(f, "and {} more", wrong.len() - MOST_TOLD)?;
         }
-        if let [only] = &self.pictures[..] {
+        if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
             // A single picture that passes is told, too.
-            return if wrong.is_empty() { writeln!(f, "{}: {}", only.name, only.verdict) } else { Ok(()) };
+            writeln!(f, "{}: {}", only.name, only.verdict)?;
         }
-        let visible = |verdict: &Verdict| match verdict {
-            Verdict::WithinTolerance(distance) | Verdict::NoState { distance: Some(distance) } => distance.visible,
-            _ => 0,
-        };
-        let nearest = self.pictures.iter().map(|picture| visible(&picture.verdict)).max().unwrap_or(0);
-        match wrong.len() {
-            0 => writeln!(
-                f,
-                "{} pictures, nothing moved; at most {nearest} pixels of one differ visibly",
-                self.pictures.len()
-            )?,
-            count => writeln!(f, "{count} of {} pictures are not as expected", self.pictures.len())?,
+        if self.pictures.len() > 1 {
+            match wrong.len() {
+                0 => writeln!(f, "{}", self.pass())?,
+                count => writeln!(f, "{count} of {} pictures are not as expected", self.pictures.len())?,
+            }
         }
-        if let Some(first) = self.first_moved() {
-            writeln!(f, "the first whose state moved is {}", first.name)?;
+        if let Some(moved) = self.first_moved().filter(|_| self.pictures.len() > 1) {
+            writeln!(f, "the first picture whose state moved is {}", moved.name)?;
         }
-        if self.pictures.iter().any(|picture| picture.same_scene == Some(false)) {
+        if let (states @ 1.., true) = (self.states_compared(), self.moved.is_empty() && self.sides[0].record.is_some())
+        {
+            writeln!(f, "{states} states are the same")?;
+        }
+        self.tell_end(f)
+    }
+
+    /// What is said of pictures that all pass.
+    fn pass(&self) -> String {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for picture in &self.pictures {
+            *counts.entry(picture.verdict.kind()).or_default() += 1;
+        }
+        let counts: Vec<_> = counts.into_iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        let distances = self.pictures.iter().filter_map(|picture| Some((picture.verdict.distance()?, &picture.name)));
+        let nearest = distances.max_by(|one, other| one.0.of_limit().total_cmp(&other.0.of_limit()));
+        let nearest = nearest.map_or_else(String::new, |(distance, name)| {
+            format!("; nearest to its limit is {name} with {:.0} % of it", 100.0 * distance.of_limit())
+        });
+        format!("{} pictures: {}{nearest}", self.pictures.len(), counts.join(", "))
+    }
+
+    fn tell_end(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        if self.same_scene == Some(false) {
             writeln!(f, "the scene files are not the same")?;
         }
-        Ok(())
+        self.notes.iter().try_for_each(|note| writeln!(f, "{note}"))
     }
 }

@@ -1,9 +1,8 @@
 //! Pictures as they are read to be compared: 8-bit red, green and blue, with or without opacities, and nothing else.
 
-use crate::output::{Tags, tags_of};
-use std::fs::File;
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use crate::output::Label;
+use std::io::{BufRead, Cursor, Seek};
+use std::path::Path;
 
 /// The longest side of a picture (px): more than any that is drawn, and little enough to be read.
 const LONGEST_SIDE: u32 = 16_384;
@@ -12,29 +11,23 @@ const LONGEST_SIDE: u32 = 16_384;
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// It cannot be opened.
-    #[error("cannot read {}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// It is no PNG file, or not all of one.
-    #[error("{}: this is no whole PNG picture ({reason})", path.display())]
-    Broken {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    #[error("cannot be read")]
+    Read(#[from] std::io::Error),
+    /// It is no PNG file.
+    #[error("this is no PNG picture")]
+    Foreign,
+    /// It is a PNG file, but not a whole one.
+    #[error("this PNG picture is damaged or cut short ({0})")]
+    Broken(String),
     /// It is a PNG file of another kind than those that are written here.
-    #[error("{}: the picture {what}; expected 8 bits of red, green and blue, not interlaced", path.display())]
-    Kind {
-        /// The file.
-        path: PathBuf,
-        /// What it is or has.
-        what: String,
-    },
+    #[error("the picture {0}; expected 8 bits of red, green and blue, not interlaced")]
+    Kind(String),
+    /// It says of itself what cannot be.
+    #[error(
+        "the picture was drawn by this program, but its text `localshape:{0}` is missing or damaged; \
+         its pixels alone prove nothing"
+    )]
+    Label(&'static str),
 }
 
 /// A picture with what it says about itself.
@@ -47,7 +40,7 @@ pub struct Pixels {
     /// Row after row from the top left.
     pub bytes: Vec<u8>,
     /// What it shows, if it says so.
-    pub tags: Option<Tags>,
+    pub label: Option<Label>,
 }
 
 impl Pixels {
@@ -56,11 +49,36 @@ impl Pixels {
     /// # Errors
     /// A file that cannot be read, is no PNG file or only a part of one, or is of another kind than frames are.
     pub fn read(path: &Path) -> Result<Self, PictureError> {
-        let broken = |error: png::DecodingError| PictureError::Broken { path: path.into(), reason: error.to_string() };
-        let file = File::open(path).map_err(|source| PictureError::Read { path: path.into(), source })?;
-        let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(broken)?;
+        if path.is_dir() {
+            return Err(std::io::Error::from(std::io::ErrorKind::IsADirectory).into());
+        }
+        // In one piece: a pipe is no picture, and files are small.
+        if !path.metadata()?.is_file() {
+            return Err(PictureError::Foreign);
+        }
+        Self::decode(std::io::BufReader::new(std::fs::File::open(path)?))
+    }
+
+    /// Reads a PNG file from memory.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PictureError> {
+        Self::decode(Cursor::new(bytes))
+    }
+
+    fn decode(mut file: impl BufRead + Seek) -> Result<Self, PictureError> {
+        const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+        if !file.fill_buf()?.starts_with(SIGNATURE) {
+            return Err(PictureError::Foreign);
+        }
+        let broken = |error: png::DecodingError| match error {
+            png::DecodingError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.into(),
+            error => PictureError::Broken(error.to_string()),
+        };
+        let mut reader = png::Decoder::new(file).read_info().map_err(broken)?;
         let info = reader.info();
-        let kind = |what: String| Err(PictureError::Kind { path: path.into(), what });
+        let kind = |what: String| Err(PictureError::Kind(what));
         if info.width.max(info.height) > LONGEST_SIDE {
             return kind(format!("says that it has {}×{} pixels", info.width, info.height));
         }
@@ -70,17 +88,22 @@ impl Pixels {
         if info.interlaced {
             return kind("is interlaced".to_owned());
         }
+        if info.animation_control.is_some() {
+            return kind("is an animation".to_owned());
+        }
         let channels = match info.color_type {
+            png::ColorType::Rgb if info.trns.is_some() => return kind("calls one colour transparent".to_owned()),
             png::ColorType::Rgb => 3,
             png::ColorType::Rgba => 4,
             png::ColorType::Indexed => return kind("has a palette".to_owned()),
             png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => return kind("is grey".to_owned()),
         };
-        let (size, tags) = ([info.width, info.height], tags_of(info));
+        let size = [info.width, info.height];
+        let label = Label::of(info).map_err(PictureError::Label)?;
         let mut bytes = vec![0; size[0] as usize * size[1] as usize * channels];
         reader.next_frame(&mut bytes).map_err(broken)?;
         // The checksum of what follows the pixels is a part of the whole, too.
         reader.finish().map_err(broken)?;
-        Ok(Self { size, channels, bytes, tags })
+        Ok(Self { size, channels, bytes, label })
     }
 }

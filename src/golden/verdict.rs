@@ -1,29 +1,11 @@
 //! What is said of two pictures: whether physics or drawing moved.
 
+use super::distance::Distance;
 use super::picture::Pixels;
-use crate::output::Tags;
+use super::states::Displacement;
+use crate::output::Label;
 use serde::Serialize;
 use std::fmt;
-
-/// Pixels differ visibly if a channel differs by more than this: drivers round in their own ways.
-const CHANNEL: u8 = 2;
-/// Pictures of different machines may differ visibly in this part of their pixels, and in so many in any
-/// case: sample places along silhouettes, not more.
-const PART: f64 = 1e-4;
-const AT_LEAST: u64 = 8;
-
-/// How far two pictures of one size are apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Distance {
-    /// Pixels that are not equal.
-    pub unequal: u64,
-    /// Pixels of which a channel differs by more than 2 of 255.
-    pub visible: u64,
-    /// The largest difference of a channel, of 255.
-    pub largest: u8,
-    /// How many visible ones are allowed: none between pictures of one machine, where not even unequal ones are.
-    pub allowed: u64,
-}
 
 /// Whether two pictures show the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,11 +19,15 @@ pub enum Verdict {
     DrawnDifferently {
         /// How far apart they are; `None` if their sizes or channels are not alike.
         distance: Option<Distance>,
+        /// Width and height of both (px).
+        sizes: [[u32; 2]; 2],
     },
     /// The simulation gave other positions or velocities.
     StateMoved {
         /// The runs whose states differ.
-        runs: Vec<String>,
+        runs: Vec<MovedHere>,
+        /// How far apart the pictures are; `None` if their sizes or channels are not alike.
+        distance: Option<Distance>,
     },
     /// There is nothing to compare with what was expected.
     Missing,
@@ -51,28 +37,39 @@ pub enum Verdict {
     NoState {
         /// How far apart they are; `None` if their sizes or channels are not alike.
         distance: Option<Distance>,
+        /// Width and height of both (px).
+        sizes: [[u32; 2]; 2],
     },
     /// One of the files is no picture that can be compared.
     Unreadable {
-        /// Why.
+        /// Which one, and why.
         message: String,
     },
+}
+
+/// A run whose state in one picture is not the one that was expected.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MovedHere {
+    /// Name of the run.
+    pub run: String,
+    /// The node that is farthest away, where that is known.
+    pub displacement: Option<Displacement>,
 }
 
 impl Verdict {
     /// The verdict on an actual picture beside the expected one.
     pub fn new(expected: &Pixels, actual: &Pixels) -> Self {
-        let is_alike = expected.size == actual.size && expected.channels == actual.channels;
-        let distance = is_alike.then(|| Distance::new(expected, actual));
-        let Some((before, after)) = expected.tags.as_ref().zip(actual.tags.as_ref()) else {
-            return Self::NoState { distance };
+        let distance = Distance::new(expected, actual);
+        let sizes = [expected.size, actual.size];
+        let Some((before, after)) = expected.label.as_ref().zip(actual.label.as_ref()) else {
+            return Self::NoState { distance, sizes };
         };
         let runs = moved(before, after);
         match distance {
-            _ if !runs.is_empty() => Self::StateMoved { runs },
+            _ if !runs.is_empty() => Self::StateMoved { runs, distance },
             Some(Distance { unequal: 0, .. }) => Self::Identical,
             Some(distance) if distance.is_allowed() => Self::WithinTolerance(distance),
-            distance => Self::DrawnDifferently { distance },
+            distance => Self::DrawnDifferently { distance, sizes },
         }
     }
 
@@ -80,7 +77,7 @@ impl Verdict {
     pub fn passes(&self) -> bool {
         match self {
             Self::Identical | Self::WithinTolerance(_) => true,
-            Self::NoState { distance } => distance.is_some_and(|distance| distance.is_allowed()),
+            Self::NoState { distance, .. } => distance.is_some_and(|distance| distance.is_allowed()),
             Self::DrawnDifferently { .. }
             | Self::StateMoved { .. }
             | Self::Missing
@@ -88,72 +85,76 @@ impl Verdict {
             | Self::Unreadable { .. } => false,
         }
     }
-}
 
-/// The names of the runs that differ, or are in one of the pictures only.
-fn moved(before: &Tags, after: &Tags) -> Vec<String> {
-    let absent = |states: &[(String, String)], state: &(String, String)| !states.contains(state);
-    let gone = before.states.iter().filter(|state| absent(&after.states, state));
-    let come = after.states.iter().filter(|state| absent(&before.states, state));
-    let mut runs: Vec<String> = gone.chain(come).map(|(_, run)| run.clone()).collect();
-    runs.sort();
-    runs.dedup();
-    runs
-}
-
-impl Distance {
-    /// That of two pictures of one size and as many channels.
-    fn new(expected: &Pixels, actual: &Pixels) -> Self {
-        let adapter = |pixels: &Pixels| pixels.tags.as_ref().map(|tags| tags.adapter.clone());
-        let one_machine = adapter(expected).is_some() && adapter(expected) == adapter(actual);
-        let all = u64::from(expected.size[0]) * u64::from(expected.size[1]);
-        let allowed = if one_machine { 0 } else { AT_LEAST.max((PART * all as f64) as u64) };
-        let mut distance = Self { allowed, ..Self::default() };
-        if expected.bytes == actual.bytes {
-            return distance;
+    /// The verdict in the words that all of its kind share.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Identical => "identical",
+            Self::WithinTolerance(_) => "same state, pixels within tolerance",
+            Self::DrawnDifferently { .. } => "same state, drawn differently",
+            Self::StateMoved { .. } => "state moved",
+            Self::Missing => "missing",
+            Self::Extra => "extra",
+            Self::NoState { .. } => "no state recorded",
+            Self::Unreadable { .. } => "unreadable",
         }
-        let channels = expected.channels;
-        for (one, other) in expected.bytes.chunks_exact(channels).zip(actual.bytes.chunks_exact(channels)) {
-            if one != other {
-                let largest = one.iter().zip(other).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
-                distance.unequal += 1;
-                distance.visible += u64::from(largest > CHANNEL);
-                distance.largest = distance.largest.max(largest);
-            }
-        }
-        distance
     }
 
-    /// Whether it is no more than machines differ.
-    pub fn is_allowed(self) -> bool {
-        if self.allowed == 0 { self.unequal == 0 } else { self.visible <= self.allowed }
+    /// How far the pictures are apart, if they could be compared.
+    pub fn distance(&self) -> Option<&Distance> {
+        match self {
+            Self::WithinTolerance(distance) => Some(distance),
+            Self::DrawnDifferently { distance, .. }
+            | Self::StateMoved { distance, .. }
+            | Self::NoState { distance, .. } => distance.as_ref(),
+            Self::Identical | Self::Missing | Self::Extra | Self::Unreadable { .. } => None,
+        }
     }
 }
 
-impl fmt::Display for Distance {
+/// The runs that differ, or are in one of the pictures only.
+fn moved(before: &Label, after: &Label) -> Vec<MovedHere> {
+    let absent = |from: &Label, state: &(String, String)| !from.states().contains(state);
+    let gone = before.states().iter().filter(|state| absent(after, state));
+    let come = after.states().iter().filter(|state| absent(before, state));
+    let mut runs: Vec<String> = Vec::new();
+    for (_, run) in gone.chain(come) {
+        if !runs.contains(run) {
+            runs.push(run.clone());
+        }
+    }
+    runs.into_iter().map(|run| MovedHere { run, displacement: None }).collect()
+}
+
+impl fmt::Display for MovedHere {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { unequal, visible, largest, allowed } = self;
-        if *allowed == 0 {
-            write!(f, "{unequal} pixels differ, by up to {largest} of 255; none may, for one machine drew both")
-        } else {
-            write!(f, "{visible} pixels differ by more than {CHANNEL} of 255, up to {largest}; {allowed} may")
+        match &self.displacement {
+            Some(displacement) => write!(f, "{}, {}", self.run, displacement.words()),
+            None => f.write_str(&self.run),
         }
     }
 }
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const SHAPE: &str = "width, height or opacities are not alike";
-        let told = |distance: &Option<Distance>| distance.map_or(SHAPE.to_owned(), |distance| distance.to_string());
+        f.write_str(self.kind())?;
+        let unlike = |[[a, b], [c, d]]: &[[u32; 2]; 2]| match [a, b] == [c, d] {
+            true => "one of them has opacities, the other one has none".to_owned(),
+            false => format!("{c}×{d} pixels instead of {a}×{b}"),
+        };
         match self {
-            Self::Identical => f.write_str("identical"),
-            Self::WithinTolerance(distance) => write!(f, "same state, pixels within tolerance: {distance}"),
-            Self::DrawnDifferently { distance } => write!(f, "same state, drawn differently: {}", told(distance)),
-            Self::StateMoved { runs } => write!(f, "state moved: {}", runs.join(", ")),
-            Self::Missing => f.write_str("missing"),
-            Self::Extra => f.write_str("extra"),
-            Self::NoState { distance } => write!(f, "no state recorded (pixels only): {}", told(distance)),
-            Self::Unreadable { message } => write!(f, "unreadable: {message}"),
+            Self::Identical | Self::Missing | Self::Extra => Ok(()),
+            Self::WithinTolerance(distance) => write!(f, ": {distance}"),
+            Self::DrawnDifferently { distance: Some(distance), .. } => write!(f, ": {distance}"),
+            Self::DrawnDifferently { distance: None, sizes } => write!(f, ": {}", unlike(sizes)),
+            Self::StateMoved { runs, .. } => {
+                let runs: Vec<_> = runs.iter().map(MovedHere::to_string).collect();
+                write!(f, ": {}", runs.join("; "))
+            }
+            Self::NoState { distance: Some(Distance { unequal: 0, .. }), .. } => f.write_str(" (the pixels are equal)"),
+            Self::NoState { distance: Some(distance), .. } => write!(f, " (pixels only): {distance}"),
+            Self::NoState { distance: None, sizes } => write!(f, " (pixels only): {}", unlike(sizes)),
+            Self::Unreadable { message } => write!(f, ": {message}"),
         }
     }
 }
@@ -161,6 +162,7 @@ impl fmt::Display for Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::Tags;
 
     fn pixels(adapter: &str, state: &str, change: impl FnOnce(&mut [u8])) -> Pixels {
         let mut bytes = vec![100; 40 * 30 * 3];
@@ -173,32 +175,76 @@ mod tests {
             version: "0".into(),
             adapter: adapter.into(),
         };
-        Pixels { size: [40, 30], channels: 3, bytes, tags: Some(tags) }
+        Pixels { size: [40, 30], channels: 3, bytes, label: Some(Label::Frame(tags)) }
     }
 
     #[test]
     fn each_verdict_from_a_constructed_pair() {
-        let golden = pixels("one", "1", |_| ());
+        let golden = pixels("soft (1)", "1", |_| ());
         let of = |actual: &Pixels| Verdict::new(&golden, actual);
         let same = of(&golden);
         assert_eq!((&same, same.passes(), same.to_string().as_str()), (&Verdict::Identical, true, "identical"));
         // One machine draws the same bytes; another one rounds as it likes, at a few pixels more than that.
         let hardly = |bytes: &mut [u8]| bytes[0] += 1;
-        assert!(!of(&pixels("one", "1", hardly)).passes());
-        let other = of(&pixels("two", "1", hardly));
-        assert!(matches!(other, Verdict::WithinTolerance(Distance { unequal: 1, visible: 0, largest: 1, allowed: 8 })));
-        assert!(other.passes() && other.to_string().starts_with("same state, pixels within tolerance: 0 pixels"));
-        let few = |count: usize| pixels("two", "1", move |bytes| (0..count).for_each(|at| bytes[30 * at] = 0));
+        let alone = of(&pixels("soft (1)", "1", hardly));
+        assert_eq!(
+            (alone.passes(), alone.to_string().as_str()),
+            (
+                false,
+                "same state, drawn differently: 1 pixel differs, by up to 1 of 255; none may, for one machine drew both"
+            )
+        );
+        let other = of(&pixels("soft (2)", "1", hardly));
+        assert!(other.passes() && matches!(other, Verdict::WithinTolerance(_)));
+        let words = "same state, pixels within tolerance: 0 of the 8 pixels that may differ by more than 2 of 255 do, by up to 1";
+        assert_eq!(other.to_string(), words);
+        let few = |count: usize| pixels("soft (2)", "1", move |bytes| (0..count).for_each(|at| bytes[30 * at] = 0));
         assert!(of(&few(8)).passes() && !of(&few(9)).passes());
-        assert!(of(&few(9)).to_string().starts_with("same state, drawn differently: 9 pixels"));
+        assert!(of(&few(9)).to_string().starts_with("same state, drawn differently: 9 of the 8 pixels"));
         // Physics comes before drawing, also where no pixel tells.
-        let moved = of(&pixels("one", "2", |_| ()));
-        assert_eq!(moved, Verdict::StateMoved { runs: vec!["run".into()] });
-        assert!(!moved.passes() && !of(&pixels("two", "2", |bytes| bytes.fill(0))).passes());
+        let moved = of(&pixels("soft (1)", "2", |_| ()));
+        assert_eq!((moved.to_string().as_str(), moved.passes()), ("state moved: run", false));
+        assert!(!of(&pixels("hard", "2", |bytes| bytes.fill(0))).passes());
         // Without a state pixels alone are compared.
-        let untold = Pixels { tags: None, ..golden.clone() };
-        assert!(of(&untold).passes() && of(&untold).to_string().starts_with("no state recorded (pixels only)"));
+        let untold = Pixels { label: None, ..golden.clone() };
+        assert!(of(&untold).passes() && of(&untold).to_string() == "no state recorded (the pixels are equal)");
         let wide = Pixels { size: [30, 40], ..golden.clone() };
-        assert_eq!(of(&wide), Verdict::DrawnDifferently { distance: None });
+        assert_eq!(of(&wide).to_string(), "same state, drawn differently: 30×40 pixels instead of 40×30");
+    }
+
+    #[test]
+    fn another_kind_of_adapter_is_judged_by_silhouettes_and_interiors() {
+        // A dark square on light ground: 12 × 12 pixels, so 4 × 12 along its border on either side.
+        let square = |bytes: &mut [u8], shift: usize, ground: u8, inside: u8| {
+            bytes.fill(ground);
+            for at in (0..144).map(|at| (10 + at / 12) * 40 + 10 + shift + at % 12) {
+                bytes[3 * at..3 * at + 3].fill(inside);
+            }
+        };
+        let golden = pixels("soft (1)", "1", |bytes| square(bytes, 0, 200, 50));
+        let hard = |change: &dyn Fn(&mut [u8])| {
+            Verdict::new(
+                &golden,
+                &pixels("hard (1)", "1", |bytes| {
+                    square(bytes, 0, 200, 50);
+                    change(bytes);
+                }),
+            )
+        };
+        let border = |count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[3 * (410 + at)] = 120);
+        // A quarter of the pixels along the border: 29 of them. Its outermost ring has 44.
+        assert!(hard(&border(12)).passes(), "{}", hard(&border(12)));
+        let ring = hard(&|bytes| {
+            let on_ring = |at: &usize| [0, 11].contains(&(at / 12)) || [0, 11].contains(&(at % 12));
+            (0..144).filter(on_ring).for_each(|at| bytes[3 * ((10 + at / 12) * 40 + 10 + at % 12)] = 120);
+        });
+        assert!(!ring.passes(), "{ring}");
+        // Between silhouettes little may differ, and nothing by much.
+        let faint = |count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[3 * at] = 204);
+        assert!(hard(&faint(8)).passes() && !hard(&faint(9)).passes(), "{}", hard(&faint(8)));
+        assert!(hard(&faint(9)).to_string().contains("between them 9 of 8 (by up to 4, 8 is allowed)"));
+        // The whole square paler, its border as it was: nothing that a limit on all pixels would see at once.
+        let paler = hard(&|bytes| (0..16).for_each(|at| bytes[3 * ((14 + at / 4) * 40 + 14 + at % 4)] = 56));
+        assert!(!paler.passes(), "{paler}");
     }
 }

@@ -1,7 +1,9 @@
 //! Frames as PNG, with what they show written into them.
 
 use super::{OutputError, exact, state_digest};
+use crate::moments::Moments;
 use crate::scene::Scene;
+use crate::scene::figure::Figure;
 use crate::sim::snapshot::Frame;
 use std::fs::File;
 use std::io::BufReader;
@@ -40,10 +42,9 @@ impl Tags {
     }
 
     fn chunks(&self) -> [(&'static str, String); 6] {
-        let states: Vec<_> = self.states.iter().map(|(digest, run)| format!("{digest} {run}")).collect();
         [
             ("scene", self.scene.clone()),
-            ("state", states.join("\n")),
+            ("state", state_lines(&self.states)),
             ("frame", self.frame.to_string()),
             ("time", exact(self.time)),
             ("version", self.version.clone()),
@@ -52,16 +53,26 @@ impl Tags {
     }
 
     fn parse(text: impl Fn(&str) -> Option<String>) -> Option<Self> {
-        let line = |line: &str| line.split_once(' ').map(|(digest, run)| (digest.to_owned(), run.to_owned()));
         Some(Self {
             scene: text("scene")?,
-            states: text("state")?.lines().map(line).collect::<Option<_>>()?,
+            states: states_of(&text("state")?)?,
             frame: text("frame")?.parse().ok()?,
             time: text("time")?.parse().ok()?,
             version: text("version")?,
             adapter: text("adapter")?,
         })
     }
+}
+
+/// Digests and names, one line each.
+fn state_lines(states: &[(String, String)]) -> String {
+    states.iter().map(|(digest, name)| format!("{digest} {name}")).collect::<Vec<_>>().join("\n")
+}
+
+/// The way back from [`state_lines`].
+fn states_of(lines: &str) -> Option<Vec<(String, String)>> {
+    let line = |line: &str| line.split_once(' ').map(|(digest, name)| (digest.to_owned(), name.to_owned()));
+    lines.lines().map(line).collect()
 }
 
 /// A picture of 8-bit red, green and blue, or of these and opacity, as a PNG file in sRGB, with its tags.
@@ -82,6 +93,10 @@ pub struct FigureTags {
     pub figure: String,
     /// `localshape:scene`: the digests of its scenes, one line each.
     pub scenes: Vec<String>,
+    /// `localshape:state`: digest and name of each state shown, one line each; see [`Moments::states`].
+    ///
+    /// [`Moments::states`]: crate::moments::Moments::states
+    pub states: Vec<(String, String)>,
     /// `localshape:version`: the version of this crate that drew it.
     pub version: String,
     /// `localshape:adapter`: the graphics adapter that drew it.
@@ -89,10 +104,23 @@ pub struct FigureTags {
 }
 
 impl FigureTags {
-    /// The tags of a figure of some scenes drawn by `adapter`.
-    pub fn new(figure: &str, scenes: Vec<String>, adapter: &str) -> Self {
+    /// The tags of a figure that shows `moments`, drawn by `adapter`.
+    pub fn new(figure: &Figure, moments: &Moments, adapter: &str) -> Self {
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        Self { figure: figure.to_owned(), scenes, version, adapter: adapter.to_owned() }
+        let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
+        let states = moments.states(figure).into_iter();
+        let states = states.map(|(name, snapshot)| (state_digest(&snapshot), name)).collect();
+        Self { figure: figure.name.clone(), scenes, states, version, adapter: adapter.to_owned() }
+    }
+
+    fn chunks(&self) -> [(&'static str, String); 5] {
+        [
+            ("figure", self.figure.clone()),
+            ("scene", self.scenes.join("\n")),
+            ("state", state_lines(&self.states)),
+            ("version", self.version.clone()),
+            ("adapter", self.adapter.clone()),
+        ]
     }
 }
 
@@ -101,10 +129,16 @@ impl FigureTags {
 /// # Panics
 /// As [`encode`].
 pub fn encode_figure(size: [u32; 2], pixels: &[u8], tags: &FigureTags) -> Vec<u8> {
-    let FigureTags { figure, scenes, version, adapter } = tags.clone();
-    let chunks = [("figure", figure), ("scene", scenes.join("\n")), ("version", version), ("adapter", adapter)];
     // A single picture may take its time.
-    encode_with(size, pixels, &chunks, png::Compression::High)
+    encode_with(size, pixels, &tags.chunks(), png::Compression::High)
+}
+
+/// A picture of 8-bit red, green and blue as a PNG file in sRGB that says nothing of itself, as small as can be had.
+///
+/// # Panics
+/// As [`encode`].
+pub(crate) fn encode_plain(size: [u32; 2], pixels: &[u8]) -> Vec<u8> {
+    encode_with(size, pixels, &[], png::Compression::High)
 }
 
 /// Whether a file is a figure that this crate drew.
@@ -112,12 +146,7 @@ pub fn encode_figure(size: [u32; 2], pixels: &[u8], tags: &FigureTags) -> Vec<u8
 /// # Errors
 /// If the file cannot be read.
 pub fn is_figure(path: &Path) -> Result<bool, OutputError> {
-    let file = File::open(path).map_err(OutputError::reading(path))?;
-    let Ok(reader) = png::Decoder::new(BufReader::new(file)).read_info() else { return Ok(false) };
-    let info = reader.info();
-    let names = info.uncompressed_latin1_text.iter().map(|chunk| &chunk.keyword);
-    let names = names.chain(info.utf8_text.iter().map(|chunk| &chunk.keyword));
-    Ok(names.into_iter().any(|name| name == "localshape:figure"))
+    Ok(header(path, |info| chunk(info, "figure").is_some())? == Some(true))
 }
 
 /// A picture as a PNG file in sRGB with text chunks.
@@ -169,26 +198,119 @@ pub fn read_tags(path: &Path) -> Result<Option<Tags>, OutputError> {
 /// # Errors
 /// If the file cannot be read.
 pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
+    let described = |info: &png::Info<'_>| tags_of(info).map(|tags| ([info.width, info.height], tags));
+    Ok(header(path, described)?.flatten())
+}
+
+/// Reads what a frame or a figure says about itself, without its pixels; `None` if there is nothing, or nothing of sense.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_label(path: &Path) -> Result<Option<Label>, OutputError> {
+    Ok(header(path, |info| Label::of(info).ok().flatten())?.flatten())
+}
+
+/// What is before the pixels of a picture; `None` if the file is no PNG.
+fn header<T>(path: &Path, take: impl FnOnce(&png::Info<'_>) -> T) -> Result<Option<T>, OutputError> {
     let file = File::open(path).map_err(OutputError::reading(path))?;
-    let reader = match png::Decoder::new(BufReader::new(file)).read_info() {
-        Ok(reader) => reader,
+    match png::Decoder::new(BufReader::new(file)).read_info() {
+        Ok(reader) => Ok(Some(take(reader.info()))),
         Err(png::DecodingError::IoError(error)) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-            return Err(OutputError::reading(path)(error));
+            Err(OutputError::reading(path)(error))
         }
-        Err(_) => return Ok(None),
-    };
-    let info = reader.info();
-    Ok(tags_of(info).map(|tags| ([info.width, info.height], tags)))
+        Err(_) => Ok(None),
+    }
 }
 
 /// What the header of a picture says of what it shows, if it was written by this crate.
 pub(crate) fn tags_of(info: &png::Info<'_>) -> Option<Tags> {
-    Tags::parse(|name| {
-        let keyword = format!("localshape:{name}");
-        let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
-        let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
-        plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
-    })
+    Tags::parse(|name| chunk(info, name))
+}
+
+/// What a picture says of itself, be it a frame or a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Label {
+    /// One moment of a scene.
+    Frame(Tags),
+    /// A figure.
+    Figure(FigureTags),
+}
+
+impl Label {
+    /// What the header of a picture says; `None` of pictures of others.
+    ///
+    /// # Errors
+    /// The name of a chunk of ours that is missing or makes no sense.
+    pub(crate) fn of(info: &png::Info<'_>) -> Result<Option<Self>, &'static str> {
+        const NAMES: [&str; 7] = ["figure", "scene", "state", "frame", "time", "version", "adapter"];
+        let text = |name: &'static str| chunk(info, name).ok_or(name);
+        if NAMES.iter().all(|name| chunk(info, name).is_none()) {
+            return Ok(None);
+        }
+        let is_digest = |digest: &String| !digest.is_empty() && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let states = states_of(&text("state")?).filter(|all| all.iter().all(|(digest, _)| is_digest(digest)));
+        let states = states.ok_or("state")?;
+        let (version, adapter) = (text("version")?, text("adapter")?);
+        if let Some(figure) = chunk(info, "figure") {
+            let scenes = text("scene")?.lines().map(str::to_owned).collect();
+            return Ok(Some(Self::Figure(FigureTags { figure, scenes, states, version, adapter })));
+        }
+        let frame = text("frame")?.parse().map_err(|_| "frame")?;
+        let time = text("time")?.parse().ok().filter(|time: &f64| time.is_finite()).ok_or("time")?;
+        Ok(Some(Self::Frame(Tags { scene: text("scene")?, states, frame, time, version, adapter })))
+    }
+
+    /// Digest and name of each state shown.
+    pub fn states(&self) -> &[(String, String)] {
+        match self {
+            Self::Frame(tags) => &tags.states,
+            Self::Figure(tags) => &tags.states,
+        }
+    }
+
+    /// The graphics adapter that drew it.
+    pub fn adapter(&self) -> &str {
+        match self {
+            Self::Frame(tags) => &tags.adapter,
+            Self::Figure(tags) => &tags.adapter,
+        }
+    }
+
+    /// The version of this crate that drew it.
+    pub fn version(&self) -> &str {
+        match self {
+            Self::Frame(tags) => &tags.version,
+            Self::Figure(tags) => &tags.version,
+        }
+    }
+
+    /// Digests of the scenes shown.
+    pub fn scenes(&self) -> Vec<&str> {
+        match self {
+            Self::Frame(tags) => vec![&tags.scene],
+            Self::Figure(tags) => tags.scenes.iter().map(String::as_str).collect(),
+        }
+    }
+
+    /// A picture with this label as a PNG file, as small as can be had; see [`encode`].
+    ///
+    /// # Panics
+    /// As [`encode`].
+    pub fn encode(&self, size: [u32; 2], pixels: &[u8]) -> Vec<u8> {
+        let compression = png::Compression::High;
+        match self {
+            Self::Frame(tags) => encode_with(size, pixels, &tags.chunks(), compression),
+            Self::Figure(tags) => encode_with(size, pixels, &tags.chunks(), compression),
+        }
+    }
+}
+
+/// The text in one of our chunks.
+fn chunk(info: &png::Info<'_>, name: &str) -> Option<String> {
+    let keyword = format!("localshape:{name}");
+    let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
+    let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
+    plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
 }
 
 #[cfg(test)]

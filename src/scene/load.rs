@@ -82,6 +82,16 @@ const FIGURE: Other =
 pub(super) const SCENE: Other =
     Other { keys: &["body", "run"], message: "this is a scene, not a figure; `localshape render` draws it" };
 
+/// Whether a file is a figure and not a scene, as far as that can be told.
+#[cfg(feature = "render")]
+pub(crate) fn is_figure_file(path: &Path, limits: &Limits) -> bool {
+    let is_figure = |text: String| {
+        let (root, _) = DeTable::parse_recoverable(text.strip_prefix('\u{feff}').unwrap_or(&text));
+        FIGURE.keys.iter().any(|key| root.get_ref().contains_key(*key))
+    };
+    text_of(path, limits).is_ok_and(is_figure)
+}
+
 /// Reads a text of TOML, checks it against a schema and gives it its meaning; all mistakes that anyone reports on the way
 /// are told together.
 pub(super) fn checked<T>(

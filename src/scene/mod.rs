@@ -18,7 +18,7 @@ mod font;
 mod generate;
 mod limits;
 mod load;
-mod npz;
+pub(crate) mod npz;
 mod palette;
 pub(crate) mod ramp;
 mod report;
@@ -35,6 +35,8 @@ pub(crate) use generate::random;
 
 pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
+#[cfg(feature = "render")]
+pub(crate) use load::is_figure_file;
 pub use palette::Palette;
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};

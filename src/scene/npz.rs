@@ -16,20 +16,20 @@ const LONGEST_HEAD: usize = 4096;
 
 /// An archive that is open for reading.
 #[derive(Debug)]
-pub(super) struct Npz {
+pub(crate) struct Npz {
     zip: ZipArchive<BufReader<File>>,
 }
 
 /// One array of an archive: what its head says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Array {
+pub(crate) struct Array {
     /// Where it stands in the archive.
     index: usize,
     number: Number,
     /// Whether columns, not rows, lie in one piece.
     by_columns: bool,
     /// How long it is in each direction.
-    pub(super) shape: Vec<u64>,
+    pub(crate) shape: Vec<u64>,
     /// Length of the head (bytes).
     head: u64,
 }
@@ -78,9 +78,9 @@ impl Number {
     }
 }
 
-/// The numbers of an array with one or two directions, row by row.
+/// The numbers of an array with one to three directions, row by row.
 #[derive(Clone, Debug)]
-pub(super) struct Numbers {
+pub(crate) struct Numbers {
     bytes: Vec<u8>,
     number: Number,
     by_columns: bool,
@@ -89,11 +89,11 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    pub(super) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.rows
     }
 
-    pub(super) fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.columns
     }
 
@@ -104,7 +104,7 @@ impl Numbers {
     }
 
     /// One number, as a whole one; those beyond 64 bits with a sign are at their end. Zero for a fraction.
-    pub(super) fn whole(&self, row: usize, column: usize) -> i64 {
+    pub(crate) fn whole(&self, row: usize, column: usize) -> i64 {
         let raw = self.raw(row, column);
         match self.number {
             Number::Float64 | Number::Float32 => 0,
@@ -123,7 +123,7 @@ impl Numbers {
     }
 
     /// One number in double precision.
-    pub(super) fn double(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn double(&self, row: usize, column: usize) -> f64 {
         let raw = self.raw(row, column);
         match self.number {
             Number::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
@@ -138,7 +138,7 @@ impl Npz {
     ///
     /// # Errors
     /// In words, what keeps it from being one.
-    pub(super) fn open(path: &Path) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
         if path.is_dir() {
             return Err("is a folder; expected a NumPy archive (.npz)".to_owned());
         }
@@ -164,13 +164,13 @@ impl Npz {
     }
 
     /// The names of the arrays, in their order.
-    pub(super) fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let name = |name: Cow<'_, str>| name.strip_suffix(".npy").unwrap_or(&name).to_owned();
         self.zip.file_names().map(|known| name(known.unwrap_or_default())).collect()
     }
 
     /// The head of an array, if the archive has it.
-    pub(super) fn array(&mut self, name: &str) -> Option<Result<Array, String>> {
+    pub(crate) fn array(&mut self, name: &str) -> Option<Result<Array, String>> {
         let index = self.zip.index_for_name(&format!("{name}.npy"))?;
         Some(self.head(index))
     }
@@ -217,8 +217,9 @@ impl Npz {
         Ok(array)
     }
 
-    /// The numbers of an array: of one with a single direction as one column.
-    pub(super) fn numbers(&mut self, array: &Array) -> Result<Numbers, String> {
+    /// The numbers of an array: of one with a single direction as one column, of one with three directions with the last
+    /// two in one row.
+    pub(crate) fn numbers(&mut self, array: &Array) -> Result<Numbers, String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
@@ -236,6 +237,7 @@ impl Npz {
         let [rows, columns] = match array.shape[..] {
             [rows] => [rows, 1],
             [rows, columns] => [rows, columns],
+            [rows, columns, depth] if !array.by_columns => [rows, columns * depth],
             _ => return Err(format!("has the shape {}; expected rows and columns", array.shape_in_words())),
         };
         let (number, by_columns) = (array.number, array.by_columns);
@@ -245,22 +247,22 @@ impl Npz {
 
 impl Array {
     /// Whether it holds whole numbers.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         matches!(self.number, Number::Signed(_) | Number::Unsigned(_))
     }
 
     /// Length of the numbers (bytes), if 64 bits can say it.
-    pub(super) fn bytes(&self) -> Option<u64> {
+    pub(crate) fn bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))
     }
 
     /// The length of the numbers in words.
-    pub(super) fn size_in_words(&self) -> String {
+    pub(crate) fn size_in_words(&self) -> String {
         size(self.bytes().unwrap_or(u64::MAX).into())
     }
 
     /// The shape as NumPy writes it.
-    pub(super) fn shape_in_words(&self) -> String {
+    pub(crate) fn shape_in_words(&self) -> String {
         let lengths: Vec<_> = self.shape.iter().map(u64::to_string).collect();
         format!("({}{})", lengths.join(", "), if lengths.len() == 1 { "," } else { "" })
     }

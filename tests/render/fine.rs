@@ -128,7 +128,8 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
         "strip",
         "words",
     ] {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.toml"));
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/primitives/{name}.toml"));
         let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
         let runs: Vec<_> = (0..scene.runs.len()).collect();
         let frame = Sequence::new(&scene, &runs).frame(scene.last_frame());

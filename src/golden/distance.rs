@@ -1,0 +1,266 @@
+//! How far two pictures are apart, and how far they may be.
+//!
+//! One machine draws the same bytes. Machines of one kind round in their own ways, and now and then take another sample
+//! where a silhouette passes through a corner of a pixel. Another kind of adapter has sample places of its own: all along
+//! the silhouettes pixels differ by a little, but what lies between them must be the same.
+
+use super::picture::Pixels;
+use serde::Serialize;
+use std::fmt;
+
+/// Pixels differ visibly if a channel differs by more than this: drivers round in their own ways.
+pub(super) const CHANNEL: u8 = 2;
+/// Pictures of machines of one kind may differ visibly in this part of their pixels, and in so many in any case.
+const PART: f64 = 1e-4;
+const AT_LEAST: u64 = 8;
+
+/// A pixel belongs to a silhouette if a channel changes by more than this within the pixels around it, in either picture.
+const CONTRAST: u8 = 8;
+/// Of the silhouettes' pixels this part may differ visibly between kinds of adapters. Measured between two software
+/// drivers of different makers (llvmpipe and SwiftShader, 154 pictures of 180 to 1280 px, and all goldens of this project):
+/// median .008, at most .16 where a picture is hardly anything but lines. GPUs were not measured.
+const PART_OF_SILHOUETTES: f64 = 0.25;
+/// Of all others this part, measured as at most 29 of 57 600 pixels; and never by more than the contrast that makes a
+/// silhouette, measured as 6.
+const PART_OF_INTERIORS: f64 = 1e-3;
+
+/// What is known of the machines that drew two pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Machines {
+    /// The same adapter with the same driver: not a byte may differ.
+    Same,
+    /// Adapters of one kind, or nobody knows.
+    OneKind,
+    /// Adapters of different kinds.
+    OtherKind,
+}
+
+impl Machines {
+    /// What two adapters, as pictures name them, are to each other.
+    pub fn of(expected: Option<&str>, actual: Option<&str>) -> Self {
+        match (expected, actual) {
+            (Some(one), Some(other)) if one == other => Self::Same,
+            (Some(one), Some(other)) if kind(one) != kind(other) => Self::OtherKind,
+            _ => Self::OneKind,
+        }
+    }
+}
+
+/// The kind of an adapter. What stands in brackets is a version: of the compiler, the driver, the interface.
+pub(super) fn kind(adapter: &str) -> &str {
+    adapter.split('(').next().unwrap_or_default().trim()
+}
+
+/// How many pixels differ visibly, and how many may.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Count {
+    /// Pixels of which a channel differs by more than 2 of 255.
+    pub visible: u64,
+    /// How many of them are allowed.
+    pub allowed: u64,
+    /// The largest difference of a channel, of 255.
+    pub largest: u8,
+}
+
+/// How far two pictures of one size are apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Distance {
+    /// What the limits are made for.
+    pub machines: Machines,
+    /// Pixels that are not equal.
+    pub unequal: u64,
+    /// All pixels, or for adapters of different kinds those of silhouettes.
+    #[serde(flatten)]
+    pub counted: Count,
+    /// For adapters of different kinds, the pixels between the silhouettes, of which none may differ by more than 8.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interiors: Option<Count>,
+}
+
+impl Distance {
+    /// That of two pictures; `None` if their sizes or channels are not alike.
+    pub fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
+        if expected.size != actual.size || expected.channels != actual.channels {
+            return None;
+        }
+        let adapter = |pixels: &'_ Pixels| pixels.label.as_ref().map(|label| label.adapter().to_owned());
+        let machines = Machines::of(adapter(expected).as_deref(), adapter(actual).as_deref());
+        let all = u64::from(expected.size[0]) * u64::from(expected.size[1]);
+        let part = |part: f64, of: u64| AT_LEAST.max((part * of as f64) as u64);
+        let counted =
+            Count { allowed: if machines == Machines::Same { 0 } else { part(PART, all) }, ..Count::default() };
+        let mut distance = Self { machines, unequal: 0, counted, interiors: None };
+        if expected.bytes == actual.bytes {
+            return Some(distance);
+        }
+        let mask = (machines == Machines::OtherKind).then(|| silhouettes([expected, actual]));
+        let mut interiors = Count::default();
+        for (at, difference) in differences(expected, actual) {
+            let is_interior = mask.as_ref().is_some_and(|mask| !mask[at]);
+            let count = if is_interior { &mut interiors } else { &mut distance.counted };
+            count.visible += u64::from(difference > CHANNEL);
+            count.largest = count.largest.max(difference);
+            distance.unequal += 1;
+        }
+        if let Some(mask) = mask {
+            let of_silhouettes = mask.iter().filter(|&&is_silhouette| is_silhouette).count() as u64;
+            distance.counted.allowed = part(PART_OF_SILHOUETTES, of_silhouettes);
+            interiors.allowed = part(PART_OF_INTERIORS, all - of_silhouettes);
+            distance.interiors = Some(interiors);
+        }
+        Some(distance)
+    }
+
+    /// Whether it is no more than such machines differ.
+    pub fn is_allowed(&self) -> bool {
+        let within = |count: &Count| count.visible <= count.allowed;
+        match self.machines {
+            Machines::Same => self.unequal == 0,
+            _ => within(&self.counted) && self.interiors.iter().all(|count| within(count) && count.largest <= CONTRAST),
+        }
+    }
+
+    /// Pixels that differ visibly, wherever they are.
+    pub fn visible(&self) -> u64 {
+        self.counted.visible + self.interiors.map_or(0, |count| count.visible)
+    }
+
+    /// How much of what is allowed is used: 1 at the limit, and above it when there are too many.
+    pub fn of_limit(&self) -> f64 {
+        let part = |count: &Count| count.visible as f64 / count.allowed.max(1) as f64;
+        let strict = |count: &Count| f64::from(count.largest) / f64::from(CONTRAST);
+        let interiors = self.interiors.iter().map(|count| part(count).max(strict(count)));
+        match self.machines {
+            Machines::Same => self.unequal as f64,
+            _ => interiors.fold(part(&self.counted), f64::max),
+        }
+    }
+}
+
+/// Each pixel that is not equal, by its place in its picture, with its largest difference of a channel as it is seen: on
+/// whatever ground, a colour counts as much as its opacity.
+pub(super) fn differences<'a>(expected: &'a Pixels, actual: &'a Pixels) -> impl Iterator<Item = (usize, u8)> + 'a {
+    let channels = expected.channels;
+    let width = expected.size[0] as usize * channels;
+    let rows = expected.bytes.chunks_exact(width).zip(actual.bytes.chunks_exact(width)).enumerate();
+    // Most rows are equal, and whole rows are compared quickly.
+    let unequal = rows.filter(|(_, (one, other))| one != other);
+    unequal.flat_map(move |(row, (one, other))| {
+        let pairs = one.chunks_exact(channels).zip(other.chunks_exact(channels)).enumerate();
+        let start = row * (width / channels);
+        pairs
+            .filter(|(_, (one, other))| one != other)
+            .map(move |(column, (one, other))| (start + column, seen(one, other)))
+    })
+}
+
+/// The largest difference of a channel of two pixels.
+fn seen(one: &[u8], other: &[u8]) -> u8 {
+    let largest = |weigh: [u32; 2]| {
+        let weighed = |(&a, &b): (&u8, &u8)| (u32::from(a) * weigh[0] / 255).abs_diff(u32::from(b) * weigh[1] / 255);
+        one.iter().zip(other).take(3).map(weighed).max().unwrap_or(0) as u8
+    };
+    match (one.get(3), other.get(3)) {
+        (Some(&a), Some(&b)) => largest([a.into(), b.into()]).max(a.abs_diff(b)),
+        _ => largest([255, 255]),
+    }
+}
+
+/// For each pixel whether it belongs to a silhouette, a line or a letter in one of two pictures.
+pub(super) fn silhouettes(pictures: [&Pixels; 2]) -> Vec<bool> {
+    let [width, height] = pictures[0].size.map(|side| side as usize);
+    let mut mask = vec![false; width * height];
+    for picture in pictures {
+        let (channels, row) = (picture.channels, width * picture.channels);
+        // The least and the greatest of three pixels side by side, and then of three rows.
+        let mut least = picture.bytes.clone();
+        let mut greatest = picture.bytes.clone();
+        for ((from, low), high) in
+            picture.bytes.chunks_exact(row).zip(least.chunks_exact_mut(row)).zip(greatest.chunks_exact_mut(row))
+        {
+            let inner = row - channels;
+            for at in 0..inner {
+                low[at] = low[at].min(from[at + channels]);
+                high[at] = high[at].max(from[at + channels]);
+            }
+            for at in 0..inner {
+                low[at + channels] = low[at + channels].min(from[at]);
+                high[at + channels] = high[at + channels].max(from[at]);
+            }
+        }
+        let mut contrast = vec![0_u8; row];
+        for line in 0..height {
+            let rows = line.saturating_sub(1)..(line + 2).min(height);
+            let [mut low, mut high] = [vec![255_u8; row], vec![0_u8; row]];
+            for near in rows {
+                let part = near * row..(near + 1) * row;
+                low.iter_mut().zip(&least[part.clone()]).for_each(|(low, &near)| *low = (*low).min(near));
+                high.iter_mut().zip(&greatest[part]).for_each(|(high, &near)| *high = (*high).max(near));
+            }
+            contrast.iter_mut().zip(high.iter().zip(&low)).for_each(|(into, (high, low))| *into = high - low);
+            let mask = &mut mask[line * width..(line + 1) * width];
+            for (is_silhouette, pixel) in mask.iter_mut().zip(contrast.chunks_exact(channels)) {
+                *is_silhouette |= pixel.iter().any(|&contrast| contrast > CONTRAST);
+            }
+        }
+    }
+    mask
+}
+
+impl fmt::Display for Distance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Count { visible, allowed, largest } = self.counted;
+        if let (Machines::Same, unequal) = (self.machines, self.unequal) {
+            let pixels = if unequal == 1 { "1 pixel differs".to_owned() } else { format!("{unequal} pixels differ") };
+            return write!(f, "{pixels}, by up to {largest} of 255; none may, for one machine drew both");
+        }
+        match self.interiors {
+            None => write!(f, "{visible} of the {allowed} pixels that may differ by more than {CHANNEL} of 255 do")?,
+            Some(Count { visible: inner, allowed: inner_allowed, largest: inner_largest }) => write!(
+                f,
+                "another kind of adapter drew it; along silhouettes {visible} of the {allowed} pixels that may differ by more \
+                 than {CHANNEL} of 255 do, between them {inner} of {inner_allowed} (by up to {inner_largest}, {CONTRAST} is \
+                 allowed)"
+            )?,
+        }
+        if largest > 0 { write!(f, ", by up to {largest}") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_are_told_apart() {
+        let [old, new] = ["llvmpipe (LLVM 15, 256 bits) (cpu, vulkan)", "llvmpipe (LLVM 19, 128 bits) (cpu, vulkan)"];
+        assert_eq!(Machines::of(Some(old), Some(old)), Machines::Same);
+        assert_eq!(Machines::of(Some(old), Some(new)), Machines::OneKind);
+        assert_eq!(Machines::of(Some(old), Some("NVIDIA H200 (discrete gpu, vulkan)")), Machines::OtherKind);
+        assert_eq!(Machines::of(Some(old), None), Machines::OneKind);
+    }
+
+    #[test]
+    fn silhouettes_are_where_colours_change() {
+        let mut bytes = vec![100; 9 * 7 * 3];
+        bytes[(3 * 9 + 4) * 3 + 1] = 100 + CONTRAST + 1;
+        let flat = Pixels { size: [9, 7], channels: 3, bytes: vec![100; 9 * 7 * 3], label: None };
+        let spot = Pixels { bytes, ..flat.clone() };
+        assert!(silhouettes([&flat, &flat]).iter().all(|is| !is));
+        for two in [[&flat, &spot], [&spot, &flat]] {
+            let mask = silhouettes(two);
+            for (at, is_silhouette) in mask.into_iter().enumerate() {
+                assert_eq!(is_silhouette, (at / 9).abs_diff(3) <= 1 && (at % 9).abs_diff(4) <= 1, "{at}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_seen_does_not_count() {
+        assert_eq!(seen(&[255, 0, 0, 0], &[0, 0, 255, 0]), 0);
+        assert_eq!(seen(&[255, 0, 0, 10], &[0, 0, 0, 10]), 10);
+        assert_eq!(seen(&[9, 9, 9, 200], &[9, 9, 9, 250]), 50);
+        assert_eq!(seen(&[9, 9, 9], &[9, 250, 9]), 241);
+    }
+}

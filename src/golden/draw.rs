@@ -1,0 +1,261 @@
+//! A scene or figure, simulated and drawn to be compared with its golden, or to become one.
+
+use super::distance::kind;
+use super::record::{Drawn, Plan, Record};
+use super::side::{Kind, Side, Source};
+use super::states::{State, States};
+use crate::gpu::{AdapterChoice, Gpu, InitError};
+use crate::history::History;
+use crate::moments::Moments;
+use crate::output::{FigureTags, Label, Tags, frame_file_name};
+use crate::picture::{Composer, compose_figure};
+use crate::render::{RenderError, Renderer};
+use crate::scene::figure::Figure;
+use crate::scene::{Limits, Scene, SceneError, is_figure_file};
+use crate::sequence::Sequence;
+use crate::sim::snapshot::Frame;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Width of new goldens (px), unless their scene is drawn smaller: small pictures say as much and keep stores small.
+const WIDTH: u32 = 320;
+/// New goldens have so many pictures, if there are so many frames.
+const PICTURES: u64 = 3;
+/// Steps of each run after which the user is listened to.
+const SLICE: u64 = 100;
+
+/// What a golden is of.
+#[derive(Clone, Debug)]
+pub(crate) enum Subject {
+    /// A scene: some of its frames are drawn, and the states of many more recorded.
+    Scene(Box<Scene>),
+    /// A figure: one picture, and the states that it shows.
+    Figure(Box<Figure>),
+}
+
+impl Subject {
+    /// Reads a scene file or a figure file.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being one.
+    pub(crate) fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
+        if is_figure_file(path, limits) {
+            return Ok(Self::Figure(Box::new(Figure::load(path, limits)?)));
+        }
+        Ok(Self::Scene(Box::new(Scene::load(path, limits)?)))
+    }
+}
+
+/// How a golden is to be drawn. What is not said is as the golden has it, or as new ones are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wish {
+    /// The frames to draw, rising.
+    pub(crate) frames: Option<Vec<u64>>,
+    /// How many frames a new golden has.
+    pub(crate) pictures: Option<u64>,
+    /// Width and height (px).
+    pub(crate) size: Option<[u32; 2]>,
+    /// Width of a new golden (px).
+    pub(crate) width: Option<u32>,
+    /// Samples of each pixel.
+    pub(crate) samples: Option<u32>,
+}
+
+/// Why it cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum DrawError {
+    /// The device stopped working or refused.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// What was asked for is not there.
+    #[error("{0}")]
+    Wish(String),
+}
+
+/// The device to draw for a golden: the kind that drew it if this machine has it, else the processor.
+///
+/// # Errors
+/// If there is neither.
+pub(crate) fn usual_gpu(golden: &Side) -> Result<Gpu, InitError> {
+    let drawn = golden.record.iter().flat_map(|record| &record.pictures).map(|drawn| kind(&drawn.adapter));
+    let same = drawn.filter(|kind| !kind.is_empty()).find_map(|kind| Gpu::new(&AdapterChoice::Named(kind.into())).ok());
+    same.map_or_else(|| Gpu::new(&AdapterChoice::Cpu), Ok)
+}
+
+/// Simulates a scene or figure and draws what its golden has, or what was wished. Without a device nothing is drawn, and
+/// states alone can be compared. `go_on` is asked now and then; if it says no, there is no result.
+///
+/// # Errors
+/// A device that fails, or a wish that cannot be met.
+pub(crate) fn draw(
+    path: &Path,
+    subject: &Subject,
+    wish: &Wish,
+    old: &Side,
+    gpu: Option<&Gpu>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Side>, DrawError> {
+    let drawn = match subject {
+        Subject::Scene(scene) => draw_scene(scene, wish, old.record.as_ref(), gpu, go_on)?,
+        Subject::Figure(figure) => draw_figure(figure, wish, old.record.as_ref(), gpu)?,
+    };
+    Ok(drawn.map(|(mut record, pictures)| {
+        record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let pictures: BTreeMap<_, _> =
+            pictures.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
+        Side { origin: path.into(), kind: Kind::Drawn, pictures, record: Some(record), is_undrawn: gpu.is_none() }
+    }))
+}
+
+/// A record and PNG files by name.
+type Made = (Record, BTreeMap<String, Vec<u8>>);
+
+fn draw_scene(
+    scene: &Scene,
+    wish: &Wish,
+    old: Option<&Record>,
+    gpu: Option<&Gpu>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Made>, DrawError> {
+    let last = scene.last_frame();
+    let frames: BTreeSet<u64> = match (&wish.frames, old) {
+        (Some(frames), _) => frames.iter().copied().collect(),
+        (None, Some(old)) => old.pictures.iter().map(|drawn| drawn.frame).filter(|&frame| frame <= last).collect(),
+        (None, None) => {
+            let count = wish.pictures.unwrap_or(PICTURES).max(1);
+            (1..=count).map(|at| (u128::from(last) * u128::from(at) / u128::from(count)) as u64).collect()
+        }
+    };
+    let mut scene = scene.clone();
+    let size = size(scene.view.size, wish, old);
+    let samples = samples(wish, old);
+    scene.view.size = size;
+    let runs: Vec<usize> = (0..scene.runs.len()).collect();
+    let mut plan = Plan::new(last, runs.len(), scene.body.len(), &frames);
+    if let Some(old) = old {
+        plan = plan.with(old, last);
+    }
+    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples)).transpose()?;
+    let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
+    let mut sequence = Sequence::new(&scene, &runs);
+    for index in plan.frames() {
+        while !sequence.advance_towards(index, SLICE) {
+            if !go_on() {
+                return Ok(None);
+            }
+        }
+        let frame = sequence.frame(index);
+        for run in &frame.runs {
+            let state = State::of(&run.snapshot, plan.places.contains(&index));
+            states.add(&scene.runs[run.run].name, index, state);
+        }
+        if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
+            let (label, bytes) = artist.draw(&frame)?;
+            let file = frame_file_name(index);
+            drawn.push(Drawn {
+                file: file.clone(),
+                frame: index,
+                adapter: label.adapter().to_owned(),
+                version: label.version().to_owned(),
+            });
+            pictures.insert(file, bytes);
+        }
+        if !go_on() {
+            return Ok(None);
+        }
+    }
+    let scenes = vec![scene.digest.clone()];
+    let record = Record { subject: String::new(), scenes, size, samples, pictures: drawn, states };
+    Ok(Some((record, pictures)))
+}
+
+fn draw_figure(
+    figure: &Figure,
+    wish: &Wish,
+    old: Option<&Record>,
+    gpu: Option<&Gpu>,
+) -> Result<Option<Made>, DrawError> {
+    let mut figure = figure.clone();
+    if wish.frames.as_ref().is_some_and(|frames| frames != &[0]) {
+        return Err(DrawError::Wish(format!("{} is a figure and has no frames to choose from", figure.name)));
+    }
+    figure.size = size(figure.size, wish, old);
+    let samples = samples(wish, old);
+    let moments = Moments::new(&figure);
+    let mut states = States::default();
+    for (name, snapshot) in moments.states(&figure) {
+        states.add(&name, 0, State::of(&snapshot, true));
+    }
+    let (mut pictures, mut drawn) = (BTreeMap::new(), Vec::new());
+    if let Some(gpu) = gpu {
+        let picture = compose_figure(&figure, &moments).map_err(|error| {
+            let [width, height] = figure.size;
+            DrawError::Wish(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
+        })?;
+        let image = Renderer::new(gpu, figure.size, samples)?.draw(&picture)?;
+        let label = Label::Figure(FigureTags::new(&figure, &moments, &gpu.description().to_string()));
+        let file = format!("{}.png", figure.name);
+        drawn.push(Drawn {
+            file: file.clone(),
+            frame: 0,
+            adapter: label.adapter().to_owned(),
+            version: label.version().to_owned(),
+        });
+        pictures.insert(file, label.encode(figure.size, image.as_raw()));
+    }
+    let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
+    let record = Record { subject: String::new(), scenes, size: figure.size, samples, pictures: drawn, states };
+    Ok(Some((record, pictures)))
+}
+
+/// The size to draw in (px).
+fn size(own: [u32; 2], wish: &Wish, old: Option<&Record>) -> [u32; 2] {
+    if let Some(size) = wish.size.or(old.map(|old| old.size)) {
+        return size;
+    }
+    let [width, height] = own;
+    let small = wish.width.unwrap_or(WIDTH).min(width);
+    [small, (u64::from(height) * u64::from(small) / u64::from(width.max(1))).max(16) as u32]
+}
+
+fn samples(wish: &Wish, old: Option<&Record>) -> u32 {
+    wish.samples.or(old.map(|old| old.samples)).unwrap_or(4)
+}
+
+/// Draws frames of one scene.
+struct Artist<'a> {
+    scene: &'a Scene,
+    /// On the scene's background, or on white and on black if it has none.
+    composers: Vec<Composer<'a>>,
+    renderer: Renderer,
+    adapter: String,
+}
+
+impl<'a> Artist<'a> {
+    fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
+        let mut composers = match scene.view.look.transparent {
+            false => vec![Composer::new(scene)],
+            true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
+        };
+        if scene.view.strip.is_some() {
+            let runs: Vec<usize> = (0..scene.runs.len()).collect();
+            let history = History::new(scene, &runs);
+            composers.iter_mut().for_each(|composer| composer.set_history(&history));
+        }
+        let renderer = Renderer::new(gpu, scene.view.size, samples)?;
+        Ok(Self { scene, composers, renderer, adapter: gpu.description().to_string() })
+    }
+
+    /// A frame as a PNG file, and what it says about itself.
+    fn draw(&mut self, frame: &Frame) -> Result<(Label, Vec<u8>), RenderError> {
+        let pixels = match &self.composers[..] {
+            [on_white, on_black] => {
+                self.renderer.draw_transparent(&on_white.compose(frame), &on_black.compose(frame))?.into_raw()
+            }
+            composers => self.renderer.draw(&composers[0].compose(frame))?.into_raw(),
+        };
+        let label = Label::Frame(Tags::new(self.scene, frame, &self.adapter));
+        let bytes = label.encode(self.scene.view.size, &pixels);
+        Ok((label, bytes))
+    }
+}

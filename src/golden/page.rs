@@ -1,0 +1,174 @@
+//! A comparison as the page that tells of it.
+
+use super::distance::{CHANNEL, differences, silhouettes};
+use super::picture::Pixels;
+use super::report::{self, Report, Sheet};
+use super::side::{Kind, frame_of};
+use super::{Compared, Comparison, Verdict};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Pictures of so many frames are put into a page, those that failed first.
+const MOST_FAILED: usize = 40;
+const MOST_PASSED: usize = 8;
+
+/// The colours of a picture of differences: too small to be seen, along silhouettes, and between them.
+const FAINT: [u8; 3] = [150, 196, 232];
+const SILHOUETTE: [u8; 3] = [230, 159, 0];
+const INTERIOR: [u8; 3] = [213, 60, 0];
+
+impl Comparison {
+    /// What a page shows of it. Of long sequences it shows the pictures of some frames.
+    pub fn report(&self) -> Report {
+        let [expected, actual] = &self.sides;
+        let shown = self.shown();
+        let sheets: Vec<Drawing> = self
+            .pictures
+            .par_iter()
+            .enumerate()
+            .map(|(at, picture)| self.sheet(picture, shown.contains(&at)))
+            .collect();
+        let adapters = [0, 1].map(|side| sheets.iter().find_map(|drawing| drawing.adapters[side].clone()));
+        let mut findings: Vec<String> = self.moved.iter().map(ToString::to_string).collect();
+        if expected.kind == Kind::Absent {
+            findings.push("There is no golden yet.".to_owned());
+        }
+        let failed = self.pictures.iter().filter(|picture| !picture.verdict.passes()).count();
+        match (failed, self.pictures.len()) {
+            (_, 0) => {}
+            (0, _) => findings.push(format!("{}.", self.pass())),
+            (failed, all) => findings.push(format!("{failed} of {all} pictures are not as expected.")),
+        }
+        if self.same_scene == Some(false) {
+            findings.push("The scene files are not the same.".to_owned());
+        }
+        findings.extend(self.notes.iter().cloned());
+        if shown.len() < self.pictures.len() {
+            findings.push(format!(
+                "This page holds the pictures of {} of {} frames.",
+                shown.len(),
+                self.pictures.len()
+            ));
+        }
+        let title = match actual.kind {
+            Kind::Drawn => actual.origin.file_stem(),
+            _ => expected.origin.file_name(),
+        };
+        Report {
+            title: title.map_or_else(|| "comparison".to_owned(), |name| name.to_string_lossy().into_owned()),
+            expected: expected.origin.display().to_string(),
+            actual: actual.origin.display().to_string(),
+            passes: self.passes(),
+            verdict: self.verdict().to_owned(),
+            findings,
+            accept: self.command_to_accept(),
+            drawn_by: adapters,
+            courses: self.courses.iter().map(course).collect(),
+            pictures: sheets.into_iter().map(|drawing| drawing.sheet).collect(),
+        }
+    }
+
+    /// The pictures that are put into a page: those that failed, or evenly chosen ones of many, and a few that did not.
+    fn shown(&self) -> BTreeSet<usize> {
+        let chosen = |passes: bool, most: usize| -> Vec<usize> {
+            let all = self.pictures.iter().enumerate().filter(|(_, picture)| picture.verdict.passes() == passes);
+            let all: Vec<usize> = all.map(|(at, _)| at).collect();
+            if all.len() <= most {
+                return all;
+            }
+            (0..most).map(|at| all[at * (all.len() - 1) / (most - 1)]).collect()
+        };
+        chosen(false, MOST_FAILED).into_iter().chain(chosen(true, MOST_PASSED)).collect()
+    }
+
+    fn sheet(&self, picture: &Compared, is_shown: bool) -> Drawing {
+        let [expected, actual] = &self.sides;
+        let source = |at: usize| {
+            let side = [expected, actual][at];
+            match side.kind {
+                Kind::Picture => side.pictures.values().next(),
+                _ => side.pictures.get(&picture.name),
+            }
+        };
+        // What is no picture is not shown as one.
+        let pixels = [0, 1].map(|at| source(at).filter(|_| is_shown).and_then(|source| source.pixels().ok()));
+        let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| source(at)?.bytes().ok()));
+        let label = |at: usize| pixels[at].as_ref().and_then(|pixels| pixels.label.as_ref());
+        let frame = picture.frame.or_else(|| [1, 0].into_iter().find_map(|at| label(at).and_then(frame_of)));
+        let time = frame.and_then(|frame| {
+            let moments = self.courses.iter().flat_map(|course| &course.moments);
+            moments.filter(|moment| moment.frame == frame).find_map(|moment| moment.time)
+        });
+        let difference = match &pixels {
+            [Some(expected), Some(actual)] => difference(expected, actual),
+            _ => None,
+        };
+        let size = pixels.iter().rev().flatten().next().map(|pixels| pixels.size);
+        let distance = picture.verdict.distance();
+        let [expected, actual] = bytes;
+        let is_identical = picture.verdict == Verdict::Identical;
+        Drawing {
+            adapters: [0, 1].map(|at| label(at).map(|label| label.adapter().to_owned())),
+            sheet: Sheet {
+                name: picture.name.clone(),
+                frame,
+                time,
+                verdict: picture.verdict.kind().to_owned(),
+                words: picture.verdict.to_string(),
+                passes: picture.verdict.passes(),
+                visible: distance.map(|distance| distance.visible()).or(is_identical.then_some(0)),
+                allowed: distance.map(|distance| distance.counted.allowed),
+                size,
+                expected,
+                actual,
+                difference,
+            },
+        }
+    }
+}
+
+/// A picture on the page, and who drew both sides of it.
+struct Drawing {
+    sheet: Sheet,
+    adapters: [Option<String>; 2],
+}
+
+fn course(course: &super::Course) -> report::Course {
+    let moment = |moment: &super::Moment| report::Moment {
+        frame: moment.frame,
+        time: moment.time,
+        moved: moment.moved,
+        displacement: moment.displacement.map(|displacement| displacement.distance),
+        node: moment.displacement.map(|displacement| displacement.node),
+    };
+    let frames = course.moments.iter().map(moment).collect();
+    report::Course { run: course.run.clone(), precision: course.precision, frames }
+}
+
+/// Where two pictures differ, over a faint shadow of what was expected, as a PNG file; `None` if they are not of one size.
+fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
+    if expected.size != actual.size || expected.channels != actual.channels {
+        return None;
+    }
+    let faint = |pixel: &[u8]| {
+        let [red, green, blue] = [0, 1, 2].map(|at| u32::from(pixel[at]));
+        // Opacities are shown on white; brightness as the eye weighs it, and a quarter of it.
+        let grey = (red * 54 + green * 183 + blue * 19) / 256;
+        let opacity = pixel.get(3).map_or(255, |&opacity| u32::from(opacity));
+        let grey = 255 - (255 - grey) * opacity / 255;
+        [(255 - (255 - grey) / 5) as u8; 3]
+    };
+    let mut bytes: Vec<u8> = expected.bytes.chunks_exact(expected.channels).flat_map(faint).collect();
+    if expected.bytes != actual.bytes {
+        let mask = silhouettes([expected, actual]);
+        for (at, difference) in differences(expected, actual) {
+            let colour = match (difference > CHANNEL, mask[at]) {
+                (false, _) => FAINT,
+                (true, true) => SILHOUETTE,
+                (true, false) => INTERIOR,
+            };
+            bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
+        }
+    }
+    Some(crate::output::encode_plain(expected.size, &bytes))
+}

@@ -1,0 +1,423 @@
+//! The text file of a golden: what its scene did, frame by frame.
+//!
+//! A digest for each run and frame tells whether a state is the same, bit for bit. Some frames also have numbers and
+//! rounded positions, from which a distance can be told when the digests differ. All of it fits into some tens of
+//! kilobytes, however large the scene is: of long scenes every second frame is recorded or fewer, of large bodies every
+//! second node or fewer.
+
+use super::states::{Numbers, Places, Run, State, States};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The name of the file in a golden's folder.
+pub const RECORD_FILE: &str = "golden.toml";
+
+/// The version of its format.
+const FORMAT: u32 = 1;
+
+/// So many digits of each digest are kept: 48 bits.
+const DIGITS: usize = 12;
+
+/// About as large may the digests and the positions of a golden get (bytes).
+const ROOM_FOR_DIGESTS: usize = 24 * 1024;
+const ROOM_FOR_PLACES: usize = 8 * 1024;
+/// A coordinate takes about so much (bytes).
+const COORDINATE: usize = 5;
+/// Numbers that describe the state are recorded at about so many frames.
+const FRAMES_WITH_NUMBERS: u64 = 10;
+/// Positions are rounded to about this part of the room that the nodes take.
+const FINENESS: f64 = 1e-5;
+
+/// What a golden knows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Record {
+    /// Name of the scene or figure file.
+    pub(super) subject: String,
+    /// Digests of the scenes shown.
+    pub(super) scenes: Vec<String>,
+    /// Width and height of the pictures (px).
+    pub(super) size: [u32; 2],
+    /// Samples of each pixel.
+    pub(super) samples: u32,
+    pub(super) pictures: Vec<Drawn>,
+    pub(super) states: States,
+}
+
+/// A picture of a golden, and who drew it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Drawn {
+    /// Name of the file beside this one.
+    pub(super) file: String,
+    /// The frame shown; 0 for figures.
+    pub(super) frame: u64,
+    /// The graphics adapter with its driver.
+    pub(super) adapter: String,
+    /// The version of this crate.
+    pub(super) version: String,
+}
+
+/// Which frames and nodes are recorded.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Plan {
+    /// Frames with pictures.
+    pub(super) pictures: BTreeSet<u64>,
+    /// Frames with a digest.
+    pub(super) digests: BTreeSet<u64>,
+    /// Frames with positions.
+    pub(super) places: BTreeSet<u64>,
+}
+
+impl Plan {
+    /// What is recorded of a scene of so many runs and nodes in which `pictures` are drawn.
+    pub(super) fn new(last: u64, runs: usize, nodes: usize, pictures: &BTreeSet<u64>) -> Self {
+        let row = 5 + (DIGITS + 1) * runs;
+        let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).max(1);
+        let ends = [0, last];
+        let digests = (0..=last).step_by(stride).chain(pictures.iter().copied()).chain(ends).collect();
+        let most = (ROOM_FOR_PLACES / (runs * nodes * 3 * COORDINATE).max(1)).max(1);
+        // The last frame first: whatever went astray is farthest away there. Then those that can be seen.
+        let evenly = (1..=FRAMES_WITH_NUMBERS).map(|at| last * at / FRAMES_WITH_NUMBERS);
+        let mut places = BTreeSet::new();
+        for frame in [last].into_iter().chain(pictures.iter().rev().copied()).chain(evenly).chain([0]) {
+            if places.len() < most {
+                places.insert(frame);
+            }
+        }
+        let mut plan = Self { pictures: pictures.clone(), digests, places };
+        plan.digests.extend(&plan.places);
+        plan
+    }
+
+    /// The same with all that another record knows, as far as the scene goes.
+    pub(super) fn with(mut self, record: &Record, last: u64) -> Self {
+        for (frame, state) in record.states.runs.iter().flat_map(|run| &run.states).filter(|(frame, _)| **frame <= last)
+        {
+            self.digests.insert(*frame);
+            if state.places.is_some() {
+                self.places.insert(*frame);
+            }
+        }
+        self
+    }
+
+    /// All frames that are looked at, rising.
+    pub(super) fn frames(&self) -> BTreeSet<u64> {
+        self.pictures.iter().chain(&self.digests).chain(&self.places).copied().collect()
+    }
+}
+
+/// The file as it is read and written.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: u32,
+    subject: String,
+    scenes: Vec<String>,
+    size: [u32; 2],
+    samples: u32,
+    #[serde(rename = "picture", default)]
+    pictures: Vec<Drawn>,
+    #[serde(rename = "run", default)]
+    runs: Vec<FileRun>,
+    digests: String,
+    numbers: String,
+    positions: String,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRun {
+    name: String,
+    nodes: usize,
+    /// Every so many nodes have positions.
+    every: usize,
+    /// In which positions are counted (m).
+    quantum: f64,
+}
+
+impl Record {
+    /// Reads the text of a record.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let file: File = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+        if file.format != FORMAT {
+            return Err(format!("it has the format {}; this version reads format {FORMAT}", file.format));
+        }
+        let mut runs: Vec<Run> =
+            file.runs.iter().map(|run| Run { name: run.name.clone(), states: BTreeMap::new() }).collect();
+        for line in lines(&file.digests) {
+            let wrong =
+                || format!("`digests` has the line “{}”; expected a frame and a digest of each run", short(line));
+            let mut words = line.split_whitespace();
+            let frame: u64 = words.next().and_then(|word| word.parse().ok()).ok_or_else(wrong)?;
+            let digests: Vec<_> = words.collect();
+            if digests.len() != runs.len() {
+                return Err(wrong());
+            }
+            for (run, digest) in runs.iter_mut().zip(digests) {
+                let is_digest = digest.len() >= DIGITS && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
+                if digest != "-" && !is_digest {
+                    return Err(wrong());
+                }
+                if digest != "-" {
+                    run.states.insert(frame, State { digest: digest.to_owned(), ..State::default() });
+                }
+            }
+        }
+        for line in lines(&file.numbers) {
+            let wrong = || format!("`numbers` has the line “{}”; expected frame, run and six numbers", short(line));
+            let words: Vec<_> = line.split_whitespace().collect();
+            let state = state_of(&mut runs, &words).ok_or_else(wrong)?.1;
+            let numbers: Option<Vec<f64>> = words[2..].iter().map(|word| word.parse().ok()).collect();
+            let Some(&[kinetic, elastic, gravitational, turned, volume_ratio, shape_error]) = numbers.as_deref() else {
+                return Err(wrong());
+            };
+            let turned_over = turned as u64;
+            state.numbers = Some(Numbers { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error });
+        }
+        for line in lines(&file.positions) {
+            let wrong = || {
+                format!(
+                    "`positions` has the line “{}”; expected frame, run and three whole numbers for each node",
+                    short(line)
+                )
+            };
+            let words: Vec<_> = line.split_whitespace().collect();
+            let (run, state) = state_of(&mut runs, &words).ok_or_else(wrong)?;
+            let FileRun { nodes, every, quantum, .. } = file.runs[run];
+            let counts: Option<Vec<i64>> = words[2..].iter().map(|word| word.parse().ok()).collect();
+            let counts =
+                counts.filter(|counts| every > 0 && counts.len() == 3 * nodes.div_ceil(every)).ok_or_else(wrong)?;
+            let vector = |at: &[i64]| DVec3::new(at[0] as f64, at[1] as f64, at[2] as f64) * quantum;
+            state.places = Some(Places { quantum, every, nodes, at: counts.chunks_exact(3).map(vector).collect() });
+        }
+        let File { subject, scenes, size, samples, pictures, .. } = file;
+        Ok(Self { subject, scenes, size, samples, pictures, states: States { runs } })
+    }
+
+    /// Reads the record of a golden's folder.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub(super) fn read(folder: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(folder.join(RECORD_FILE)).map_err(|error| error.to_string())?;
+        Self::parse(&text)
+    }
+
+    /// The text of the file, with positions rounded.
+    pub(super) fn text(&self) -> String {
+        let mut runs = Vec::new();
+        let [mut digests, mut numbers, mut positions] = [const { String::new() }; 3];
+        let frames: BTreeSet<u64> = self.states.runs.iter().flat_map(|run| run.states.keys().copied()).collect();
+        for frame in &frames {
+            write!(digests, "\n{frame}").expect("a string takes all");
+            for run in &self.states.runs {
+                let digest = run.states.get(frame).map_or("-", |state| &state.digest[..DIGITS.min(state.digest.len())]);
+                write!(digests, " {digest}").expect("a string takes all");
+            }
+        }
+        let bytes = |run: &Run| {
+            let nodes = |state: &State| state.places.as_ref().map_or(0, |places| places.at.len());
+            3 * COORDINATE * run.states.values().map(nodes).sum::<usize>()
+        };
+        let all: usize = self.states.runs.iter().map(bytes).sum();
+        let every = all.div_ceil(ROOM_FOR_PLACES).max(1);
+        for (number, run) in self.states.runs.iter().enumerate() {
+            let known = || run.states.values().filter_map(|state| state.places.as_ref());
+            let quantum = known().map(|places| places.quantum).fold(quantum(known()), f64::max);
+            let nodes = known().map(|places| places.nodes).max().unwrap_or(0);
+            // What is rounded already is not rounded again.
+            let every = if known().any(|places| places.every > 1) { 1 } else { every };
+            let kept = known().map(|places| places.every).max().unwrap_or(1) * every;
+            runs.push(FileRun { name: run.name.clone(), nodes, every: kept, quantum });
+            for (frame, state) in &run.states {
+                let Some(places) = &state.places else { continue };
+                if let Some(all) = &state.numbers {
+                    let turned_over = all.turned_over;
+                    let rest = [all.kinetic, all.elastic, all.gravitational].map(|number| format!("{number:.5e}"));
+                    let shape = [all.volume_ratio, all.shape_error].map(|number| format!("{number:.5e}"));
+                    write!(numbers, "\n{frame} {number} {} {turned_over} {}", rest.join(" "), shape.join(" "))
+                        .expect("a string takes all");
+                }
+                write!(positions, "\n{frame} {number}").expect("a string takes all");
+                for coordinate in places.at.iter().step_by(every).flat_map(DVec3::to_array) {
+                    write!(positions, " {}", (coordinate / quantum).round() as i64).expect("a string takes all");
+                }
+            }
+        }
+        self.file(&runs, [&digests, &numbers, &positions])
+    }
+
+    /// The file around its tables. Written by hand, for a table is read line by line.
+    fn file(&self, runs: &[FileRun], [digests, numbers, positions]: [&str; 3]) -> String {
+        let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+        let scenes: Vec<_> = self.scenes.iter().map(|scene| quoted(scene)).collect();
+        let [width, height] = self.size;
+        let mut text = format!(
+            "# What {} did when this was accepted. Written by localshape: not to be edited, but to be renewed.\n\
+             format = {FORMAT}\nsubject = {}\nscenes = [{}]\nsize = [{width}, {height}]\nsamples = {}\n\n\
+             # Frame, and the start of the digest of all positions and velocities of each run.\n\
+             digests = '''{digests}\n'''\n\n\
+             # Frame, run from 0, kinetic, elastic and gravitational energy (J), elements turned over, volume ratio, shape error (m).\n\
+             numbers = '''{numbers}\n'''\n\n\
+             # Frame, run, and x, y, z of the nodes in quanta of the run.\n\
+             positions = '''{positions}\n'''\n",
+            self.subject.replace(char::is_control, " "),
+            quoted(&self.subject),
+            scenes.join(", "),
+            self.samples,
+        );
+        for FileRun { name, nodes, every, quantum } in runs {
+            write!(
+                text,
+                "\n[[run]]\nname = {}\nnodes = {nodes}\nevery = {every}\nquantum = {quantum:e}\n",
+                quoted(name)
+            )
+            .expect("a string takes all");
+        }
+        for Drawn { file, frame, adapter, version } in &self.pictures {
+            let [file, adapter, version] = [file, adapter, version].map(|text| quoted(text));
+            write!(text, "\n[[picture]]\nfile = {file}\nframe = {frame}\nadapter = {adapter}\nversion = {version}\n")
+                .expect("a string takes all");
+        }
+        text
+    }
+}
+
+fn lines(table: &str) -> impl Iterator<Item = &str> {
+    table.lines().map(str::trim).filter(|line| !line.is_empty())
+}
+
+/// The start of a line, for messages.
+fn short(line: &str) -> String {
+    match line.char_indices().nth(40) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.to_owned(),
+    }
+}
+
+/// The run and the state that a line is about.
+fn state_of<'a>(runs: &'a mut [Run], words: &[&str]) -> Option<(usize, &'a mut State)> {
+    let (frame, run) = (words.first()?.parse::<u64>().ok()?, words.get(1)?.parse::<usize>().ok()?);
+    Some((run, runs.get_mut(run)?.states.get_mut(&frame)?))
+}
+
+/// To what positions are rounded: a power of ten, about a hundred-thousandth of the room that they take at any time (m).
+fn quantum<'a>(places: impl Iterator<Item = &'a Places>) -> f64 {
+    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for at in places.flat_map(|places| &places.at) {
+        bounds = [bounds[0].min(*at), bounds[1].max(*at)];
+    }
+    let extent = (bounds[1] - bounds[0]).max_element();
+    if !(extent.is_finite() && extent > 0.0) {
+        return 1e-6;
+    }
+    let power = (extent * FINENESS).log10().floor().clamp(-12.0, 12.0) as i32;
+    // Written out, so that it reads as it was meant.
+    format!("1e{power}").parse().expect("a power of ten")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record() -> Record {
+        let mut states = States::default();
+        for frame in 0..=20_u64 {
+            for run in ["Local shape", "½ \"quoted\" '''"] {
+                let at: Vec<_> = (0..5).map(|node| DVec3::new(node as f64 * 0.1, frame as f64 * 0.01, -0.2)).collect();
+                let places = (frame % 10 == 0).then(|| Places { quantum: 0.0, every: 1, nodes: 5, at });
+                let numbers = Numbers {
+                    kinetic: 1.5,
+                    elastic: f64::NAN,
+                    gravitational: -2.0,
+                    turned_over: 3,
+                    volume_ratio: 0.5,
+                    shape_error: 1e-3,
+                };
+                let digest = format!("{:064x}", frame * 1_000_003);
+                states.add(
+                    run,
+                    frame,
+                    State { time: None, digest: digest.chars().rev().collect(), places, numbers: Some(numbers) },
+                );
+            }
+        }
+        let drawn = Drawn { file: "frame_00010.png".into(), frame: 10, adapter: "a \"b\"".into(), version: "0".into() };
+        Record {
+            subject: "fig4b.toml".into(),
+            scenes: vec!["ab".into()],
+            size: [320, 180],
+            samples: 4,
+            pictures: vec![drawn],
+            states,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_coarsely() {
+        let exact = record();
+        let text = exact.text();
+        let read = Record::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!(
+            (&read.subject, &read.scenes, read.size, read.samples),
+            (&exact.subject, &exact.scenes, exact.size, 4)
+        );
+        assert_eq!(read.pictures, exact.pictures);
+        for (run, coarse) in exact.states.runs.iter().zip(&read.states.runs) {
+            assert_eq!((&run.name, run.states.len()), (&coarse.name, coarse.states.len()));
+            for (frame, state) in &run.states {
+                let other = &coarse.states[frame];
+                assert!(state.digest.starts_with(&other.digest) && other.digest.len() == DIGITS);
+                assert_eq!(state.places.is_some(), other.places.is_some());
+                if let Some((one, other)) = state.places.as_ref().zip(other.places.as_ref()) {
+                    assert_eq!((other.quantum, other.nodes), (1e-6, 5));
+                    assert!(one.at.iter().zip(&other.at).all(|(a, b)| a.distance(*b) < 1e-6));
+                    assert_eq!(coarse.states[frame].numbers.unwrap().turned_over, 3);
+                }
+            }
+        }
+        assert_eq!(read.text(), text, "rounding once is enough");
+    }
+
+    #[test]
+    fn damaged_records_are_refused_in_words() {
+        let text = record().text();
+        for (from, to, words) in [
+            ("format = 1", "format = 2", "format 2"),
+            ("format = 1", "format = 1\nmore = 2", "more"),
+            ("\n5 ", "\nfive ", "`digests` has the line “five"),
+            ("\n0 0", "\n0 zz0", "`digests`"),
+            ("\n10 0 1.50000e0", "\n10 7 1.50000e0", "`numbers`"),
+            ("\n20 1 0 200000", "\n20 1 200000", "`positions`"),
+            ("[[run]]", "[[runs]]", "runs"),
+        ] {
+            assert!(text.contains(from), "{from}\n{text}");
+            let error = Record::parse(&text.replacen(from, to, 1)).unwrap_err();
+            assert!(error.contains(words), "{to}: {error}");
+        }
+    }
+
+    #[test]
+    fn however_large_the_scene_is_the_record_is_not() {
+        let pictures = BTreeSet::from([100, 200]);
+        let plan = Plan::new(300, 2, 64, &pictures);
+        assert_eq!(plan.digests.len(), 301, "each frame of a usual scene");
+        assert!(plan.places.contains(&300) && plan.places.contains(&200), "{plan:?}");
+        let long = Plan::new(1_000_000, 3, 100_000, &pictures);
+        assert!(long.digests.len() < 1000 && long.places == BTreeSet::from([1_000_000]), "{}", long.digests.len());
+        let mut large = Record::default();
+        let at: Vec<_> = (0..100_000).map(|node| DVec3::splat(node as f64)).collect();
+        let places = Some(Places { quantum: 0.0, every: 1, nodes: at.len(), at });
+        large.states.add("run", 0, State { digest: "0123456789abcdef".into(), places, ..State::default() });
+        let text = large.text();
+        assert!(text.len() < 20_000, "{}", text.len());
+        assert_eq!(Record::parse(&text).unwrap().text(), text);
+    }
+}

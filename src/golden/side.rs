@@ -1,0 +1,191 @@
+//! One side of a comparison: pictures by name, and what is known of the states behind them.
+
+use super::ComparisonError;
+use super::archive;
+use super::picture::{PictureError, Pixels};
+use super::record::{RECORD_FILE, Record};
+use super::states::{State, States};
+use crate::output::Label;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// What a side is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// One picture.
+    Picture,
+    /// A folder of pictures.
+    Folder,
+    /// A folder with a record of what its scene did.
+    Golden,
+    /// A golden that is not there yet.
+    Absent,
+    /// A scene or figure, drawn for this comparison.
+    Drawn,
+}
+
+/// Where a picture is.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    File(PathBuf),
+    /// The bytes of a PNG file.
+    Memory(Vec<u8>),
+}
+
+impl Source {
+    pub(super) fn pixels(&self) -> Result<Pixels, PictureError> {
+        match self {
+            Self::File(path) => Pixels::read(path),
+            Self::Memory(bytes) => Pixels::from_bytes(bytes),
+        }
+    }
+
+    /// The bytes of the file.
+    pub(super) fn bytes(&self) -> std::io::Result<Vec<u8>> {
+        match self {
+            Self::File(path) => std::fs::read(path),
+            Self::Memory(bytes) => Ok(bytes.clone()),
+        }
+    }
+}
+
+/// One side of a comparison.
+#[derive(Clone, Debug)]
+pub(crate) struct Side {
+    /// As it was typed.
+    pub(super) origin: PathBuf,
+    pub(super) kind: Kind,
+    pub(super) pictures: BTreeMap<String, Source>,
+    pub(super) record: Option<Record>,
+    /// Whether nothing could be drawn, so that states alone are compared.
+    pub(super) is_undrawn: bool,
+}
+
+impl Side {
+    /// A picture, a folder of pictures or a golden.
+    pub(crate) fn read(path: &Path) -> Result<Self, ComparisonError> {
+        let found = path.metadata().map_err(|source| ComparisonError::Read { path: path.into(), source })?;
+        if !found.is_dir() {
+            return Ok(Self::picture(path));
+        }
+        let pictures = pictures_in(path)?;
+        let record = match path.join(RECORD_FILE).exists() {
+            true => Some(Record::read(path).map_err(|what| ComparisonError::Record { path: path.into(), what })?),
+            false => None,
+        };
+        let kind = if record.is_some() { Kind::Golden } else { Kind::Folder };
+        Ok(Self { origin: path.into(), kind, pictures, record, is_undrawn: false })
+    }
+
+    /// As [`Self::read`]; what is not there is a golden that is to be made.
+    pub(crate) fn read_or_absent(path: &Path) -> Result<Self, ComparisonError> {
+        let is_empty = || std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
+        if path.symlink_metadata().is_err() || is_empty() {
+            return Ok(Self { kind: Kind::Absent, pictures: BTreeMap::new(), ..Self::picture(path) });
+        }
+        Self::read(path)
+    }
+
+    fn picture(path: &Path) -> Self {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Self {
+            origin: path.into(),
+            kind: Kind::Picture,
+            pictures: BTreeMap::from([(name, Source::File(path.into()))]),
+            record: None,
+            is_undrawn: false,
+        }
+    }
+
+    /// The folder that pictures stand in, and perhaps an archive of their states.
+    fn folder(&self) -> &Path {
+        match self.kind {
+            Kind::Picture => match self.origin.parent() {
+                Some(parent) if parent != Path::new("") => parent,
+                _ => Path::new("."),
+            },
+            _ => &self.origin,
+        }
+    }
+
+    /// The exact states in the folder's archive, if there is one of these pictures.
+    pub(super) fn archive(&self, labels: &[&Label]) -> Result<Option<States>, String> {
+        if !matches!(self.kind, Kind::Picture | Kind::Folder) {
+            return Ok(None);
+        }
+        let told = |what: String| format!("{}: {what}", self.folder().display());
+        let Some(mut states) = archive::read(self.folder()).map_err(told)? else { return Ok(None) };
+        for label in labels {
+            let Label::Frame(tags) = label else { continue };
+            for (digest, run) in &tags.states {
+                let state = states.run(run).and_then(|run| run.states.get(&tags.frame));
+                if state.is_some_and(|state| state.digest != *digest) {
+                    let frame = tags.frame;
+                    return Err(told(format!(
+                        "states.npz is not of these pictures; frame {frame} shows another state"
+                    )));
+                }
+            }
+        }
+        if self.kind == Kind::Picture {
+            // The picture alone is asked about, not what else its folder holds.
+            let frames: BTreeSet<u64> = labels.iter().filter_map(|label| frame_of(label)).collect();
+            states.runs.iter_mut().for_each(|run| run.states.retain(|frame, _| frames.contains(frame)));
+        }
+        Ok(Some(states))
+    }
+
+    /// Whether it is a golden, or nothing yet.
+    pub(crate) fn is_golden(&self) -> bool {
+        matches!(self.kind, Kind::Golden | Kind::Absent)
+    }
+
+    /// The command line's word for it.
+    pub(super) fn typed(&self) -> String {
+        let path = self.origin.to_string_lossy();
+        let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%\\".contains(c);
+        match !path.is_empty() && path.chars().all(is_plain) {
+            true => path.into_owned(),
+            false => format!("'{}'", path.replace('\'', "'\\''")),
+        }
+    }
+}
+
+/// What pictures tell of states. Nothing if they are not of one scene: then frames of one number have nothing in common.
+pub(super) fn states_of(labels: &[&Label]) -> States {
+    let mut states = States::default();
+    let scenes: BTreeSet<_> = labels.iter().flat_map(|label| label.scenes()).collect();
+    if scenes.len() > 1 {
+        return states;
+    }
+    for label in labels {
+        let Label::Frame(tags) = label else { continue };
+        for (digest, run) in &tags.states {
+            let state = State { time: Some(tags.time), digest: digest.clone(), ..State::default() };
+            states.add(run, tags.frame, state);
+        }
+    }
+    states
+}
+
+/// The number of the frame that a picture shows.
+pub(super) fn frame_of(label: &Label) -> Option<u64> {
+    match label {
+        Label::Frame(tags) => Some(tags.frame),
+        Label::Figure(_) => None,
+    }
+}
+
+/// The PNG files in a folder by name.
+fn pictures_in(folder: &Path) -> Result<BTreeMap<String, Source>, ComparisonError> {
+    let failed = |source| ComparisonError::Read { path: folder.into(), source };
+    let mut pictures = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { continue };
+        if !name.starts_with('.') && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            pictures.insert(name, Source::File(path));
+        }
+    }
+    Ok(pictures)
+}

@@ -1,0 +1,369 @@
+//! What is known of the states behind pictures, exactly or coarsely, and what moved between two sides.
+
+use crate::output::state_digest;
+use crate::sim::snapshot::{Diagnostics, Snapshot};
+use glam::DVec3;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The states of several runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct States {
+    /// One for each run, in the order of the scene.
+    pub(super) runs: Vec<Run>,
+}
+
+/// The states of one run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Run {
+    pub(super) name: String,
+    /// By the number of the frame.
+    pub(super) states: BTreeMap<u64, State>,
+}
+
+/// One run at one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct State {
+    /// The moment (s), if it is known.
+    pub(super) time: Option<f64>,
+    /// Digest of all positions and velocities in hexadecimal digits, or as many of them as were kept.
+    pub(super) digest: String,
+    pub(super) places: Option<Places>,
+    pub(super) numbers: Option<Numbers>,
+}
+
+/// Where nodes were.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Places {
+    /// To what positions are rounded (m); 0: not at all.
+    pub(super) quantum: f64,
+    /// Every so many nodes are known, from the first one.
+    pub(super) every: usize,
+    /// How many nodes there are in all.
+    pub(super) nodes: usize,
+    /// Positions (m).
+    pub(super) at: Vec<DVec3>,
+}
+
+/// Numbers that describe a state, coarsely.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Numbers {
+    /// Kinetic energy (J).
+    pub kinetic: f64,
+    /// Elastic energy (J); NaN for a model without one.
+    pub elastic: f64,
+    /// Potential energy in the field of gravity (J).
+    pub gravitational: f64,
+    /// Elements that have turned over.
+    pub turned_over: u64,
+    /// Total signed volume over the rest value; NaN for a body without volume.
+    pub volume_ratio: f64,
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    pub shape_error: f64,
+}
+
+impl From<&Diagnostics> for Numbers {
+    fn from(all: &Diagnostics) -> Self {
+        let &Diagnostics { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error, .. } = all;
+        Self { kinetic, elastic, gravitational, turned_over: turned_over as u64, volume_ratio, shape_error }
+    }
+}
+
+impl State {
+    /// All that a snapshot tells; its places only if they are asked for.
+    pub(super) fn of(snapshot: &Snapshot, with_places: bool) -> Self {
+        let at = &snapshot.position;
+        let places = with_places.then(|| Places { quantum: 0.0, every: 1, nodes: at.len(), at: at.clone() });
+        let numbers = Some(Numbers::from(&snapshot.diagnostics));
+        Self { time: Some(snapshot.time), digest: state_digest(snapshot), places, numbers }
+    }
+
+    /// Whether two states are the same, as far as both digests go.
+    fn equals(&self, other: &Self) -> bool {
+        let length = self.digest.len().min(other.digest.len());
+        length > 0 && self.digest.as_bytes()[..length] == other.digest.as_bytes()[..length]
+    }
+}
+
+impl States {
+    pub(super) fn run(&self, name: &str) -> Option<&Run> {
+        self.runs.iter().find(|run| run.name == name)
+    }
+
+    /// Adds what is known of a run at a frame.
+    pub(super) fn add(&mut self, run: &str, frame: u64, state: State) {
+        let at = self.runs.iter().position(|known| known.name == run).unwrap_or_else(|| {
+            self.runs.push(Run { name: run.to_owned(), ..Run::default() });
+            self.runs.len() - 1
+        });
+        self.runs[at].states.insert(frame, state);
+    }
+}
+
+/// How far a node is from where it was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Displacement {
+    /// The frame.
+    pub frame: u64,
+    /// The node that is farthest away, counted from 0.
+    pub node: usize,
+    /// How far (m).
+    pub distance: f64,
+    /// To what the distance is known (m); 0: exactly.
+    pub precision: f64,
+}
+
+/// What became of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// Its states are other ones.
+    Moved,
+    /// It is not there any more.
+    Gone,
+    /// It was not there.
+    New,
+}
+
+/// A run whose states are not those that were expected.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Moved {
+    /// Name of the run.
+    pub run: String,
+    /// What became of it.
+    pub change: Change,
+    /// The first frame, of those that were compared, with another state.
+    pub first: Option<u64>,
+    /// The last frame before that with the state that was expected.
+    pub last_equal: Option<u64>,
+    /// How many nodes were expected, and how many there are, if these are not as many.
+    pub nodes: Option<[usize; 2]>,
+    /// The node that is farthest away at the first frame with another state at which places are known.
+    pub displacement: Option<Displacement>,
+    /// And where it is farthest away of all frames.
+    pub largest: Option<Displacement>,
+    /// What describes the state at the first frame of another state that has such numbers, as expected and as it is.
+    pub numbers: Option<[Numbers; 2]>,
+}
+
+/// A run on both sides, frame by frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Course {
+    /// Name of the run.
+    pub run: String,
+    /// To what displacements are known (m); 0: exactly.
+    pub precision: f64,
+    /// Frames that are known on both sides, rising.
+    pub moments: Vec<Moment>,
+}
+
+/// A run on both sides at one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Moment {
+    /// The frame.
+    pub frame: u64,
+    /// The moment (s), if it is known.
+    pub time: Option<f64>,
+    /// Whether the states differ.
+    pub moved: bool,
+    /// By how much, where that is known.
+    pub displacement: Option<Displacement>,
+}
+
+/// All runs that are known on both sides.
+pub(super) fn courses(expected: &States, actual: &States) -> Vec<Course> {
+    let course = |run: &Run| {
+        let other = actual.run(&run.name)?;
+        let both = run.states.iter().filter_map(|(frame, state)| Some((*frame, state, other.states.get(frame)?)));
+        let moments: Vec<Moment> = both
+            .map(|(frame, before, after)| {
+                let moved = !before.equals(after);
+                let displacement = moved.then(|| displacement(frame, before, after)).flatten();
+                Moment { frame, time: after.time.or(before.time), moved, displacement }
+            })
+            .collect();
+        let precision = moments.iter().filter_map(|moment| Some(moment.displacement?.precision)).fold(0.0, f64::max);
+        (!moments.is_empty()).then(|| Course { run: run.name.clone(), precision, moments })
+    };
+    expected.runs.iter().filter_map(course).collect()
+}
+
+/// The runs that moved, by their courses; and those on one side only.
+pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> Vec<Moved> {
+    let lone = |run: &Run, change| Moved {
+        run: run.name.clone(),
+        change,
+        first: None,
+        last_equal: None,
+        nodes: None,
+        displacement: None,
+        largest: None,
+        numbers: None,
+    };
+    let absent = |run: &&Run, from: &States| !run.states.is_empty() && from.run(&run.name).is_none();
+    let gone = expected.runs.iter().filter(|run| absent(run, actual)).map(|run| lone(run, Change::Gone));
+    let new = actual.runs.iter().filter(|run| absent(run, expected)).map(|run| lone(run, Change::New));
+    let moved = courses.iter().filter_map(|course| {
+        let first = course.moments.iter().find(|moment| moment.moved)?.frame;
+        let equal = course.moments.iter().take_while(|moment| !moment.moved).last();
+        let displaced = || course.moments.iter().filter_map(|moment| moment.displacement);
+        let [before, after] = [expected, actual].map(|side| &side.run(&course.run).expect("on both sides").states);
+        let both = |frame: &u64| Some([before.get(frame)?, after.get(frame)?]);
+        let later = || course.moments.iter().filter(|moment| moment.moved).map(|moment| moment.frame);
+        let numbers = later().find_map(|frame| {
+            let [before, after] = both(&frame)?;
+            Some([before.numbers?, after.numbers?])
+        });
+        let nodes = later().find_map(|frame| {
+            let [before, after] = both(&frame)?;
+            let nodes = [before.places.as_ref()?.nodes, after.places.as_ref()?.nodes];
+            (nodes[0] != nodes[1]).then_some(nodes)
+        });
+        Some(Moved {
+            run: course.run.clone(),
+            change: Change::Moved,
+            first: Some(first),
+            last_equal: equal.map(|moment| moment.frame),
+            nodes,
+            displacement: displaced().next(),
+            // The first of equal ones.
+            largest: displaced().reduce(|one, other| if other.distance > one.distance { other } else { one }),
+            numbers,
+        })
+    });
+    moved.chain(gone).chain(new).collect()
+}
+
+/// The node that is farthest away, of those known on both sides.
+fn displacement(frame: u64, before: &State, after: &State) -> Option<Displacement> {
+    let (before, after) = before.places.as_ref().zip(after.places.as_ref())?;
+    if before.nodes != after.nodes {
+        return None;
+    }
+    // Rounding moves each coordinate by half a quantum at most.
+    let precision = 0.5 * 3_f64.sqrt() * (before.quantum + after.quantum);
+    let nodes = (0..before.nodes).step_by(before.every).filter(|node| node % after.every == 0);
+    let distance = |node: usize| before.at[node / before.every].distance(after.at[node / after.every]);
+    let farthest = nodes.map(|node| (node, distance(node)));
+    let (node, distance) = farthest.reduce(|one, other| if other.1 > one.1 { other } else { one })?;
+    Some(Displacement { frame, node, distance, precision })
+}
+
+impl Displacement {
+    /// How far in words, without the frame.
+    pub(super) fn words(&self) -> String {
+        let Self { node, distance, precision, .. } = self;
+        if *precision == 0.0 && *distance == 0.0 {
+            "no node, but velocities differ".to_owned()
+        } else if distance <= precision {
+            // Both errors may have gone the same way.
+            format!("no node by more than {:.0e} m, finer than positions are recorded", 2.0 * precision)
+        } else {
+            format!("node {node} by {distance:.2e} m")
+        }
+    }
+}
+
+impl fmt::Display for Displacement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at frame {}", self.words(), self.frame)
+    }
+}
+
+impl fmt::Display for Moved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.run)?;
+        match self.change {
+            Change::Gone => return f.write_str(" is gone"),
+            Change::New => return f.write_str(" is new"),
+            Change::Moved => {}
+        }
+        match (self.first, self.last_equal) {
+            (Some(first), Some(last)) if first > last + 1 => {
+                write!(f, ", first at frame {first} or a little before (frame {last} is as it was)")?;
+            }
+            (Some(first), _) => write!(f, ", first at frame {first}")?,
+            (None, _) => {}
+        }
+        if let Some([before, after]) = self.nodes {
+            return write!(f, ": {after} nodes instead of {before}");
+        }
+        match (&self.displacement, &self.largest) {
+            (Some(near), Some(far)) if near.frame != far.frame && far.distance > far.precision => {
+                write!(f, ": {near}; {far}")?;
+            }
+            (Some(near), _) => write!(f, ": {near}")?,
+            (None, _) => f.write_str("; by how much is not recorded")?,
+        }
+        if let Some([before, after]) = self.numbers
+            && before.turned_over != after.turned_over
+        {
+            write!(f, "; turned over {} → {}", before.turned_over, after.turned_over)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(digest: &str, quantum: f64, at: &[f64]) -> State {
+        let places = Places { quantum, every: 1, nodes: at.len(), at: at.iter().map(|&x| DVec3::X * x).collect() };
+        State { time: None, digest: digest.into(), places: Some(places), numbers: None }
+    }
+
+    fn states(of: impl Fn(u64) -> State) -> States {
+        let mut states = States::default();
+        (0..4).for_each(|frame| states.add("run", frame, of(frame)));
+        states
+    }
+
+    #[test]
+    fn first_frame_node_and_distance_are_told() {
+        let golden = states(|frame| state(&format!("a{frame}"), 1e-3, &[0.0, 1.0]));
+        let same = states(|frame| state(&format!("a{frame}ffff"), 0.0, &[0.0, 1.0]));
+        let all = courses(&golden, &same);
+        assert!(moved(&golden, &same, &all).is_empty());
+        let later = states(|frame| match frame {
+            0 | 1 => state(&format!("a{frame}"), 0.0, &[0.0, 1.0]),
+            _ => state("bb", 0.0, &[0.0, 1.0 + 0.1 * (frame - 1) as f64]),
+        });
+        let [found] = &moved(&golden, &later, &courses(&golden, &later))[..] else { panic!("one run") };
+        assert_eq!((found.first, found.last_equal), (Some(2), Some(1)));
+        assert_eq!(
+            found.to_string(),
+            "run, first at frame 2: node 1 by 1.00e-1 m at frame 2; node 1 by 2.00e-1 m at frame 3"
+        );
+        // Below what the record knows, nothing is made up.
+        let hardly = states(|_| state("bb", 0.0, &[1e-5, 1.0]));
+        let [found] = &moved(&golden, &hardly, &courses(&golden, &hardly))[..] else { panic!("one run") };
+        assert!(
+            found.to_string().starts_with("run, first at frame 0: no node by more than 2e-3 m, finer than"),
+            "{found}"
+        );
+    }
+
+    #[test]
+    fn runs_come_and_go_and_change_their_nodes() {
+        let golden = states(|_| state("aa", 0.0, &[0.0]));
+        let mut other = states(|_| state("bb", 0.0, &[0.0, 1.0]));
+        let words = |actual: &States| {
+            moved(&golden, actual, &courses(&golden, actual)).iter().map(Moved::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(words(&other), ["run, first at frame 0: 2 nodes instead of 1"]);
+        other.runs[0].name = "walk".into();
+        assert_eq!(words(&other), ["run is gone", "walk is new"]);
+        // An empty digest says nothing and is no state.
+        assert!(!State::default().equals(&State::default()));
+    }
+
+    #[test]
+    fn some_nodes_tell_of_themselves_alone() {
+        let mut golden = state("aa", 0.0, &[0.0, 2.0]);
+        golden.places.as_mut().map(|places| (places.every, places.nodes) = (2, 4));
+        let after = state("bb", 0.0, &[0.0, 9.0, 2.5, 9.0]);
+        assert_eq!(displacement(7, &golden, &after).map(|found| (found.node, found.distance)), Some((2, 0.5)));
+    }
+}

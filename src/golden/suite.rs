@@ -1,0 +1,197 @@
+//! Goldens in `cargo test`.
+
+use super::draw::{DrawError, Subject, Wish, draw, usual_gpu};
+use super::{BlessError, Comparison, RECORD_FILE, Side};
+use crate::gpu::{AdapterChoice, Gpu};
+use crate::scene::Limits;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// What the environment asks for.
+const UPDATE: &str = "UPDATE_GOLDENS";
+
+/// A folder of goldens, and the scenes that they are of.
+///
+/// ```no_run
+/// use localshape::golden::Suite;
+///
+/// #[test]
+/// fn my_scenes_are_as_they_were() {
+///     let mut goldens = Suite::new("tests/golden");
+///     goldens.scene("scenes/my-scene.toml");
+///     goldens.finish();
+/// }
+/// ```
+///
+/// Each scene has the golden of its name, `tests/golden/my-scene/`: a few small pictures and `golden.toml`, which records
+/// what all states were. [`Self::finish`] panics with all that is wrong: a state that moved, a picture that is drawn
+/// differently, a golden that is missing, one that no scene stands for.
+///
+/// With `UPDATE_GOLDENS=1` in the environment, missing goldens are made and failed pictures renewed, but states that moved
+/// are accepted with `UPDATE_GOLDENS=state` only. Of every failure there is a report to be opened in a browser, in
+/// `target/golden/`.
+///
+/// Pictures are drawn by the kind of adapter that drew the goldens if there is one, else on the processor, else with what
+/// there is. Without any graphics adapter the
+/// states alone are compared, unless `LOCALSHAPE_REQUIRE_GPU=1` asks to fail then.
+#[derive(Debug)]
+pub struct Suite {
+    goldens: PathBuf,
+    reports: PathBuf,
+    wish: Wish,
+    /// What was asked for instead of the usual one.
+    adapter: Option<AdapterChoice>,
+    gpu: Option<Option<Gpu>>,
+    used: BTreeSet<String>,
+    complaints: Vec<String>,
+}
+
+impl Suite {
+    /// The goldens in a folder, which need not exist as long as there are none.
+    pub fn new(goldens: impl Into<PathBuf>) -> Self {
+        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+        Self {
+            goldens: goldens.into(),
+            reports: target.join("golden"),
+            wish: Wish::default(),
+            adapter: None,
+            gpu: None,
+            used: BTreeSet::new(),
+            complaints: Vec::new(),
+        }
+    }
+
+    /// So many pictures are drawn of each scene that has no golden yet, from the first part of its time to its end (by
+    /// default 3).
+    pub fn pictures(mut self, count: u64) -> Self {
+        self.wish.pictures = Some(count);
+        self
+    }
+
+    /// So wide are the pictures of scenes that have no golden yet (px; by default 320, or as the scene says if that is
+    /// less).
+    pub fn width(mut self, width: u32) -> Self {
+        self.wish.width = Some(width);
+        self
+    }
+
+    /// Draws on a certain adapter instead of the kind that drew the goldens. Nothing is ever accepted then: goldens come from one kind of machine.
+    pub fn on(mut self, adapter: AdapterChoice) -> Self {
+        self.adapter = Some(adapter);
+        self
+    }
+
+    /// Where reports of failures go, instead of `target/golden/`.
+    pub fn reports(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.reports = folder.into();
+        self
+    }
+
+    /// Simulates and draws a scene or a figure, and compares it with the golden that has its name.
+    pub fn scene(&mut self, path: impl AsRef<Path>) -> &mut Self {
+        let path = path.as_ref();
+        let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        if !self.used.insert(name.clone()) {
+            self.complaints.push(format!("{name}: two scenes of this name share one golden; give one another name"));
+        } else if let Err(complaint) = self.check(path, &name) {
+            self.complaints.push(format!("{name}: {complaint}"));
+        }
+        self
+    }
+
+    fn check(&mut self, path: &Path, name: &str) -> Result<(), String> {
+        let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
+        let expected = Side::read_or_absent(&self.goldens.join(name)).map_err(|error| error.to_string())?;
+        let gpu = self.device(&expected)?.cloned();
+        let told = |error: DrawError| error.to_string();
+        let actual = draw(path, &subject, &self.wish, &expected, gpu.as_ref(), &mut || true).map_err(told)?;
+        let actual = actual.expect("nobody stops it");
+        let comparison = Comparison::between(expected, actual).map_err(|error| error.to_string())?;
+        if comparison.passes() {
+            return Ok(());
+        }
+        let update = std::env::var(UPDATE).unwrap_or_default();
+        let is_renewed = matches!(update.as_str(), "1" | "state") && self.adapter.is_none();
+        let refused = match comparison.bless(update == "state") {
+            _ if !is_renewed => String::new(),
+            Ok(blessed) => {
+                eprint!("{name}: {blessed}");
+                return Ok(());
+            }
+            Err(BlessError::StateMoved { .. }) => {
+                format!("\nthe state moved, so nothing was accepted; if that is meant: {UPDATE}=state cargo test")
+            }
+            Err(error) => format!("\n{error}"),
+        };
+        let report = self.reports.join(format!("{name}.html"));
+        let written =
+            std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.report().page()));
+        let seen = match written {
+            Ok(()) => format!("look at it in {}", report.display()),
+            Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
+        };
+        let all = if refused.is_empty() { format!("\nor accept all with: {UPDATE}=1 cargo test") } else { refused };
+        Err(format!("{}\n{seen}{all}", comparison.to_string().trim_end()))
+    }
+
+    /// The device to draw with, opened once; `None` without any adapter.
+    fn device(&mut self, golden: &Side) -> Result<Option<&Gpu>, String> {
+        if self.gpu.is_none() {
+            let opened = match &self.adapter {
+                None => usual_gpu(golden).or_else(|_| Gpu::new(&AdapterChoice::Auto)),
+                Some(asked) => Gpu::new(asked),
+            };
+            self.gpu = Some(match opened {
+                Ok(gpu) => Some(gpu),
+                Err(error) if std::env::var("LOCALSHAPE_REQUIRE_GPU").as_deref() == Ok("1") => {
+                    return Err(error.to_string());
+                }
+                Err(error) => {
+                    eprintln!("states are compared, but no pictures: {error}");
+                    None
+                }
+            });
+        }
+        Ok(self.gpu.as_ref().and_then(Option::as_ref))
+    }
+
+    /// Ends the comparison.
+    ///
+    /// # Panics
+    /// If anything is not as expected, with all of it in words; also if there is a golden that no scene stands for.
+    pub fn finish(self) {
+        let mut complaints = self.complaints.clone();
+        complaints.extend(self.unused());
+        if complaints.is_empty() {
+            return;
+        }
+        let mut text = String::new();
+        for complaint in &complaints {
+            write!(text, "\n\n{complaint}").expect("a string takes all");
+        }
+        panic!("{} of the goldens in {} are not as they were:{text}\n", complaints.len(), self.goldens.display());
+    }
+
+    /// What is said of goldens that no scene stands for.
+    fn unused(&self) -> Vec<String> {
+        let Ok(entries) = std::fs::read_dir(&self.goldens) else { return Vec::new() };
+        let mut names: Vec<String> = entries
+            .filter_map(|entry| {
+                let path = entry.ok()?.path();
+                let name = path.file_name()?.to_string_lossy().into_owned();
+                let is_golden =
+                    path.join(RECORD_FILE).exists() || path.extension().is_some_and(|ending| ending == "png");
+                (is_golden && !self.used.contains(&name)).then_some(name)
+            })
+            .collect();
+        names.sort();
+        let told = |name: &String| {
+            format!(
+                "{name}: no scene of this test has this golden; delete {}, or test its scene",
+                self.goldens.join(name).display()
+            )
+        };
+        names.iter().map(told).collect()
+    }
+}
