@@ -11,6 +11,7 @@
 //! ```
 
 mod picture;
+pub mod report;
 mod verdict;
 
 pub use picture::{PictureError, Pixels};
