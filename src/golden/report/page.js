@@ -16,6 +16,9 @@
   const GRIP = 24;
   /** A picture takes at most this part of the window's height. */
   const TALLEST = 0.74;
+  /** When three views stand beside each other, and how far apart (px), as in `page.css`. */
+  const WIDE = "(min-width: 720px)";
+  const GAP = 16;
   const MODES = ["side", "slider", "blink"];
   const VIEWS = {
     side: [["expected"], ["difference"], ["actual"]],
@@ -100,7 +103,7 @@
   }
 
   function pixels(sheet) {
-    if (sheet.visible === null) return sheet.verdict;
+    if (sheet.visible === null) return `picture: ${sheet.verdict}`;
     const most = sheet.allowed === null ? "" : `, ${grouped(sheet.allowed)} may`;
     return `${plural(sheet.visible, "pixel")} differ${sheet.visible === 1 ? "s" : ""}${most}`;
   }
@@ -126,18 +129,19 @@
       const far = most ? `; most at frame ${most.frame}: ${length(most.displacement)}` : "";
       return `${course.run}: ${moved.length} of ${plural(course.frames.length, "frame")} moved, first at frame ${moved[0].frame}${far}.`;
     });
-    if (elsewhere > 0) parts.push(`${plural(elsewhere, "picture")} without a frame ${elsewhere === 1 ? "is" : "are"} not shown here.`);
     return parts.join(" ");
   }
 
   let pointed = null; // The station that is pointed at, by pointer or keys.
-  let placed = []; // Where the stations are in the strip (px).
+  let placed = []; // Where the stations are in the drawing of the strip,
+  let scaling = 1; // and how large its unit is (px).
   let marks = null; // What moves in the strip.
 
   function drawStrip() {
     const strip = the("strip");
-    const width = strip.clientWidth;
-    if (width === 0 || stations.length === 0) return;
+    if (strip.clientWidth === 0 || stations.length === 0) return;
+    const unit = parseFloat(getComputedStyle(strip).fontSize) / 14; // All is drawn for letters of 14 px.
+    const width = strip.clientWidth / unit;
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     svg.setAttribute("aria-hidden", "true");
     const draw = (name, attributes, text) => {
@@ -148,7 +152,7 @@
       return element;
     };
     const wide = width >= 720;
-    const left = wide ? 208 : 68; // What is left of the rows: names, if there is room, and ticks.
+    const left = wide ? 208 : 78; // What is left of the rows: names, if there is room, and ticks.
     const right = width - 14;
     const first = stations[0].key;
     const span = stations.at(-1).key - first;
@@ -156,6 +160,7 @@
     const cell = (right - left) / (span / stride + 1);
     const place = (key) => left + ((key - first) / stride + 0.5) * cell;
     placed = stations.map((station) => place(station.key));
+    scaling = unit;
     const hairline = (y, kind = "hairline") => draw("line", { x1: left, x2: right, y1: y, y2: y, class: kind });
     const tick = (y, words) => draw("text", { x: left - 10, y: y + 5, class: "end" }, words);
     const rowName = (y, words, unit) => {
@@ -165,8 +170,17 @@
     let top = 30;
 
     if (report.courses.length > 0) {
-      if (!wide) top += 22;
-      rowName(top, "Displacement", "largest of a node");
+      const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
+      const key = (run, x, y) => {
+        draw("line", { x1: x, x2: x + 30, y1: y, y2: y, class: `run run-${(run % 4) + 1}` });
+        draw("text", { x: x + 40, y: y + 5 }, short(report.courses[run].run));
+      };
+      if (!wide) {
+        top += 16;
+        draw("text", { x: 0, y: top, class: "row-name" }, "Displacement");
+        report.courses.forEach((_, run) => key(run, 164 * (run % 2), (top += run % 2 ? 0 : 24) - 5));
+        top += 18;
+      } else rowName(top, "Displacement", "largest of a node");
       const kinds = new Set();
       const known = [];
       report.courses.forEach((course) => course.frames.forEach((moment) => {
@@ -174,10 +188,10 @@
         kinds.add(its);
         if (its === "known") known.push(moment.displacement);
       }));
-      const keys = wide ? top + 62 : top + 10;
+      const keys = top + 62;
       let y = top + 8;
       const lanes = { unknown: y };
-      if (kinds.has("unknown")) { tick(y, "moved: ?"); y += 22; }
+      if (kinds.has("unknown")) { tick(y, "unknown"); y += 22; }
       let scale = null;
       if (known.length > 0) {
         const lowest = Math.floor(Math.log10(known.reduce((a, b) => Math.min(a, b))) + 1e-9);
@@ -219,12 +233,12 @@
           unknown ||= kind(moment, course.precision) === "unknown";
         });
         const x = placed[index];
-        if (unknown) anywhere += `M${x} ${lanes.same}V${lanes.unknown}`;
+        if (unknown) anywhere += `M${x - cell / 2} ${lanes.same}V${lanes.unknown}h${cell}V${lanes.same}Z`;
         else if (highest < lanes.same) area += `M${x - cell / 2} ${lanes.same}V${highest}h${cell}V${lanes.same}Z`;
       });
       draw("path", { d: area, class: "alarm-area" });
       hairline(lanes.same, "axis");
-      draw("path", { d: anywhere, class: "anywhere", "stroke-dasharray": "2 4" });
+      draw("path", { d: anywhere, class: "anywhere" });
       report.courses.forEach((course, run) => {
         const colour = `run-${(run % 4) + 1}`;
         let line = "";
@@ -237,17 +251,14 @@
           line += `${joined ? "L" : "M"}${x.toFixed(2)} ${height.toFixed(2)}`;
           const next = course.frames[index + 1];
           const alone = !joined && !(next && kind(next, course.precision) === its);
-          if (cell >= 9 || alone) dots.push([x, height, its]);
+          if ((cell >= 9 && its !== "same") || alone) dots.push([x, height, its]);
           before = { its, frame: moment.frame };
         });
         draw("path", { d: line, class: `run ${colour}` });
         for (const [cx, cy, its] of dots) {
           draw("circle", { cx, cy, r: its === "same" ? 1.5 : 3, class: `dot ${colour}${its === "known" ? "" : " hollow"}` });
         }
-        if (wide) {
-          draw("line", { x1: 0, x2: 30, y1: keys + 24 * run, y2: keys + 24 * run, class: `run ${colour}` });
-          draw("text", { x: 40, y: keys + 24 * run + 5 }, course.run.length > 14 ? `${course.run.slice(0, 13)}…` : course.run);
-        }
+        if (wide) key(run, 0, keys + 24 * run);
       });
       top = Math.max(y, wide ? keys + 24 * report.courses.length : 0) + 30;
     }
@@ -261,27 +272,38 @@
     const base = top + tall;
     const rise = (count) => (tall * Math.log10(count + 1)) / powers;
     const eachPower = powers > 3 ? 2 : 1;
-    for (let power = powers; power > 0; power -= eachPower) {
+    for (let power = eachPower; power <= powers; power += eachPower) {
       hairline(base - rise(10 ** power - 1));
       tick(base - rise(10 ** power - 1), grouped(10 ** power));
     }
     tick(base, "0");
     hairline(base, "axis");
-    const bar = clamp(cell * 0.7, 1.5, 18);
-    const square = clamp(cell * 0.7, 2, 10);
-    const shapes = { quiet: "", alarm: "", slash: "", limit: "", incomparable: "" };
+    const places = placed.filter((_, index) => stations[index].sheets.length > 0);
+    const gap = places.slice(1).reduce((least, x, index) => Math.min(least, x - places[index]), 20);
+    const bar = gap < 6 ? gap : Math.min(gap * 0.7, 10);
+    const square = clamp(gap < 4 ? gap : gap * 0.7, 1.5, 10);
+    const mark = square >= 6 ? 10 : 5;
+    const shapes = { "quiet-area": "", "alarm-area": "", "quiet-top": "", "alarm-top": "", quiet: "", alarm: "", slash: "", limit: "", incomparable: "" };
     stations.forEach((station, index) => station.sheets.forEach((number) => {
       const sheet = sheets[number];
-      const colour = sheet.passes ? "quiet" : "alarm";
       const x = placed[index];
-      if (sheet.visible > 0) shapes[colour] += `M${x - bar / 2} ${base}v${-rise(sheet.visible)}h${bar}V${base}Z`;
+      if (sheet.visible > 0) {
+        const colour = sheet.visible > (sheet.allowed ?? 0) ? "alarm" : "quiet";
+        shapes[`${colour}-area`] += `M${x - bar / 2} ${base}v${-rise(sheet.visible)}h${bar}V${base}Z`;
+        shapes[`${colour}-top`] += `M${x - bar / 2} ${base - rise(sheet.visible)}h${bar}`;
+      }
       if (sheet.visible === null && !sheet.passes) shapes.incomparable += `M${x - 4} ${base - 14}l8 8m0 -8l-8 8`;
-      if (sheet.allowed > 0) shapes.limit += `M${x - Math.max(bar, cell) / 2} ${base - rise(sheet.allowed)}h${Math.max(bar, cell)}`;
+      if (sheet.allowed > 0) shapes.limit += `M${x - gap / 2} ${base - rise(sheet.allowed)}h${gap}`;
       const [x0, y0] = [x - square / 2, base + 10];
-      shapes[colour] += `M${x0} ${y0}h${square}v10h${-square}Z`;
-      if (!sheet.passes && square >= 6) shapes.slash += `M${x0} ${y0 + 10}l${square} -10`;
+      shapes[sheet.passes ? "quiet" : "alarm"] += `M${x0} ${y0}h${square}v${mark}h${-square}Z`;
+      if (!sheet.passes && square >= 6) shapes.slash += `M${x0} ${y0 + mark}l${square} ${-mark}`;
     }));
     for (const [name, d] of Object.entries(shapes)) draw("path", { d, class: name });
+
+    if (wide && sheets.some((sheet) => sheet.allowed > 0)) {
+      draw("line", { x1: 0, x2: 30, y1: top + 52, y2: top + 52, class: "limit" });
+      draw("text", { x: 40, y: top + 57 }, "allowed");
+    }
 
     // The axis of frames.
     const foot = base + 42;
@@ -301,7 +323,7 @@
       number: draw("text", { y: 15.5, class: "ring-text middle" }),
       left, right,
     };
-    svg.setAttribute("height", foot + 8);
+    svg.setAttribute("viewBox", `0 0 ${width} ${foot + 8}`);
     strip.replaceChildren(svg);
     markStrip();
   }
@@ -334,7 +356,7 @@
   }
 
   function nearestStation(event) {
-    const x = event.clientX - the("strip").getBoundingClientRect().left;
+    const x = (event.clientX - the("strip").getBoundingClientRect().left) / scaling;
     return placed.reduce((best, place, index) => (Math.abs(place - x) < Math.abs(placed[best] - x) ? index : best), 0);
   }
 
@@ -363,6 +385,9 @@
 
   let layers = []; // What is shown: {pane, side, box, image}.
   let timer = null;
+  const divider = the("divider"); // Stands below the picture while there is something to divide.
+  divider.hidden = false;
+  divider.remove();
 
   /** Why there is nothing to see on a side. */
   function absent(sheet, side) {
@@ -382,7 +407,8 @@
       const view = make("div", { class: "view" });
       const caption = make("figcaption");
       if (sides.length === 1) caption.append(make("strong", {}, TITLES[sides[0]]), make("span", { class: "size" }));
-      else if (state.mode === "blink") caption.append(...sides.map((side) => make("b", { "data-side": side }, TITLES[side])));
+      else if (state.mode === "slider") caption.append(make("strong", {}, TITLES.expected), make("strong", {}, TITLES.actual));
+      else caption.append(...sides.map((side) => make("b", { "data-side": side }, TITLES[side])));
       for (const side of sides) {
         const box = make("div", { class: "layer", "data-side": side });
         view.append(box);
@@ -390,9 +416,10 @@
       }
       if (state.mode === "slider") view.append(make("div", { class: "bar" }));
       listen(view);
-      return make("figure", {}, ...(caption.childElementCount ? [caption] : []), view);
+      return make("figure", {}, caption, view);
     });
     the("stage").className = state.mode;
+    if (state.mode === "slider") panes[0].append(divider);
     the("stage").replaceChildren(...panes);
     fillStage();
   }
@@ -433,9 +460,10 @@
   /** The zoom at which a picture fits: enlarged so that pixels are squares, by a whole number. */
   function fitting() {
     const [width, height] = extent();
-    const figure = layers[0].view.parentElement;
+    const columns = state.mode === "side" && matchMedia(WIDE).matches ? 3 : 1;
+    const room = (the("stage").clientWidth - (columns - 1) * GAP) / columns;
     const most = Math.max(160, innerHeight * TALLEST);
-    const scale = Math.min(figure.clientWidth / width, most / height) * devicePixelRatio;
+    const scale = Math.min(room / width, most / height) * devicePixelRatio;
     return scale > SQUARES ? Math.floor(scale) : scale;
   }
 
@@ -450,7 +478,8 @@
     const within = (place, size, room) => (size * scale <= room + 0.5 ? size / 2 : clamp(place, room / scale / 2, size - room / scale / 2));
     state.x = within(state.zoom === null ? width / 2 : state.x, width, pane[0]);
     state.y = within(state.zoom === null ? height / 2 : state.y, height, pane[1]);
-    for (const { view, side, box, image } of layers) {
+    for (const { view, caption, side, box, image } of layers) {
+      if (state.mode !== "side") caption.parentElement.style.maxWidth = `${pane[0]}px`;
       view.style.width = `${pane[0]}px`;
       view.style.height = `${pane[1]}px`;
       view.classList.toggle("zoomed", zoom > fit + 1e-6);
@@ -467,10 +496,11 @@
     }
     const bar = the("stage").querySelector(".bar");
     if (bar) bar.style.left = `${state.divider}%`;
-    the("divider").style.maxWidth = `${pane[0]}px`;
-    the("divider").querySelector("input").value = state.divider;
+    divider.value = state.divider;
     const percent = `${Number((zoom * 100).toPrecision(3))} %`;
-    the("scale").textContent = state.zoom === null ? `Fit, ${percent}` : percent;
+    the("scale").textContent = percent;
+    the("fit").setAttribute("aria-pressed", String(state.zoom === null));
+    the("exact").setAttribute("aria-pressed", String(zoom === 1));
     the("smaller").disabled = zoom <= Math.min(fit, 1) + 1e-6;
     the("larger").disabled = zoom >= Math.max(fit, LARGEST) - 1e-6;
   }
@@ -557,7 +587,6 @@
     state.mode = mode;
     if (mode === "blink") state.shown = "expected";
     for (const button of the("modes").children) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
-    the("divider").hidden = mode !== "slider";
     the("blinking").hidden = mode !== "blink";
     buildStage();
     blink(mode === "blink" && state.blinks);
@@ -637,7 +666,7 @@
     pointed = null;
     const sheet = sheets[index];
     the("name").textContent = sheet.name;
-    const facts = [`${index + 1} of ${sheets.length}`];
+    const facts = sheets.length > 1 ? [`${grouped(index + 1)} of ${grouped(sheets.length)}`] : [];
     if (sheet.frame !== null) facts.push(`frame ${sheet.frame}`);
     if (sheet.time !== null) facts.push(clock(sheet.time));
     if (sheet.size) facts.push(`${sheet.size[0]} × ${sheet.size[1]}`);
@@ -779,7 +808,7 @@
   onClick("fit", KEYS[0]);
   onClick("exact", () => zoomTo(1));
   onClick("help", KEYS["?"]);
-  the("divider").addEventListener("input", (event) => slide(Number(event.target.value)));
+  divider.addEventListener("input", () => slide(Number(divider.value)));
   the("numbers").addEventListener("toggle", () => {
     const box = the("numbers").querySelector("div");
     if (box.childElementCount === 0) box.append(tabulate());
@@ -813,7 +842,10 @@
   the("pictures").hidden = sheets.length < 2;
   the("sequence").hidden = stations.length < 2;
   the("summary").textContent = summary();
-  the("only").hidden = failures === 0;
+  for (const id of ["only", "failures"]) the(id).hidden = failures === 0;
+  the("around").hidden = sheets.length < 2;
+  the("aside").hidden = elsewhere === 0;
+  the("aside").textContent = `${plural(elsewhere, "picture")} without a frame ${elsewhere === 1 ? "is" : "are"} not shown here.`;
   the("count").textContent = failures === 0
     ? `${plural(sheets.length, "picture")}, all as expected`
     : `${grouped(failures)} of ${plural(sheets.length, "picture")} failed`;
