@@ -1,0 +1,250 @@
+//! A comparison as a page: one HTML file that needs nothing else and works offline.
+//!
+//! The page is made of `page.html`, `page.css` and `page.js`. What it shows stands in it as JSON, the pictures too; what
+//! is said of the whole is written into the page itself, so that it can be read without scripts.
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde::{Serialize, Serializer};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// Everything that a page shows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// What was compared, in a word or two: the name of a scene or folder.
+    pub title: String,
+    /// Where the expected pictures lie, as it was typed.
+    pub expected: String,
+    /// Where the actual pictures lie, as it was typed.
+    pub actual: String,
+    /// Whether nothing is wrong.
+    pub passes: bool,
+    /// What is said of the whole, in a few words: "state moved".
+    pub verdict: String,
+    /// Further sentences: what moved first, where and how far.
+    pub findings: Vec<String>,
+    /// The command that would take what there is for what is expected; `None` if there is nothing to accept.
+    pub accept: Option<String>,
+    /// The graphics adapters that drew the expected and the actual pictures; `None` if the pictures do not say.
+    pub drawn_by: [Option<String>; 2],
+    /// One for each run whose states were compared; there may be none.
+    pub courses: Vec<Course>,
+    /// The pictures in the order of the sequence.
+    pub pictures: Vec<Sheet>,
+}
+
+/// How far the states of a run are from the expected ones, from its first frame to its last.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Course {
+    /// The run's name.
+    pub run: String,
+    /// What displacements are known to (m): shorter ones may be none. 0 if they are known exactly.
+    pub precision: f64,
+    /// Its frames in order.
+    pub frames: Vec<Moment>,
+}
+
+/// One frame of a run beside the expected one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Moment {
+    /// The frame's number.
+    pub frame: u64,
+    /// Its time (s); `None` if it is not known.
+    pub time: Option<f64>,
+    /// Whether the state is another one: whether its digest differs.
+    pub moved: bool,
+    /// The largest displacement of a node (m); `None` where it is not known.
+    pub displacement: Option<f64>,
+    /// The node that is displaced most; `None` where it is not known.
+    pub node: Option<usize>,
+}
+
+/// One picture beside the expected one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sheet {
+    /// Its file's name, or its path in the folder.
+    pub name: String,
+    /// The frame that it shows; `None` if it does not say.
+    pub frame: Option<u64>,
+    /// That frame's time (s).
+    pub time: Option<f64>,
+    /// One of: `identical`; `same state, pixels within tolerance`; `same state, drawn differently`; `state moved`;
+    /// `missing`; `extra`; `no state recorded`; `unreadable`.
+    pub verdict: String,
+    /// What is said of it in a whole sentence, with the distance to the limit.
+    pub words: String,
+    /// Whether nothing is wrong with it.
+    pub passes: bool,
+    /// How many of its pixels differ by more than 2 of 255; `None` if pixels could not be compared.
+    pub visible: Option<u64>,
+    /// How many may.
+    pub allowed: Option<u64>,
+    /// Width and height (px).
+    pub size: Option<[u32; 2]>,
+    /// The expected picture as a PNG file; `None` if it is not there or not to be shown.
+    #[serde(serialize_with = "address")]
+    pub expected: Option<Vec<u8>>,
+    /// The actual picture as a PNG file; `None` if it is not there or not to be shown.
+    #[serde(serialize_with = "address")]
+    pub actual: Option<Vec<u8>>,
+    /// A picture of where they differ as a PNG file; `None` if there is none or it is not to be shown.
+    #[serde(serialize_with = "address")]
+    pub difference: Option<Vec<u8>>,
+}
+
+/// A PNG file as an address that holds all of it.
+fn address<S: Serializer>(file: &Option<Vec<u8>>, serializer: S) -> Result<S::Ok, S::Error> {
+    let address = file.as_ref().map(|bytes| {
+        let mut address = String::from("data:image/png;base64,");
+        BASE64_STANDARD.encode_string(bytes, &mut address);
+        address
+    });
+    address.serialize(serializer)
+}
+
+impl Report {
+    /// The whole HTML document.
+    pub fn page(&self) -> String {
+        // Browsers hash what is between the tags with plain line ends.
+        let [style, script] = [STYLE, SCRIPT].map(|text| text.replace("\r\n", "\n"));
+        // Nothing runs and nothing is loaded but what is written here, whatever the names of files and runs say.
+        let policy = format!(
+            "default-src 'none'; img-src data:; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
+            hash(&style),
+            hash(&script)
+        );
+        let sign = if self.passes { "✓" } else { "✕" };
+        filled(
+            PAGE,
+            &[
+                ("policy", &policy),
+                ("heading", &escaped(&format!("{sign} {}: {}", self.title, self.verdict))),
+                ("style", &style),
+                ("outcome", if self.passes { "passes" } else { "fails" }),
+                ("sign", if self.passes { "#passed" } else { "#failed" }),
+                ("sign in words", if self.passes { "Passed:" } else { "Failed:" }),
+                ("title", &escaped(&self.title)),
+                ("verdict", &escaped(&self.verdict)),
+                ("findings", &self.findings.iter().map(|text| format!("<p>{}</p>\n", escaped(text))).collect::<String>()),
+                ("sides", &self.sides()),
+                ("accept", &self.accept_box()),
+                ("pictures", &self.list()),
+                ("data", &inert(&serde_json::to_string(self).expect("numbers and words are JSON"))),
+                ("script", &script),
+            ],
+        )
+    }
+
+    /// Where the two sides lie, and what drew them.
+    fn sides(&self) -> String {
+        let mut html = String::new();
+        let paths = [("Expected", &self.expected), ("Actual", &self.actual)];
+        for ((side, path), adapter) in paths.into_iter().zip(&self.drawn_by) {
+            let adapter = adapter.as_ref().map_or_else(|| "not recorded".into(), |adapter| escaped(adapter));
+            let path = escaped(path);
+            let _ = writeln!(html, "<dt>{side}</dt><dd><code>{path}</code> <span>drawn by: {adapter}</span></dd>");
+        }
+        html
+    }
+
+    /// The command that accepts what there is, if there is one.
+    fn accept_box(&self) -> String {
+        self.accept.as_ref().map_or_else(String::new, |command| {
+            format!(
+                "<div class=\"accept\"><p id=\"accept-label\">If this is what you meant, accept it:</p>\n\
+                 <div class=\"command\"><code id=\"command\" tabindex=\"0\" aria-labelledby=\"accept-label\">{}</code>\
+                 <button type=\"button\" id=\"copy\" hidden>Copy</button></div></div>",
+                escaped(command)
+            )
+        })
+    }
+
+    /// The pictures with their verdicts, for readers without scripts.
+    fn list(&self) -> String {
+        let mut html = String::new();
+        for Sheet { name, words, passes, .. } in &self.pictures {
+            let sign = if *passes { "✓" } else { "✕" };
+            let _ = writeln!(html, "<li>{sign} <code>{}</code> {}</li>", escaped(name), escaped(words));
+        }
+        html
+    }
+}
+
+/// A template with its `{{names}}` replaced. What is put in is not looked at again, so nothing in it is taken for a name.
+fn filled(template: &str, parts: &[(&str, &str)]) -> String {
+    let mut page = String::with_capacity(template.len() + parts.iter().map(|(_, part)| part.len()).sum::<usize>());
+    let mut left = template;
+    while let Some((before, (name, after))) =
+        left.split_once("{{").and_then(|(before, rest)| Some((before, rest.split_once("}}")?)))
+    {
+        page.push_str(before);
+        let part = parts.iter().find(|(known, _)| *known == name);
+        page.push_str(part.unwrap_or_else(|| panic!("the page asks for {name}")).1);
+        left = after;
+    }
+    page + left
+}
+
+/// Text that stands for itself in HTML, between tags and in attributes.
+fn escaped(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => html.push_str("&amp;"),
+            '<' => html.push_str("&lt;"),
+            '>' => html.push_str("&gt;"),
+            '"' => html.push_str("&quot;"),
+            '\'' => html.push_str("&#39;"),
+            _ => html.push(letter),
+        }
+    }
+    html
+}
+
+/// JSON that holds nothing by which it could end the element around it. The letters replaced occur in strings only.
+fn inert(json: &str) -> String {
+    let mut inert = String::with_capacity(json.len() + json.len() / 64);
+    let mut left = json;
+    while let Some(at) = left.find(['<', '>', '&', '\u{2028}', '\u{2029}']) {
+        let letter = left[at..].chars().next().expect("the letter that was found");
+        inert.push_str(&left[..at]);
+        let _ = write!(inert, "\\u{:04x}", letter as u32);
+        left = &left[at + letter.len_utf8()..];
+    }
+    inert + left
+}
+
+/// What a content security policy calls an inline style or script.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(text.as_bytes())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_in_is_not_looked_at_again() {
+        assert_eq!(filled("a {{one}} {{two}} }}", &[("one", "{{two}}"), ("two", "{{")]), "a {{two}} {{ }}");
+    }
+
+    #[test]
+    fn json_stays_the_same_and_ends_nothing() {
+        let hostile = "</script><!-- & \u{2028}\u{2029} \\u003c ü";
+        let json = inert(&serde_json::to_string(hostile).expect("JSON"));
+        assert!(!json.contains(['<', '>', '&', '\u{2028}', '\u{2029}']), "{json}");
+        assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), hostile);
+        assert_eq!(escaped("<a b='\"&'>"), "&lt;a b=&#39;&quot;&amp;&#39;&gt;");
+    }
+
+    #[test]
+    fn the_template_names_what_is_put_in() {
+        let names: Vec<_> = PAGE.split("{{").skip(1).filter_map(|rest| rest.split("}}").next()).collect();
+        assert!(names.len() >= 14 && names.contains(&"data") && names.contains(&"script"), "{names:?}");
+    }
+}
