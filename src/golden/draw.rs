@@ -259,3 +259,82 @@ impl<'a> Artist<'a> {
         Ok((label, bytes))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Comparison;
+    use super::*;
+    use std::path::PathBuf;
+
+    /// Every scene that ships, with its golden.
+    fn shipped() -> Vec<[PathBuf; 2]> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut scenes = Vec::new();
+        for (scenes_in, goldens_in) in [("scenes", "scenes"), ("scenes/elements", "elements")] {
+            for entry in std::fs::read_dir(root.join(scenes_in)).expect("scenes") {
+                let path = entry.expect("an entry").path();
+                if path.extension().is_some_and(|ending| ending == "toml") {
+                    let golden = root.join("tests/golden").join(goldens_in).join(path.file_stem().expect("a name"));
+                    scenes.push([path, golden]);
+                }
+            }
+        }
+        scenes.sort();
+        scenes
+    }
+
+    /// The first frames of a scene that are known to its golden, with one run as if its body had started elsewhere.
+    fn states(scene: &Scene, moved: &Scene, moved_run: usize, golden: &Record) -> States {
+        let mut states = States::default();
+        let all: Vec<usize> = (0..scene.runs.len()).collect();
+        let mut sequences = all.iter().map(|&run| Sequence::new(if run == moved_run { moved } else { scene }, &[run]));
+        let mut sequences: Vec<_> = sequences.by_ref().collect();
+        let frames: BTreeSet<u64> = golden.states.runs.iter().flat_map(|run| run.states.keys().copied()).collect();
+        for frame in frames.into_iter().take(4) {
+            for (run, sequence) in sequences.iter_mut().enumerate() {
+                let snapshot = &sequence.frame(frame).runs[0].snapshot;
+                states.add(&scene.runs[run].name, frame, State::of(snapshot, true));
+            }
+        }
+        states
+    }
+
+    /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.
+    #[test]
+    fn the_smallest_errors_of_a_node_are_seen_in_every_scene() {
+        let shipped = shipped();
+        assert!(shipped.len() >= 25, "{}", shipped.len());
+        for [path, golden] in shipped {
+            let scene = Scene::load(&path, &Limits::default()).expect("a scene that ships");
+            let golden =
+                Side::read(&golden).unwrap_or_else(|error| panic!("{error}; UPDATE_GOLDENS=1 cargo test makes it"));
+            let record = golden.record.as_ref().expect("a record");
+            let compare = |moved: &Scene, run: usize| {
+                let states = states(&scene, moved, run, record);
+                let actual = Record { states, ..record.clone() };
+                let kind = Kind::Drawn;
+                let side = Side {
+                    origin: path.clone(),
+                    kind,
+                    pictures: BTreeMap::new(),
+                    record: Some(actual),
+                    is_undrawn: true,
+                };
+                Comparison::between(golden.clone(), side).expect("a golden and its scene")
+            };
+            assert!(compare(&scene, 0).passes(), "{}: {}", path.display(), compare(&scene, 0));
+            let run = scene.runs.len() - 1;
+            let mut moved = scene.clone();
+            let node = moved.initial.position.iter().rposition(|at| at.length() > 0.0);
+            match node {
+                Some(node) => moved.initial.position[node] *= 1.0 + 1e-9,
+                // All nodes start at the origin, where no error is relative: a thousand-millionth of the element's side.
+                None => moved.initial.position[0].x = 1e-10,
+            }
+            let found = compare(&moved, run);
+            assert_eq!(found.verdict(), "state moved", "{}", path.display());
+            let runs: Vec<_> = found.moved.iter().map(|moved| (&moved.run, moved.first)).collect();
+            assert_eq!(runs, [(&scene.runs[run].name, Some(0))], "{}", path.display());
+        }
+    }
+}

@@ -272,7 +272,7 @@ fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
             let name = actual.pictures.keys().next().cloned().unwrap_or_default();
             return Ok(vec![(name, [source(expected), source(actual)])]);
         }
-        (Kind::Absent, Kind::Picture) => {
+        (Kind::Absent, Kind::Picture) if !expected.origin.is_dir() => {
             return Ok(actual
                 .pictures
                 .iter()

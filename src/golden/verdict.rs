@@ -129,7 +129,7 @@ fn moved(before: &Label, after: &Label) -> Vec<MovedHere> {
 impl fmt::Display for MovedHere {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.displacement {
-            Some(displacement) => write!(f, "{}, {}", self.run, displacement.words()),
+            Some(displacement) => write!(f, "{}, {}", self.run, displacement.words("")),
             None => f.write_str(&self.run),
         }
     }

@@ -1,7 +1,9 @@
 //! `compare`: verdicts on pictures and folders of them.
 
-use crate::support::Place;
+use crate::support::{Place, Ran, SMALL};
 use localshape::output::{Tags, encode};
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
 
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
     let tags = Tags {
@@ -34,13 +36,20 @@ fn two_pictures() {
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
-    assert!(drawn.out.starts_with("b.png: same state, drawn differently: 10 pixels differ by more than 2 of 255"));
+    assert!(
+        drawn
+            .out
+            .starts_with("b.png: same state, drawn differently: another kind of adapter drew it; along silhouettes")
+    );
+    assert!(drawn.out.contains("\naccept with: localshape compare --bless a.png b.png\n"), "{drawn:?}");
     let moved = place.run("compare a.png c.png --json");
     assert_eq!(moved.status, Some(1));
     let told: serde_json::Value = serde_json::from_str(&moved.out).unwrap();
     assert_eq!((told["passes"].as_bool(), told["first_moved"].as_str()), (Some(false), Some("c.png")));
     assert_eq!(told["pictures"][0]["verdict"], "state-moved");
-    assert_eq!(told["pictures"][0]["runs"][0], "Local shape");
+    assert_eq!(told["pictures"][0]["runs"][0]["run"], "Local shape");
+    assert_eq!((told["verdict"].as_str(), told["moved"][0]["first"].as_u64()), (Some("state moved"), Some(0)));
+    assert_eq!(told["accept"], "localshape compare --bless-state a.png c.png");
     let quiet = place.run("compare a.png c.png -q");
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
 }
@@ -60,15 +69,158 @@ fn two_folders() {
     assert_eq!(found.status, Some(1));
     assert_eq!(
         found.out,
-        "frame_00003.png: state moved: Local shape\n\
+        "state moved: Local shape, first at frame 3; by how much is not recorded\n\
+         frame_00003.png: state moved: Local shape\n\
          frame_00004.png: state moved: Local shape\n\
          gone.png: missing\n\
          new.png: extra\n\
          4 of 7 pictures are not as expected\n\
-         the first whose state moved is frame_00003.png\n"
+         the first picture whose state moved is frame_00003.png\n\
+         accept with: localshape compare --bless-state was is\n"
     );
     let same = place.run("compare was was").good();
-    assert_eq!(same.out, "6 pictures, nothing moved; at most 0 pixels of one differ visibly\n");
+    assert_eq!(same.out, "6 pictures: 6 identical\n");
+}
+
+#[test]
+fn another_scene_file_is_mentioned_and_no_difference() {
+    let place = Place::new();
+    let tags = |scene: &str| Tags {
+        scene: scene.into(),
+        states: vec![("1".into(), "run".into())],
+        frame: 0,
+        time: 0.0,
+        version: "0".into(),
+        adapter: "one".into(),
+    };
+    put(&place, "a.png", &encode([16, 8], &GREY, &tags("5")));
+    put(&place, "b.png", &encode([16, 8], &GREY, &tags("6")));
+    let ran = place.run("compare a.png b.png").good();
+    assert_eq!(ran.out, "b.png: identical\nthe scene files are not the same\n");
+}
+
+#[test]
+fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
+    let place = Place::new();
+    let mut other = GREY;
+    other[..60].fill(0);
+    for (name, state, bytes) in [("same", "1", &GREY), ("drawn", "1", &other), ("moved", "2", &GREY)] {
+        put(&place, &format!("was/{name}.png"), &picture("one", "1", 0, &GREY));
+        put(&place, &format!("is/{name}.png"), &picture("one", state, 0, bytes));
+    }
+    put(&place, "was/gone.png", &picture("one", "1", 0, &GREY));
+    let before = std::fs::read(place.path("was/drawn.png")).unwrap();
+    let refused = place.run("compare --bless was is");
+    refused.bad(1, &["the state moved, so nothing was accepted", "localshape compare --bless-state was is"]);
+    assert_eq!(std::fs::read(place.path("was/drawn.png")).unwrap(), before, "all or nothing");
+    let written = |name: &str| std::fs::metadata(place.path(name)).unwrap().modified().unwrap();
+    let kept = written("was/same.png");
+    let accepted = place.run("compare --bless-state was is");
+    assert_eq!(accepted.status, Some(0), "{accepted:?}");
+    let told = "accepted was/drawn.png\naccepted was/moved.png\nwas/gone.png is missing in is and was left\n";
+    assert!(accepted.out.ends_with(told), "{accepted:?}");
+    assert_eq!(written("was/same.png"), kept);
+    assert_eq!(place.names("was"), ["drawn.png", "gone.png", "moved.png", "same.png"]);
+    // What was missing is still missed.
+    assert_eq!(place.run("compare was is").status, Some(1));
+    std::fs::remove_file(place.path("was/gone.png")).unwrap();
+    place.run("compare was is").good();
+    let nothing = place.run("compare --bless was is").good();
+    assert!(nothing.out.ends_with("nothing to accept\n"), "{nothing:?}");
+}
+
+#[test]
+fn what_is_missing_fails_with_the_command_that_makes_it() {
+    let place = Place::new();
+    put(&place, "is/a.png", &picture("one", "1", 0, &GREY));
+    for (expected, actual) in [("was", "is"), ("was.png", "is/a.png")] {
+        let ran = place.run(&format!("compare {expected} {actual}"));
+        let told =
+            format!("the golden {expected} is missing\nmake it with: localshape compare --bless {expected} {actual}\n");
+        assert_eq!((ran.status, ran.out), (Some(1), told));
+        place.run(&format!("compare --bless {expected} {actual}")).good();
+        place.run(&format!("compare {expected} {actual}")).good();
+    }
+    // A path with spaces can be pasted as it is told.
+    let ran = Ran::from(place.command(["compare", "my golden", "is"]).output().unwrap());
+    assert!(ran.out.contains("--bless 'my golden' is\n"), "{ran:?}");
+}
+
+#[test]
+fn no_damaged_picture_is_ever_accepted() {
+    let place = Place::new();
+    put(&place, "was.png", &picture("one", "1", 0, &GREY));
+    put(&place, "cut.png", &picture("one", "1", 0, &GREY)[..60]);
+    place.run("compare --bless-state was.png cut.png").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
+    // But a damaged golden can be renewed, if it is known that its state is lost.
+    place.run("compare --bless cut.png was.png").bad(1, &["--bless-state cut.png was.png"]);
+    place.run("compare --bless-state cut.png was.png").good();
+    assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
+}
+
+#[test]
+fn exact_states_tell_node_distance_and_first_frame() {
+    let place = Place::new();
+    let steady = SMALL.replace("\"T/50\"", "0.0012");
+    // The other run stays as it is.
+    let spring = "stiffness = 1e4, damping_ratio = 0.1, springs";
+    place.write("steady.toml", &steady);
+    place.write("stiffer.toml", &steady.replace(spring, &spring.replace("1e4", "1.1e4")));
+    for name in ["steady", "stiffer"] {
+        place.run(&format!("simulate {name}.toml --states -o {name} -q")).good();
+        let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
+        let mut sequence = Sequence::new(&scene, &[0, 1]);
+        for index in 0..=scene.last_frame() {
+            let tags = Tags::new(&scene, &sequence.frame(index), "one");
+            put(&place, &format!("{name}/frame_{index:05}.png"), &encode([16, 8], &GREY, &tags));
+        }
+    }
+    let found = place.run("compare steady stiffer --json").json();
+    let [moved] = &found["moved"].as_array().unwrap()[..] else { panic!("one run: {found}") };
+    // The floor is touched at once, and then the springs act.
+    assert_eq!((moved["run"].as_str(), moved["first"].as_u64()), (Some("Mass-spring"), Some(1)));
+    assert_eq!(moved["displacement"]["precision"], 0.0);
+    // The distance as anybody can compute it from the archives.
+    let positions = |name: &str, frame: u64| {
+        let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
+        Sequence::new(&scene, &[1]).frame(frame).runs[0].snapshot.position.clone()
+    };
+    for key in ["displacement", "largest"] {
+        let displacement = &moved[key];
+        let [frame, node] = ["frame", "node"].map(|key| displacement[key].as_u64().unwrap());
+        let [before, after] = ["steady", "stiffer"].map(|name| positions(name, frame));
+        let distances: Vec<f64> = before.iter().zip(&after).map(|(a, b)| a.distance(*b)).collect();
+        assert_eq!(displacement["distance"].as_f64(), Some(distances[node as usize]), "{key}");
+        assert!(distances.iter().all(|&distance| distance <= distances[node as usize]), "{key}");
+    }
+    assert!(moved["largest"]["distance"].as_f64() >= moved["displacement"]["distance"].as_f64());
+    let told = place.run("compare steady stiffer").out;
+    assert!(told.starts_with("state moved: Mass-spring, first at frame 1: node "), "{told}");
+    // One picture of each, with the archives beside them.
+    let pair = place.run("compare steady/frame_00006.png stiffer/frame_00006.png").out;
+    assert!(pair.starts_with("state moved: Mass-spring, first at frame 6: node "), "{pair}");
+    // States that are not those of the pictures beside them are not believed.
+    std::fs::copy(place.path("stiffer/states.npz"), place.path("steady/states.npz")).unwrap();
+    let told = place.run("compare steady stiffer").out;
+    assert!(told.contains("steady: states.npz is not of these pictures; frame 1 shows another state\n"), "{told}");
+    assert!(told.contains("by how much is not recorded"), "{told}");
+    for (bytes, words) in [(&b"PK\x03\x04"[..], "damaged"), (b"", "is empty")] {
+        std::fs::write(place.path("steady/states.npz"), bytes).unwrap();
+        let told = place.run("compare steady stiffer").out;
+        assert!(told.contains("steady: states.npz ") && told.contains(words), "{told}");
+    }
+}
+
+#[test]
+fn a_report_is_one_file() {
+    let place = Place::new();
+    put(&place, "a.png", &picture("one", "1", 0, &GREY));
+    put(&place, "c.png", &picture("one", "2", 0, &GREY));
+    let ran = place.run("compare a.png c.png --report page.html -q");
+    assert_eq!((ran.status, ran.out.as_str(), ran.err.as_str()), (Some(1), "", ""));
+    let page = place.read("page.html");
+    assert!(page.starts_with("<!doctype html>") && page.contains("--bless-state a.png c.png"), "{}", &page[..200]);
+    place.run("compare a.png c.png --report none/page.html -q").bad(4, &["none/page.html"]);
 }
 
 #[test]
@@ -79,33 +231,86 @@ fn what_is_no_picture_never_passes() {
     let mut flipped = whole.clone();
     let middle = whole.len() - 30;
     flipped[middle] ^= 0x55;
-    let wrong: [(&str, Vec<u8>, &str); 4] = [
-        ("text.png", b"no picture".to_vec(), "no whole PNG picture"),
-        ("empty.png", Vec::new(), "no whole PNG picture"),
-        ("cut.png", whole[..whole.len() - 20].to_vec(), "no whole PNG picture"),
-        ("flipped.png", flipped, "no whole PNG picture"),
+    let mut header_lies = whole.clone();
+    header_lies[16..24].copy_from_slice(&[0x7f, 0, 0, 0, 0x7f, 0, 0, 0]);
+    // The header with another size, or interlaced, and the checksum of that.
+    let header = |change: &dyn Fn(&mut [u8])| {
+        let mut file = whole.clone();
+        change(&mut file);
+        let checksum = crc32(&file[12..29]);
+        file[29..33].copy_from_slice(&checksum.to_be_bytes());
+        file
+    };
+    let huge =
+        header(&|file| [16, 20].into_iter().for_each(|at| file[at..at + 4].copy_from_slice(&20_000_u32.to_be_bytes())));
+    let interlaced = header(&|file| file[28] = 1);
+    let with = |set: &dyn Fn(&mut png::Encoder<'_, &mut Vec<u8>>), bytes: usize| {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, 16, 8);
+        encoder.set_color(png::ColorType::Rgb);
+        set(&mut encoder);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&vec![0; bytes]).unwrap();
+        writer.finish().unwrap();
+        file
+    };
+    let text = |keyword: &'static str, text: &'static str| {
+        with(&|encoder| encoder.add_text_chunk(keyword.into(), text.into()).unwrap(), 16 * 8 * 3)
+    };
+    let states = |frame: &'static str, states: &'static str| {
+        let chunks =
+            [("scene", "5"), ("state", states), ("frame", frame), ("time", "0"), ("version", "1"), ("adapter", "one")];
+        with(
+            &|encoder| {
+                for (name, text) in chunks {
+                    encoder.add_text_chunk(format!("localshape:{name}"), text.into()).unwrap();
+                }
+            },
+            16 * 8 * 3,
+        )
+    };
+    let wrong: [(&str, Vec<u8>, &str); 15] = [
+        ("interlaced.png", interlaced, "is interlaced"),
+        ("text.png", b"no picture".to_vec(), "this is no PNG picture"),
+        ("empty.png", Vec::new(), "this is no PNG picture"),
+        ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is no PNG picture"),
+        ("cut.png", whole[..whole.len() - 20].to_vec(), "damaged or cut short"),
+        ("flipped.png", flipped, "damaged or cut short"),
+        ("lies.png", header_lies, "damaged or cut short"),
+        ("huge.png", huge, "20000×20000 pixels"),
+        ("deep.png", with(&|encoder| encoder.set_depth(png::BitDepth::Sixteen), 16 * 8 * 6), "16 bits a channel"),
+        ("grey.png", with(&|encoder| encoder.set_color(png::ColorType::Grayscale), 16 * 8), "is grey"),
+        (
+            "palette.png",
+            with(
+                &|encoder| {
+                    encoder.set_color(png::ColorType::Indexed);
+                    encoder.set_palette(vec![0; 6]);
+                },
+                16 * 8,
+            ),
+            "has a palette",
+        ),
+        ("animated.png", with(&|encoder| encoder.set_animated(1, 0).unwrap(), 16 * 8 * 3), "is an animation"),
+        ("untold.png", text("localshape:version", "1"), "`localshape:state` is missing or damaged"),
+        ("frame.png", states("-3", "ab run"), "`localshape:frame` is missing or damaged"),
+        ("digest.png", states("3", "no-digest run"), "`localshape:state` is missing or damaged"),
     ];
     for (name, bytes, words) in wrong {
         put(&place, name, &bytes);
         for order in [format!("{name} whole.png"), format!("whole.png {name}")] {
             let ran = place.run(&format!("compare {order}"));
             assert_eq!((ran.status, ran.err.as_str()), (Some(1), ""), "{order}: {ran:?}");
-            assert!(ran.out.contains("unreadable") && ran.out.contains(words), "{order}: {ran:?}");
+            let told = format!("unreadable: {name}: ");
+            assert!(ran.out.contains(&told) && ran.out.contains(words), "{order}: {ran:?}");
         }
     }
-    for (name, depth, colour, bytes, words) in [
-        ("deep.png", png::BitDepth::Sixteen, png::ColorType::Rgb, 16 * 8 * 6, "16 bits a channel"),
-        ("grey.png", png::BitDepth::Eight, png::ColorType::Grayscale, 16 * 8, "is grey"),
-    ] {
-        let mut file = Vec::new();
-        let mut encoder = png::Encoder::new(&mut file, 16, 8);
-        encoder.set_depth(depth);
-        encoder.set_color(colour);
-        encoder.write_header().unwrap().write_image_data(&vec![7; bytes]).unwrap();
-        put(&place, name, &file);
-        let ran = place.run(&format!("compare whole.png {name}"));
-        assert!(ran.status == Some(1) && ran.out.contains(words), "{ran:?}");
-    }
+}
+
+/// The checksum of a part of a PNG file.
+fn crc32(bytes: &[u8]) -> u32 {
+    let step = |sum: u32, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
+    !bytes.iter().fold(!0, |sum, &byte| (0..8).fold(sum ^ u32::from(byte), step))
 }
 
 #[test]
@@ -114,6 +319,14 @@ fn wrong_words() {
     put(&place, "a.png", &picture("one", "1", 0, &GREY));
     std::fs::create_dir(place.path("none")).unwrap();
     place.run("compare a.png b.png").bad(4, &["cannot read b.png"]);
+    place.run("compare a.png a.png --size 20x20").bad(2, &["--size is for scenes and figures"]);
+    place.write("small.toml", SMALL);
+    place.run("compare a.png small.toml").bad(2, &["a.png is no golden"]);
+    std::fs::create_dir(place.path("broken")).unwrap();
+    place.write("broken/golden.toml", "format = 7");
+    place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "no record of a golden"]);
+    place.write("wrong.toml", "body.lattice = { cells = [1, 1, 1], size = 0.1 }");
+    place.run("compare none2 wrong.toml").bad(2, &["wrong.toml", "`size`"]);
     place.run("compare none a.png").bad(2, &["none is a folder and a.png is a file"]);
     place.run("compare none none").bad(2, &["holds a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);

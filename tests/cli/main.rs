@@ -6,6 +6,8 @@ mod disk;
 #[cfg(feature = "render")]
 mod figure;
 mod folders;
+#[cfg(feature = "render")]
+mod goldens;
 mod info;
 mod interrupt;
 #[cfg(feature = "render")]

@@ -8,6 +8,8 @@
 //! golden`, states that moved by `UPDATE_GOLDENS=state`; then look at every picture that changed.
 #![cfg(feature = "render")]
 
+mod suite;
+
 use localshape::golden::Suite;
 use localshape::gpu::{self, AdapterChoice};
 use std::path::{Path, PathBuf};

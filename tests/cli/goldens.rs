@@ -1,0 +1,202 @@
+//! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
+
+use crate::support::{Place, Ran, SMALL, skip};
+use localshape::golden::Pixels;
+use localshape::gpu::{AdapterChoice, Gpu};
+
+/// A place with `small.toml`, if there is anything to draw with.
+fn place() -> Option<Place> {
+    match Gpu::new(&AdapterChoice::Cpu) {
+        Ok(_) => Some(Place::with_small()),
+        Err(error) if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some() => panic!("{error}"),
+        Err(error) => {
+            skip(&error.to_string());
+            None
+        }
+    }
+}
+
+/// A place with the golden of `small.toml` in `golden/`.
+fn with_golden() -> Option<Place> {
+    let place = place()?;
+    place.run("compare --bless golden small.toml").good();
+    Some(place)
+}
+
+#[test]
+fn a_golden_is_made_and_passes_until_the_state_moves() {
+    let Some(place) = place() else { return };
+    let missing = place.run("compare golden small.toml");
+    let told = "the golden golden is missing\nmake it with: localshape compare --bless golden small.toml\n";
+    assert_eq!((missing.status, missing.out.as_str()), (Some(1), told));
+    let made = place.run("compare --bless golden small.toml").good();
+    assert!(made.out.ends_with("accepted golden/frame_00006.png\naccepted golden/golden.toml\n"), "{made:?}");
+    let names = ["frame_00002.png", "frame_00004.png", "frame_00006.png", "golden.toml"];
+    assert_eq!(place.names("golden"), names);
+    let same = place.run("compare golden small.toml").good();
+    assert_eq!(same.out, "3 pictures: 3 identical\n14 states are the same\n");
+
+    // Another stiffness of one run: which run, since when, which node, how far.
+    let stiffer = SMALL.replace("1e4, damping_ratio = 0.1, springs", "2e4, damping_ratio = 0.1, springs");
+    place.write("stiffer.toml", &stiffer.replace("T/50", "T/71"));
+    let slower = place.run("compare golden stiffer.toml").out;
+    assert!(slower.contains("the scene files are not the same"), "{slower}");
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
+    let moved = place.run("compare golden small.toml --json");
+    assert_eq!(moved.status, Some(1));
+    let moved = moved.json();
+    assert_eq!((moved["verdict"].as_str(), moved["same_scene"].as_bool()), (Some("state moved"), Some(false)));
+    for run in moved["moved"].as_array().unwrap() {
+        assert_eq!((run["change"].as_str(), run["first"].as_u64()), (Some("moved"), Some(1)), "{run}");
+        let [distance, precision] = ["distance", "precision"].map(|key| run["largest"][key].as_f64().unwrap());
+        assert!(distance > 1e-3 && precision < 1e-4, "{run}");
+    }
+    let golden = place.read("golden/golden.toml");
+    let refused = place.run("compare --bless golden small.toml");
+    refused.bad(1, &["the state moved, so nothing was accepted", "compare --bless-state golden small.toml"]);
+    assert_eq!(place.read("golden/golden.toml"), golden);
+    place.run("compare --bless-state golden small.toml").good();
+    place.run("compare golden small.toml").good();
+}
+
+#[test]
+fn drawing_is_never_taken_for_physics() {
+    let Some(place) = with_golden() else { return };
+    // Another number of samples.
+    let coarse = place.run("compare golden small.toml --samples 1");
+    assert_eq!(coarse.status, Some(1));
+    assert!(coarse.out.contains("same state, drawn differently") && !coarse.out.contains("moved"), "{coarse:?}");
+    assert!(coarse.out.contains("14 states are the same"), "{coarse:?}");
+    // Another width of the driver's vectors.
+    place.run("compare --bless coarse small.toml --samples 1").good();
+    for width in ["256", "512"] {
+        let mut command = place.command(["compare", "coarse", "small.toml"]);
+        let wide = Ran::from(command.env("LP_NATIVE_VECTOR_WIDTH", width).output().unwrap());
+        assert!(wide.status == Some(0) && wide.out.contains("14 states are the same"), "{width}: {wide:?}");
+    }
+    // Other settings of PNG.
+    let path = place.path("golden/frame_00004.png");
+    let pixels = Pixels::read(&path).unwrap();
+    std::fs::create_dir(place.path("fast")).unwrap();
+    let localshape::output::Label::Frame(tags) = pixels.label.as_ref().unwrap() else { panic!("a frame") };
+    let fast = localshape::output::encode(pixels.size, &pixels.bytes, tags);
+    assert_ne!(fast.len(), std::fs::read(&path).unwrap().len());
+    std::fs::write(place.path("fast/frame_00004.png"), fast).unwrap();
+    let same = place.run("compare golden/frame_00004.png fast/frame_00004.png").good();
+    assert_eq!(same.out, "frame_00004.png: identical\n");
+    // Other colours, and other sizes.
+    place.write("small.toml", &(SMALL.to_owned() + "theme = 'dark'\n"));
+    let dark = place.run("compare golden small.toml");
+    assert!(
+        dark.out.contains("same state, drawn differently") && dark.out.contains("14 states are the same"),
+        "{dark:?}"
+    );
+    let large = place.run("compare golden small.toml --size 90x64");
+    assert!(large.out.contains("same state, drawn differently: 90×64 pixels instead of 96×64"), "{large:?}");
+    // So they are accepted without a word about states, and with the size that was asked for.
+    let accepted = place.run("compare --bless golden small.toml --size 90x64").good();
+    assert_eq!(accepted.out.matches("accepted").count(), 4, "{accepted:?}");
+    place.run("compare golden small.toml").good();
+}
+
+#[test]
+fn only_what_failed_is_rewritten() {
+    let Some(place) = with_golden() else { return };
+    let made = |name: &str| std::fs::metadata(place.path(format!("golden/{name}"))).unwrap().modified().unwrap();
+    let names = ["frame_00002.png", "frame_00006.png", "golden.toml"];
+    let before = names.map(made);
+    let mut broken = std::fs::read(place.path("golden/frame_00004.png")).unwrap();
+    std::fs::remove_file(place.path("golden/frame_00004.png")).unwrap();
+    let missing = place.run("compare golden small.toml");
+    assert!(missing.status == Some(1) && missing.out.contains("frame_00004.png: extra"), "{missing:?}");
+    place.run("compare --bless golden small.toml").good();
+    assert_eq!(std::fs::read(place.path("golden/frame_00004.png")).unwrap(), broken);
+    assert_eq!(names.map(made), before);
+    // A damaged picture is no pass, and what state it showed is not known.
+    broken.truncate(200);
+    std::fs::write(place.path("golden/frame_00004.png"), broken).unwrap();
+    let damaged = place.run("compare golden small.toml");
+    assert!(damaged.out.contains("frame_00004.png: unreadable: golden/frame_00004.png: "), "{damaged:?}");
+    place.run("compare --bless golden small.toml").bad(1, &["--bless-state"]);
+    place.run("compare --bless-state golden small.toml").good();
+    assert_eq!(names.map(made), before);
+    place.run("compare golden small.toml").good();
+}
+
+#[test]
+fn a_golden_that_contradicts_itself_never_passes() {
+    let Some(place) = with_golden() else { return };
+    let copy = |from: &str, to: &str| std::fs::copy(place.path(from), place.path(to)).map(drop).unwrap();
+    copy("golden/frame_00002.png", "golden/frame_00004.png");
+    let ran = place.run("compare golden golden");
+    assert!(ran.status == Some(1) && ran.out.contains("contradicts itself"), "{ran:?}");
+    let ran = place.run("compare golden small.toml");
+    assert!(ran.status == Some(1) && ran.out.contains("frame_00004.png: "), "{ran:?}");
+    place.run("compare --bless-state golden small.toml").good();
+    copy("golden/frame_00002.png", "golden/frame_00003.png");
+    let ran = place.run("compare golden golden");
+    assert!(ran.status == Some(1) && ran.out.contains("golden.toml does not know this picture"), "{ran:?}");
+    place.run("compare --bless golden small.toml").bad(1, &["--bless-state"]);
+    let ran = place.run("compare --bless-state golden small.toml");
+    assert!(ran.status == Some(0) && ran.out.contains("removed golden/frame_00003.png"), "{ran:?}");
+    place.run("compare golden small.toml").good();
+}
+
+#[test]
+fn a_golden_beside_a_folder_of_frames() {
+    let Some(place) = with_golden() else { return };
+    place.run("render small.toml -o all --states -q").good();
+    let same = place.run("compare golden all").good();
+    assert!(
+        same.out.contains("3 pictures: 3 identical\n14 states are the same\n4 more frames have no picture"),
+        "{same:?}"
+    );
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
+    place.run("render small.toml -o all --states -q --overwrite").good();
+    let moved = place.run("compare golden all").out;
+    assert!(moved.starts_with("state moved: Local shape, first at frame 1: node "), "{moved}");
+    let refused = place.run("compare --bless golden all");
+    refused.bad(1, &["--bless-state golden all"]);
+    place.run("compare --bless-state golden all").good();
+    place.run("compare golden small.toml").good();
+    // Without the archive most states of the record are not known.
+    place.write("small.toml", SMALL);
+    place.run("render small.toml -o few --frames 2,4,6 -q").good();
+    place.run("compare --bless-state golden few").bad(1, &["the golden records", "--states"]);
+}
+
+#[test]
+fn figures_have_goldens_too() {
+    let Some(place) = place() else { return };
+    place.write(
+        "sheet.toml",
+        "size = [360, 240]\n[sheet]\nscene = 'small.toml'\n[[sheet.column]]\ntime = 0.0\n[[sheet.column]]\ntime = 0.1\n\
+         [[sheet.row]]\nrun = 'Local shape'\n[[sheet.row]]\nrun = 'Mass-spring'\n",
+    );
+    let made = place.run("compare --bless golden sheet.toml");
+    assert_eq!(made.status, Some(0), "{made:?}");
+    assert_eq!(place.names("golden"), ["golden.toml", "sheet.png"]);
+    let same = place.run("compare golden sheet.toml").good();
+    assert!(same.out.contains("identical") && same.out.contains("4 states are the same"), "{same:?}");
+    place.run("figure sheet.toml -o drawn -q").good();
+    let pair = place.run("compare drawn/sheet.png drawn/sheet.png").good();
+    assert_eq!(pair.out, "sheet.png: identical\n");
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
+    let moved = place.run("compare golden sheet.toml").out;
+    assert!(moved.contains("state moved: Two cubes · Local shape, row 1, column 2"), "{moved}");
+    assert!(!moved.contains("column 1"), "{moved}");
+    place.run("compare golden sheet.toml --frames 1").bad(2, &["--frames is for scenes"]);
+}
+
+#[test]
+fn scenes_that_end_earlier_and_frames_that_are_not_there() {
+    let Some(place) = with_golden() else { return };
+    place.write("small.toml", &SMALL.replace("duration = 0.1", "duration = 0.05"));
+    let shorter = place.run("compare golden small.toml");
+    assert_eq!(shorter.status, Some(1));
+    assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");
+    assert!(shorter.out.contains("frame_00006.png: missing"), "{shorter:?}");
+    place.run("compare golden small.toml --frames 9").bad(2, &["there is no frame 9, the last one is 3"]);
+    place.run("compare golden absent.toml").bad(2, &["absent.toml: there is no such file"]);
+    place.run("compare golden small.toml --adapter nonsense").bad(3, &["nonsense"]);
+}

@@ -1,0 +1,133 @@
+//! The suite itself, as the tests of another project use it: what it says, what it makes, and what it refuses.
+
+use localshape::golden::Suite;
+use localshape::gpu::{AdapterChoice, Gpu};
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+const SCENE: &str = "
+    time = { duration = 0.1, frames_per_second = 60 }
+    gravity = [0, -9.8, 0]
+    body.lattice = { cells = [1, 1, 1], side = 0.1 }
+    body.velocity = [0.1, 0, 0]
+    view.size = [96, 64]
+    [[run]]
+    name = 'Local shape'
+    model = { kind = 'shape-based', stiffness = 1e4 }
+";
+
+/// What a test of another project would be. It runs in a process of its own, for it is told by the environment.
+#[test]
+#[ignore = "started by the tests below"]
+fn of_another_project() {
+    let mut goldens = Suite::new("goldens").reports("reports");
+    for scene in std::env::var("SCENES").expect("set by the tests below").split(' ') {
+        goldens.scene(scene);
+    }
+    goldens.finish();
+}
+
+/// Runs it and returns whether it passed and what it said.
+fn run(place: &TempDir, scenes: &str, update: &str) -> (bool, String) {
+    let mut command = Command::new(std::env::current_exe().expect("this test"));
+    command.args(["--exact", "suite::of_another_project", "--ignored", "--nocapture"]).current_dir(place.path());
+    command.env("SCENES", scenes).env("UPDATE_GOLDENS", update).env("RUST_BACKTRACE", "0");
+    let output = command.output().expect("this test starts");
+    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text")).concat();
+    assert!(text.contains("running 1 test"), "{text}");
+    (output.status.success(), text)
+}
+
+fn write(place: &TempDir, name: &str, text: &str) {
+    std::fs::write(place.path().join(name), text).expect("a file");
+}
+
+#[test]
+fn a_golden_is_missed_made_kept_renewed_and_guarded() {
+    if Gpu::new(&AdapterChoice::Cpu).is_err() {
+        return;
+    }
+    let place = tempfile::tempdir().expect("a folder");
+    write(&place, "drop.toml", SCENE);
+    let (passed, text) = run(&place, "drop.toml", "");
+    assert!(!passed && text.contains("drop: the golden goldens/drop is missing"), "{text}");
+    assert!(text.contains("localshape compare --bless goldens/drop drop.toml"), "{text}");
+    assert!(text.contains("UPDATE_GOLDENS=1 cargo test"), "{text}");
+    assert!(!place.path().join("goldens").exists(), "nothing is made unasked");
+
+    let (passed, text) = run(&place, "drop.toml", "1");
+    assert!(passed && text.contains("drop: accepted goldens/drop/frame_00002.png"), "{text}");
+    assert!(run(&place, "drop.toml", "").0);
+
+    // Drawn differently: renewed if asked for.
+    write(&place, "drop.toml", &SCENE.replace("view.size", "view.theme = 'dark'\nview.size"));
+    let (passed, text) = run(&place, "drop.toml", "");
+    assert!(
+        !passed && text.contains("same state, drawn differently") && text.contains("look at it in reports/drop.html"),
+        "{text}"
+    );
+    assert!(place.path().join("reports/drop.html").exists());
+    assert!(run(&place, "drop.toml", "1").0 && run(&place, "drop.toml", "").0);
+
+    // The state moved: not so easily.
+    write(&place, "drop.toml", &SCENE.replace("0.1, 0, 0]", "0.2, 0, 0]"));
+    let record = std::fs::read(place.path().join("goldens/drop/golden.toml")).expect("a record");
+    let (passed, text) = run(&place, "drop.toml", "1");
+    assert!(!passed && text.contains("state moved: Local shape, first at frame 0: "), "{text}");
+    assert!(text.contains("UPDATE_GOLDENS=state cargo test"), "{text}");
+    assert_eq!(std::fs::read(place.path().join("goldens/drop/golden.toml")).expect("a record"), record);
+    assert!(run(&place, "drop.toml", "state").0 && run(&place, "drop.toml", "").0);
+}
+
+#[test]
+fn goldens_that_no_scene_stands_for_and_scenes_that_are_none_fail() {
+    if Gpu::new(&AdapterChoice::Cpu).is_err() {
+        return;
+    }
+    let place = tempfile::tempdir().expect("a folder");
+    write(&place, "one.toml", SCENE);
+    write(&place, "two.toml", SCENE);
+    assert!(run(&place, "one.toml two.toml", "1").0);
+    let (passed, text) = run(&place, "one.toml", "1");
+    assert!(!passed && text.contains("two: no scene of this test has this golden; delete goldens/two"), "{text}");
+    std::fs::remove_dir_all(place.path().join("goldens/two")).expect("a golden");
+    write(&place, "two.toml", "body = 7");
+    let (passed, text) = run(&place, "one.toml two.toml one.toml three.toml", "");
+    assert!(!passed && text.contains("two: two.toml:1:"), "{text}");
+    assert!(text.contains("one: two scenes of this name share one golden"), "{text}");
+    assert!(text.contains("three: ") && text.contains("three.toml"), "{text}");
+    // A picture cut short is no pass.
+    let picture = place.path().join("goldens/one/frame_00002.png");
+    let bytes = std::fs::read(&picture).expect("a picture");
+    std::fs::write(&picture, &bytes[..bytes.len() / 2]).expect("a picture");
+    let (passed, text) = run(&place, "one.toml", "1");
+    assert!(!passed && text.contains("damaged or cut short") && text.contains("UPDATE_GOLDENS=state"), "{text}");
+}
+
+#[test]
+fn without_an_adapter_states_are_compared() {
+    if Gpu::new(&AdapterChoice::Cpu).is_err() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let place = tempfile::tempdir().expect("a folder");
+    write(&place, "drop.toml", SCENE);
+    assert!(run(&place, "drop.toml", "1").0);
+    let blind = |require: &str| {
+        let mut command = Command::new(std::env::current_exe().expect("this test"));
+        command.args(["--exact", "suite::of_another_project", "--ignored", "--nocapture"]).current_dir(place.path());
+        command.env("SCENES", "drop.toml").env("VK_DRIVER_FILES", Path::new("/nowhere.json"));
+        command
+            .env("VK_ICD_FILENAMES", "/nowhere.json")
+            .env("LOCALSHAPE_REQUIRE_GPU", require)
+            .env("UPDATE_GOLDENS", "");
+        let output = command.output().expect("this test starts");
+        (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (passed, text) = blind("");
+    assert!(passed && text.contains("states are compared, but no pictures"), "{text}");
+    assert!(!blind("1").0);
+    write(&place, "drop.toml", &SCENE.replace("1e4", "1.0001e4").replace("0.1, 0, 0]", "0.1, 0.1, 0]"));
+    let (passed, text) = blind("");
+    assert!(!passed && text.contains("state moved: Local shape, first at frame 0"), "{text}");
+}
