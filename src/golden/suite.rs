@@ -113,16 +113,16 @@ impl Suite {
         }
         let update = std::env::var(UPDATE).unwrap_or_default();
         let is_renewed = matches!(update.as_str(), "1" | "state") && self.adapter.is_none();
-        let refused = match comparison.bless(update == "state") {
-            _ if !is_renewed => String::new(),
-            Ok(blessed) => {
+        let refused = match is_renewed.then(|| comparison.bless(update == "state")) {
+            None => format!("\nor accept all with: {UPDATE}=1 cargo test, and states that moved with: {UPDATE}=state"),
+            Some(Ok(blessed)) => {
                 eprint!("{name}: {blessed}");
                 return Ok(());
             }
-            Err(BlessError::StateMoved { .. }) => {
+            Some(Err(BlessError::StateMoved { .. })) => {
                 format!("\nthe state moved, so nothing was accepted; if that is meant: {UPDATE}=state cargo test")
             }
-            Err(error) => format!("\n{error}"),
+            Some(Err(error)) => format!("\n{error}"),
         };
         let report = self.reports.join(format!("{name}.html"));
         let written =
@@ -131,8 +131,7 @@ impl Suite {
             Ok(()) => format!("look at it in {}", report.display()),
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
         };
-        let all = if refused.is_empty() { format!("\nor accept all with: {UPDATE}=1 cargo test") } else { refused };
-        Err(format!("{}\n{seen}{all}", comparison.to_string().trim_end()))
+        Err(format!("{}\n{seen}{refused}", comparison.to_string().trim_end()))
     }
 
     /// The device to draw with, opened once; `None` without any adapter.
