@@ -130,7 +130,10 @@ impl Report {
                 ("sign in words", if self.passes { "Passed:" } else { "Failed:" }),
                 ("title", &escaped(&self.title)),
                 ("verdict", &escaped(&self.verdict)),
-                ("findings", &self.findings.iter().map(|text| format!("<p>{}</p>\n", escaped(text))).collect::<String>()),
+                (
+                    "findings",
+                    &self.findings.iter().map(|text| format!("<p>{}</p>\n", escaped(text))).collect::<String>(),
+                ),
                 ("sides", &self.sides()),
                 ("accept", &self.accept_box()),
                 ("pictures", &self.list()),
