@@ -315,7 +315,7 @@ impl Drop for Browser {
 
 /// The browser's program.
 fn program() -> Option<OsString> {
-    if let Some(named) = std::env::var_os("LOCALSHAPE_BROWSER") {
+    if let Some(named) = std::env::var_os("LOCALSHAPE_BROWSER").filter(|named| !named.is_empty()) {
         return Some(named);
     }
     let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();

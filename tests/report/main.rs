@@ -193,7 +193,7 @@ fn nothing_is_fetched_and_nothing_hostile_runs() {
     }
     assert_eq!(browser.value("document.querySelectorAll('img[src=x]').length + Number('broken' in window)"), 0);
     let requests = browser.requests();
-    assert!(requests.iter().any(|url| *url == address), "the page itself is seen to be asked for: {requests:?}");
+    assert!(requests.contains(&address), "the page itself is seen to be asked for: {requests:?}");
     let foreign: Vec<_> = requests.iter().filter(|url| **url != address && !url.starts_with("data:")).collect();
     assert!(foreign.is_empty(), "{foreign:?}");
     assert_eq!(browser.complaints(), [""; 0]);
