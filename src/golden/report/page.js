@@ -163,7 +163,7 @@
   let scaling = 1; // and how large its unit is (px).
   let marks = null; // What moves in the strip.
 
-  /** Displacements of all runs on a logarithmic scale, with lanes for what has no place on it. Returns where it ends. */
+  /** Displacements of all runs on a logarithmic scale; lanes for what has no place on it. Returns where they end. */
   function drawDisplacements({ draw, hairline, tick, rowName, place, cell, stride, wide }, top) {
     const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
     const key = (run, x, y) => {
@@ -269,7 +269,7 @@
   }
 
   /** Pixels of each picture beside how many may differ, and a mark for each picture. Returns where the axis lies. */
-  function drawPixels({ draw, hairline, tick, rowName, wide }, top) {
+  function drawPixels({ draw, hairline, tick, rowName, left, right, wide }, top) {
     if (!wide) top += 22;
     rowName(top, "Pixels", "that differ visibly");
     const tall = 66;
@@ -309,7 +309,10 @@
           shapes[`${colour}-top`] += `M${x - bar / 2} ${base - rise(sheet.visible)}h${bar}`;
         }
         if (sheet.visible === null && !sheet.passes) shapes.incomparable += `M${x - 4} ${base - 14}l8 8m0 -8l-8 8`;
-        if (sheet.allowed > 0) shapes.limit += `M${x - gap / 2} ${base - rise(sheet.allowed)}h${gap}`;
+        if (sheet.allowed > 0) {
+          const [from, to] = [Math.max(x - gap / 2, left), Math.min(x + gap / 2, right)];
+          shapes.limit += `M${from} ${base - rise(sheet.allowed)}H${to}`;
+        }
         const [x0, y0] = [x - square / 2, base + 10];
         const mark = square >= 6 ? 10 : sheet.passes ? 4 : 8; // Too small for its sign, what failed is taller.
         shapes[sheet.passes ? "quiet" : "alarm"] += `M${x0} ${y0}h${square}v${mark}h${-square}Z`;
