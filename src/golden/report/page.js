@@ -1,5 +1,5 @@
 "use strict";
-// What the page does. All that it shows stands in the element `data`, as `Report` in `src/golden/report/mod.rs` describes it.
+// What the page does. All that it shows stands in the element `data`: see `Report` in `src/golden/report/mod.rs`.
 (() => {
   /** How long each picture is shown while blinking (ms): two changes a second, well below what may harm. */
   const BLINK = 500;
@@ -33,8 +33,17 @@
   const the = (id) => document.getElementById(id);
   const reduced = matchMedia("(prefers-reduced-motion: reduce)");
   const state = {
-    at: 0, mode: "side", only: false, divider: 50, shown: "expected", blinks: !reduced.matches,
-    zoom: null, x: 0, y: 0, // `null`: as large as fits. The place is that of the middle of the views, in the picture's pixels.
+    at: 0,
+    mode: "side",
+    only: false,
+    divider: 50,
+    shown: "expected",
+    blinks: !reduced.matches,
+    // Device pixels for each pixel of the picture; `null`: as large as fits.
+    zoom: null,
+    // What is in the middle of the views, in pixels of the picture.
+    x: 0,
+    y: 0,
   };
 
   /** An element with properties and children; classes, attributes and data by `class`, and names with a dash. */
@@ -52,7 +61,13 @@
   const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u202f");
   const plural = (count, word) => `${grouped(count)} ${word}${count === 1 ? "" : "s"}`;
 
-  const PREFIXES = [[1, "m"], [1e-3, "mm"], [1e-6, "µm"], [1e-9, "nm"], [1e-12, "pm"]];
+  const PREFIXES = [
+    [1, "m"],
+    [1e-3, "mm"],
+    [1e-6, "µm"],
+    [1e-9, "nm"],
+    [1e-12, "pm"],
+  ];
   /** A length (m) with few digits and a fitting unit. */
   function length(metres, digits = 2) {
     const found = PREFIXES.find(([size]) => metres >= size * 0.9999);
@@ -61,12 +76,14 @@
     return `${scaled >= 100 ? Math.round(scaled) : Number(scaled.toPrecision(digits))} ${found[1]}`;
   }
 
-  const clock = (seconds) => (seconds < 0.9995 ? `${Math.round(seconds * 1e4) / 10} ms` : `${Math.round(seconds * 1e3) / 1e3} s`);
+  const clock = (seconds) =>
+    seconds < 0.9995 ? `${Math.round(seconds * 1e4) / 10} ms` : `${Math.round(seconds * 1e3) / 1e3} s`;
 
   // The strip: what happened over the whole sequence.
 
   /** Where something happened: frames if the sequence has any, else pictures one after the other. */
-  const framed = report.courses.some((course) => course.frames.length > 0) || sheets.every((sheet) => sheet.frame !== null);
+  const framed =
+    report.courses.some((course) => course.frames.length > 0) || sheets.every((sheet) => sheet.frame !== null);
   const stations = (() => {
     const found = new Map();
     const station = (key, time) => {
@@ -95,10 +112,14 @@
   function told(moment, precision) {
     const node = moment.node === null ? "" : ` (node ${moment.node})`;
     switch (kind(moment, precision)) {
-      case "same": return "same state";
-      case "unknown": return "moved, nobody knows how far";
-      case "below": return precision > 0 ? `moved by less than ${length(precision)}` : "another state, no node displaced";
-      default: return `moved by ${length(moment.displacement)}${node}`;
+      case "same":
+        return "same state";
+      case "unknown":
+        return "moved, nobody knows how far";
+      case "below":
+        return precision > 0 ? `moved by less than ${length(precision)}` : "another state, no node displaced";
+      default:
+        return `moved by ${length(moment.displacement)}${node}`;
     }
   }
 
@@ -123,11 +144,16 @@
   function summary() {
     const parts = report.courses.map((course) => {
       const moved = course.frames.filter((moment) => moment.moved);
-      if (moved.length === 0) return `${course.run}: the same states in all of ${plural(course.frames.length, "frame")}.`;
+      if (moved.length === 0)
+        return `${course.run}: the same states in all of ${plural(course.frames.length, "frame")}.`;
       const known = moved.filter((moment) => kind(moment, course.precision) === "known");
-      const most = known.reduce((most, moment) => (most && most.displacement >= moment.displacement ? most : moment), null);
+      const most = known.reduce(
+        (most, moment) => (most && most.displacement >= moment.displacement ? most : moment),
+        null,
+      );
       const far = most ? `; most at frame ${most.frame}: ${length(most.displacement)}` : "";
-      return `${course.run}: ${moved.length} of ${plural(course.frames.length, "frame")} moved, first at frame ${moved[0].frame}${far}.`;
+      const all = plural(course.frames.length, "frame");
+      return `${course.run}: ${moved.length} of ${all} moved, first at frame ${moved[0].frame}${far}.`;
     });
     return parts.join(" ");
   }
@@ -137,133 +163,113 @@
   let scaling = 1; // and how large its unit is (px).
   let marks = null; // What moves in the strip.
 
-  function drawStrip() {
-    const strip = the("strip");
-    if (strip.clientWidth === 0 || stations.length === 0) return;
-    const unit = parseFloat(getComputedStyle(strip).fontSize) / 14; // All is drawn for letters of 14 px.
-    const width = strip.clientWidth / unit;
-    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-    svg.setAttribute("aria-hidden", "true");
-    const draw = (name, attributes, text) => {
-      const element = document.createElementNS(svg.namespaceURI, name);
-      for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-      if (text !== undefined) element.textContent = text;
-      svg.append(element);
-      return element;
+  /** Displacements of all runs on a logarithmic scale; lanes for what has no place on it. Returns where they end. */
+  function drawDisplacements({ draw, hairline, tick, rowName, place, cell, stride, wide }, top) {
+    const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
+    const key = (run, x, y) => {
+      draw("line", { x1: x, x2: x + 30, y1: y, y2: y, class: `run run-${(run % 4) + 1}` });
+      draw("text", { x: x + 40, y: y + 5 }, short(report.courses[run].run));
     };
-    const wide = width >= 720;
-    const left = wide ? 208 : 78; // What is left of the rows: names, if there is room, and ticks.
-    const right = width - 14;
-    const first = stations[0].key;
-    const span = stations.at(-1).key - first;
-    const stride = stations.slice(1).reduce((least, station, index) => Math.min(least, station.key - stations[index].key), Math.max(span, 1));
-    const cell = (right - left) / (span / stride + 1);
-    const place = (key) => left + ((key - first) / stride + 0.5) * cell;
-    placed = stations.map((station) => place(station.key));
-    scaling = unit;
-    const hairline = (y, kind = "hairline") => draw("line", { x1: left, x2: right, y1: y, y2: y, class: kind });
-    const tick = (y, words) => draw("text", { x: left - 10, y: y + 5, class: "end" }, words);
-    const rowName = (y, words, unit) => {
-      draw("text", { x: 0, y: wide ? y + 14 : y - 6, class: "row-name" }, words);
-      if (wide) draw("text", { x: 0, y: y + 34 }, unit);
-    };
-    let top = 30;
-
-    if (report.courses.length > 0) {
-      const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
-      const key = (run, x, y) => {
-        draw("line", { x1: x, x2: x + 30, y1: y, y2: y, class: `run run-${(run % 4) + 1}` });
-        draw("text", { x: x + 40, y: y + 5 }, short(report.courses[run].run));
-      };
-      if (!wide) {
-        top += 16;
-        draw("text", { x: 0, y: top, class: "row-name" }, "Displacement");
-        report.courses.forEach((_, run) => key(run, 164 * (run % 2), (top += run % 2 ? 0 : 24) - 5));
-        top += 18;
-      } else rowName(top, "Displacement", "largest of a node");
-      const kinds = new Set();
-      const known = [];
-      report.courses.forEach((course) => course.frames.forEach((moment) => {
+    if (!wide) {
+      top += 16;
+      draw("text", { x: 0, y: top, class: "row-name" }, "Displacement");
+      report.courses.forEach((_, run) => key(run, 164 * (run % 2), (top += run % 2 ? 0 : 24) - 5));
+      top += 18;
+    } else rowName(top, "Displacement", "largest of a node");
+    const kinds = new Set();
+    const known = [];
+    report.courses.forEach((course) =>
+      course.frames.forEach((moment) => {
         const its = kind(moment, course.precision);
         kinds.add(its);
         if (its === "known") known.push(moment.displacement);
-      }));
-      const keys = top + 62;
-      let y = top + 8;
-      const lanes = { unknown: y };
-      if (kinds.has("unknown")) { tick(y, "unknown"); y += 22; }
-      let scale = null;
-      if (known.length > 0) {
-        const lowest = Math.floor(Math.log10(known.reduce((a, b) => Math.min(a, b))) + 1e-9);
-        const highest = Math.max(Math.ceil(Math.log10(known.reduce((a, b) => Math.max(a, b))) - 1e-9), lowest + 1);
-        const room = clamp((highest - lowest) * 30, 96, 150);
-        const start = y;
-        scale = (metres) => start + (room * (highest - Math.log10(metres))) / (highest - lowest);
-        const each = Math.ceil(((highest - lowest) * 22) / room);
-        for (let power = lowest; power <= highest; power += 1) {
-          hairline(scale(10 ** power));
-          if ((highest - power) % each === 0) tick(scale(10 ** power), length(10 ** power, 1));
-        }
-        y = start + room + 22;
-      }
-      if (kinds.has("below")) {
-        const precisions = new Set(report.courses.map((course) => course.precision));
-        const precision = report.courses[0].precision;
-        tick(y, precisions.size > 1 ? "below" : precision > 0 ? `< ${length(precision, 1)}` : "0 m");
-        hairline(y);
-        lanes.below = y;
-        y += 22;
-      }
-      tick(y, "same");
-      lanes.same = y;
-      const level = (moment, precision) => {
-        const its = kind(moment, precision);
-        return its === "known" ? scale(moment.displacement) : lanes[its];
-      };
-      // What moved is filled, from the axis to the furthest of all runs; where nobody knows how far, there is no telling.
-      let area = "";
-      let anywhere = "";
-      stations.forEach((station, index) => {
-        let highest = lanes.same;
-        let unknown = false;
-        report.courses.forEach((course, run) => {
-          const moment = station.moments[run];
-          if (!moment || !moment.moved) return;
-          highest = Math.min(highest, level(moment, course.precision));
-          unknown ||= kind(moment, course.precision) === "unknown";
-        });
-        const x = placed[index];
-        if (unknown) anywhere += `M${x - cell / 2} ${lanes.same}V${lanes.unknown}h${cell}V${lanes.same}Z`;
-        else if (highest < lanes.same) area += `M${x - cell / 2} ${lanes.same}V${highest}h${cell}V${lanes.same}Z`;
-      });
-      draw("path", { d: area, class: "alarm-area" });
-      hairline(lanes.same, "axis");
-      draw("path", { d: anywhere, class: "anywhere" });
-      report.courses.forEach((course, run) => {
-        const colour = `run-${(run % 4) + 1}`;
-        let line = "";
-        let before = null;
-        const dots = [];
-        course.frames.forEach((moment, index) => {
-          const its = kind(moment, course.precision);
-          const [x, height] = [place(moment.frame), level(moment, course.precision)];
-          const joined = before && before.its === its && moment.frame - before.frame <= stride;
-          line += `${joined ? "L" : "M"}${x.toFixed(2)} ${height.toFixed(2)}`;
-          const next = course.frames[index + 1];
-          const alone = !joined && !(next && kind(next, course.precision) === its);
-          if ((cell >= 9 && its !== "same") || alone) dots.push([x, height, its]);
-          before = { its, frame: moment.frame };
-        });
-        draw("path", { d: line, class: `run ${colour}` });
-        for (const [cx, cy, its] of dots) {
-          draw("circle", { cx, cy, r: its === "same" ? 1.5 : 3, class: `dot ${colour}${its === "known" ? "" : " hollow"}` });
-        }
-        if (wide) key(run, 0, keys + 24 * run);
-      });
-      top = Math.max(y, wide ? keys + 24 * report.courses.length : 0) + 30;
+      }),
+    );
+    const keys = top + 62;
+    let y = top + 8;
+    const lanes = { unknown: y };
+    if (kinds.has("unknown")) {
+      tick(y, "unknown");
+      y += 22;
     }
+    let scale = null;
+    if (known.length > 0) {
+      const lowest = Math.floor(Math.log10(known.reduce((a, b) => Math.min(a, b))) + 1e-9);
+      const highest = Math.max(Math.ceil(Math.log10(known.reduce((a, b) => Math.max(a, b))) - 1e-9), lowest + 1);
+      const room = clamp((highest - lowest) * 30, 96, 150);
+      const start = y;
+      scale = (metres) => start + (room * (highest - Math.log10(metres))) / (highest - lowest);
+      const each = Math.ceil(((highest - lowest) * 22) / room);
+      for (let power = highest; power >= lowest; power -= each) {
+        hairline(scale(10 ** power));
+        tick(scale(10 ** power), length(10 ** power, 1));
+      }
+      y = start + room + 22;
+    }
+    if (kinds.has("below")) {
+      const precisions = new Set(report.courses.map((course) => course.precision));
+      const precision = report.courses[0].precision;
+      tick(y, precisions.size > 1 ? "below" : precision > 0 ? `< ${length(precision, 1)}` : "0 m");
+      hairline(y);
+      lanes.below = y;
+      y += 22;
+    }
+    tick(y, "same");
+    lanes.same = y;
+    const level = (moment, precision) => {
+      const its = kind(moment, precision);
+      return its === "known" ? scale(moment.displacement) : lanes[its];
+    };
+    // What moved is filled, from the axis to the furthest of all runs; where nobody knows how far, there is no telling.
+    let area = "";
+    let anywhere = "";
+    stations.forEach((station, index) => {
+      let highest = lanes.same;
+      let unknown = false;
+      report.courses.forEach((course, run) => {
+        const moment = station.moments[run];
+        if (!moment || !moment.moved) return;
+        highest = Math.min(highest, level(moment, course.precision));
+        unknown ||= kind(moment, course.precision) === "unknown";
+      });
+      const x = placed[index];
+      if (unknown) anywhere += `M${x - cell / 2} ${lanes.same}V${lanes.unknown}h${cell}V${lanes.same}Z`;
+      else if (highest < lanes.same) area += `M${x - cell / 2} ${lanes.same}V${highest}h${cell}V${lanes.same}Z`;
+    });
+    draw("path", { d: area, class: "alarm-area" });
+    hairline(lanes.same, "axis");
+    draw("path", { d: anywhere, class: "anywhere" });
+    report.courses.forEach((course, run) => {
+      const colour = `run-${(run % 4) + 1}`;
+      let line = "";
+      let before = null;
+      const dots = [];
+      course.frames.forEach((moment, index) => {
+        const its = kind(moment, course.precision);
+        const [x, height] = [place(moment.frame), level(moment, course.precision)];
+        const joined = before && before.its === its && moment.frame - before.frame <= stride;
+        line += `${joined ? "L" : "M"}${x.toFixed(2)} ${height.toFixed(2)}`;
+        const next = course.frames[index + 1];
+        const alone = !joined && !(next && kind(next, course.precision) === its);
+        if ((cell >= 9 && its !== "same") || alone) dots.push([x, height, its]);
+        before = { its, frame: moment.frame };
+      });
+      draw("path", { d: line, class: `run ${colour}` });
+      for (const [cx, cy, its] of dots) {
+        draw("circle", {
+          cx,
+          cy,
+          r: its === "same" ? 1.5 : 3,
+          class: `dot ${colour}${its === "known" ? "" : " hollow"}`,
+        });
+      }
+      if (wide) key(run, 0, keys + 24 * run);
+    });
+    return Math.max(y, wide ? keys + 24 * report.courses.length : 0) + 30;
+  }
 
-    // Pixels of each picture beside how many may differ.
+  /** Pixels of each picture beside how many may differ, and a mark for each picture. Returns where the axis lies. */
+  function drawPixels({ draw, hairline, tick, rowName, left, right, wide }, top) {
     if (!wide) top += 22;
     rowName(top, "Pixels", "that differ visibly");
     const tall = 66;
@@ -282,30 +288,48 @@
     const gap = places.slice(1).reduce((least, x, index) => Math.min(least, x - places[index]), 20);
     const bar = gap < 6 ? gap : Math.min(gap * 0.7, 10);
     const square = clamp(gap < 4 ? gap : gap * 0.7, 1.5, 10);
-    const mark = square >= 6 ? 10 : 5;
-    const shapes = { "quiet-area": "", "alarm-area": "", "quiet-top": "", "alarm-top": "", quiet: "", alarm: "", slash: "", limit: "", incomparable: "" };
-    stations.forEach((station, index) => station.sheets.forEach((number) => {
-      const sheet = sheets[number];
-      const x = placed[index];
-      if (sheet.visible > 0) {
-        const colour = sheet.visible > (sheet.allowed ?? 0) ? "alarm" : "quiet";
-        shapes[`${colour}-area`] += `M${x - bar / 2} ${base}v${-rise(sheet.visible)}h${bar}V${base}Z`;
-        shapes[`${colour}-top`] += `M${x - bar / 2} ${base - rise(sheet.visible)}h${bar}`;
-      }
-      if (sheet.visible === null && !sheet.passes) shapes.incomparable += `M${x - 4} ${base - 14}l8 8m0 -8l-8 8`;
-      if (sheet.allowed > 0) shapes.limit += `M${x - gap / 2} ${base - rise(sheet.allowed)}h${gap}`;
-      const [x0, y0] = [x - square / 2, base + 10];
-      shapes[sheet.passes ? "quiet" : "alarm"] += `M${x0} ${y0}h${square}v${mark}h${-square}Z`;
-      if (!sheet.passes && square >= 6) shapes.slash += `M${x0} ${y0 + mark}l${square} ${-mark}`;
-    }));
+    const shapes = {
+      "quiet-area": "",
+      "alarm-area": "",
+      "quiet-top": "",
+      "alarm-top": "",
+      quiet: "",
+      alarm: "",
+      slash: "",
+      limit: "",
+      incomparable: "",
+    };
+    stations.forEach((station, index) =>
+      station.sheets.forEach((number) => {
+        const sheet = sheets[number];
+        const x = placed[index];
+        if (sheet.visible > 0) {
+          const colour = sheet.visible > (sheet.allowed ?? 0) ? "alarm" : "quiet";
+          shapes[`${colour}-area`] += `M${x - bar / 2} ${base}v${-rise(sheet.visible)}h${bar}V${base}Z`;
+          shapes[`${colour}-top`] += `M${x - bar / 2} ${base - rise(sheet.visible)}h${bar}`;
+        }
+        if (sheet.visible === null && !sheet.passes) shapes.incomparable += `M${x - 4} ${base - 14}l8 8m0 -8l-8 8`;
+        if (sheet.allowed > 0) {
+          const [from, to] = [Math.max(x - gap / 2, left), Math.min(x + gap / 2, right)];
+          shapes.limit += `M${from} ${base - rise(sheet.allowed)}H${to}`;
+        }
+        const [x0, y0] = [x - square / 2, base + 10];
+        const mark = square >= 6 ? 10 : sheet.passes ? 4 : 8; // Too small for its sign, what failed is taller.
+        shapes[sheet.passes ? "quiet" : "alarm"] += `M${x0} ${y0}h${square}v${mark}h${-square}Z`;
+        if (!sheet.passes && square >= 6) shapes.slash += `M${x0} ${y0 + mark}l${square} ${-mark}`;
+      }),
+    );
     for (const [name, d] of Object.entries(shapes)) draw("path", { d, class: name });
 
     if (wide && sheets.some((sheet) => sheet.allowed > 0)) {
       draw("line", { x1: 0, x2: 30, y1: top + 52, y2: top + 52, class: "limit" });
       draw("text", { x: 40, y: top + 57 }, "allowed");
     }
+    return base;
+  }
 
-    // The axis of frames.
+  /** Numbers of frames below an axis. Returns where they stand. */
+  function drawAxis({ draw, place, left, right, first, span }, base) {
     const foot = base + 42;
     const digits = String(stations.at(-1).key).length * 9 + 24;
     const rough = (span * digits) / Math.max(right - left, 1);
@@ -315,13 +339,52 @@
       draw("text", { x: place(key), y: foot, class: "middle" }, String(key));
     }
     draw("text", { x: left - 10, y: foot, class: "end" }, framed ? "frame" : "picture");
+    return foot;
+  }
 
+  function drawStrip() {
+    const strip = the("strip");
+    if (strip.clientWidth === 0 || stations.length === 0) return;
+    const unit = parseFloat(getComputedStyle(strip).fontSize) / 14; // All is drawn for letters of 14 px.
+    const width = strip.clientWidth / unit;
+    const { namespaceURI } = document.querySelector("svg");
+    const svg = document.createElementNS(namespaceURI, "svg");
+    svg.setAttribute("aria-hidden", "true");
+    const draw = (name, attributes, text) => {
+      const element = document.createElementNS(namespaceURI, name);
+      for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+      if (text !== undefined) element.textContent = text;
+      svg.append(element);
+      return element;
+    };
+    const wide = width >= 720;
+    const left = wide ? 208 : 78; // What is left of the rows: names, if there is room, and ticks.
+    const right = width - 14;
+    const first = stations[0].key;
+    const span = stations.at(-1).key - first;
+    const paced = stations.filter((station) => report.courses.length === 0 || station.moments.length > 0);
+    const paces = paced.slice(1).map((station, index) => station.key - paced[index].key);
+    const stride = paces.reduce((least, pace) => Math.min(least, pace), Math.max(span, 1));
+    const cell = (right - left) / (span / stride + 1);
+    const place = (key) => left + ((key - first) / stride + 0.5) * cell;
+    placed = stations.map((station) => place(station.key));
+    scaling = unit;
+    const hairline = (y, kind = "hairline") => draw("line", { x1: left, x2: right, y1: y, y2: y, class: kind });
+    const tick = (y, words) => draw("text", { x: left - 10, y: y + 5, class: "end" }, words);
+    const rowName = (y, words, unit) => {
+      draw("text", { x: 0, y: wide ? y + 14 : y - 6, class: "row-name" }, words);
+      if (wide) draw("text", { x: 0, y: y + 34 }, unit);
+    };
+    const chart = { draw, hairline, tick, rowName, place, left, right, cell, stride, wide, first, span };
+    const base = drawPixels(chart, report.courses.length > 0 ? drawDisplacements(chart, 30) : 30);
+    const foot = drawAxis(chart, base);
     marks = {
       pointed: draw("line", { y1: 20, y2: base + 24, class: "pointed" }),
       present: draw("line", { y1: 20, y2: base + 24, class: "present" }),
       ring: draw("rect", { y: 0.5, height: 20, rx: 10, class: "ring" }),
       number: draw("text", { y: 15.5, class: "ring-text middle" }),
-      left, right,
+      left,
+      right,
     };
     svg.setAttribute("viewBox", `0 0 ${width} ${foot + 8}`);
     strip.replaceChildren(svg);
@@ -369,16 +432,29 @@
   }
 
   function tabulate() {
-    const head = [framed ? "Frame" : "Picture", "Time", ...report.courses.map((course) => course.run), "Picture", "Pixels"];
+    const head = [
+      framed ? "Frame" : "Picture",
+      "Time",
+      ...report.courses.map((course) => course.run),
+      "Picture",
+      "Pixels",
+    ];
     const rows = stations.map((station) => {
       const names = station.sheets.map((index) => sheets[index].name).join(", ");
-      const runs = report.courses.map((course, run) => (station.moments[run] ? told(station.moments[run], course.precision) : "–"));
+      const runs = report.courses.map((course, run) =>
+        station.moments[run] ? told(station.moments[run], course.precision) : "–",
+      );
       const counts = station.sheets.map((index) => pixels(sheets[index])).join(", ");
       const time = station.time === null || station.time === undefined ? "–" : clock(station.time);
       return [station.key, time, ...runs, names || "–", counts || "–"];
     });
     const row = (cells, name) => make("tr", {}, ...cells.map((cell) => make(name, {}, String(cell))));
-    return make("table", {}, make("thead", {}, row(head, "th")), make("tbody", {}, ...rows.map((cells) => row(cells, "td"))));
+    return make(
+      "table",
+      {},
+      make("thead", {}, row(head, "th")),
+      make("tbody", {}, ...rows.map((cells) => row(cells, "td"))),
+    );
   }
 
   // The viewer.
@@ -397,8 +473,11 @@
       return "not embedded in this report";
     }
     if (sheet.verdict === "missing") return side === "actual" ? "missing" : "not embedded in this report";
-    if (sheet.verdict === "extra") return side === "expected" ? "missing: nothing like it was expected" : "not embedded in this report";
-    return sheet.verdict === "unreadable" ? "unreadable, or not embedded in this report" : "not embedded in this report";
+    if (sheet.verdict === "extra")
+      return side === "expected" ? "missing: nothing like it was expected" : "not embedded in this report";
+    return sheet.verdict === "unreadable"
+      ? "unreadable, or not embedded in this report"
+      : "not embedded in this report";
   }
 
   function buildStage() {
@@ -407,7 +486,8 @@
       const view = make("div", { class: "view" });
       const caption = make("figcaption");
       if (sides.length === 1) caption.append(make("strong", {}, TITLES[sides[0]]), make("span", { class: "size" }));
-      else if (state.mode === "slider") caption.append(make("strong", {}, TITLES.expected), make("strong", {}, TITLES.actual));
+      else if (state.mode === "slider")
+        caption.append(make("strong", {}, TITLES.expected), make("strong", {}, TITLES.actual));
       else caption.append(...sides.map((side) => make("b", { "data-side": side }, TITLES[side])));
       for (const side of sides) {
         const box = make("div", { class: "layer", "data-side": side });
@@ -435,13 +515,14 @@
         layer.box.replaceChildren(make("p", {}, make("span", {}, absent(sheet, layer.side))));
         continue;
       }
-      const image = make("img", { alt: `${TITLES[layer.side]}: ${sheet.name}`, draggable: false });
+      const image = make("img", { alt: `${TITLES[layer.side]}: ${sheet.name}`, draggable: false, decoding: "sync" });
       image.addEventListener("load", () => {
         if (size) size.textContent = `${image.naturalWidth} × ${image.naturalHeight}`;
         layout();
       });
       image.addEventListener("error", () => {
-        if (layer.image === image) layer.box.replaceChildren(make("p", {}, make("span", {}, "this picture cannot be shown")));
+        if (layer.image === image)
+          layer.box.replaceChildren(make("p", {}, make("span", {}, "this picture cannot be shown")));
       });
       image.src = source;
       layer.image = image;
@@ -454,7 +535,10 @@
   function extent() {
     const shown = layers.map((layer) => layer.image).filter((image) => image && image.naturalWidth > 0);
     if (shown.length === 0) return sheets[state.at].size ?? [640, 360];
-    return [Math.max(...shown.map((image) => image.naturalWidth)), Math.max(...shown.map((image) => image.naturalHeight))];
+    return [
+      Math.max(...shown.map((image) => image.naturalWidth)),
+      Math.max(...shown.map((image) => image.naturalHeight)),
+    ];
   }
 
   /** The zoom at which a picture fits: enlarged so that pixels are squares, by a whole number. */
@@ -475,7 +559,8 @@
     const pane = [(width * fit) / ratio, (height * fit) / ratio];
     const zoom = state.zoom ?? fit;
     const scale = zoom / ratio;
-    const within = (place, size, room) => (size * scale <= room + 0.5 ? size / 2 : clamp(place, room / scale / 2, size - room / scale / 2));
+    const within = (place, size, room) =>
+      size * scale <= room + 0.5 ? size / 2 : clamp(place, room / scale / 2, size - room / scale / 2);
     state.x = within(state.zoom === null ? width / 2 : state.x, width, pane[0]);
     state.y = within(state.zoom === null ? height / 2 : state.y, height, pane[1]);
     for (const { view, caption, side, box, image } of layers) {
@@ -489,7 +574,8 @@
         image.style.height = `${image.naturalHeight * scale}px`;
         // On whole pixels of the device, so that one to one is not smeared.
         const onDevice = (shift) => Math.round(shift * ratio) / ratio;
-        image.style.transform = `translate(${onDevice(pane[0] / 2 - state.x * scale)}px, ${onDevice(pane[1] / 2 - state.y * scale)}px)`;
+        const [x, y] = [onDevice(pane[0] / 2 - state.x * scale), onDevice(pane[1] / 2 - state.y * scale)];
+        image.style.transform = `translate(${x}px, ${y}px)`;
       }
       if (state.mode === "slider" && side === "expected") box.style.clipPath = `inset(0 ${100 - state.divider}% 0 0)`;
       if (state.mode === "blink") box.style.visibility = side === state.shown ? "visible" : "hidden";
@@ -521,7 +607,8 @@
     const fit = fitting();
     const zoom = state.zoom ?? fit;
     const stops = [...STOPS, fit].sort((a, b) => a - b);
-    const next = direction > 0 ? stops.find((stop) => stop > zoom * 1.001) : stops.findLast((stop) => stop < zoom / 1.001);
+    const next =
+      direction > 0 ? stops.find((stop) => stop > zoom * 1.001) : stops.findLast((stop) => stop < zoom / 1.001);
     if (next !== undefined) zoomTo(next);
   }
 
@@ -538,7 +625,13 @@
   }
 
   let scrolled = -Infinity;
-  addEventListener("scroll", () => { scrolled = performance.now(); }, { passive: true });
+  addEventListener(
+    "scroll",
+    () => {
+      scrolled = performance.now();
+    },
+    { passive: true },
+  );
 
   function listen(view) {
     let last = null;
@@ -570,23 +663,31 @@
     };
     view.addEventListener("pointerup", release);
     view.addEventListener("pointercancel", release);
-    view.addEventListener("wheel", (event) => {
-      const [zoom, fit] = [state.zoom ?? fitting(), fitting()];
-      const leaves = event.deltaY > 0 && zoom <= Math.min(fit, 1) + 1e-6;
-      if (event.deltaY === 0 || leaves || performance.now() - scrolled < STILL_SCROLLING) return;
-      event.preventDefault();
-      const box = view.getBoundingClientRect();
-      const turned = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY : event.deltaY * 40;
-      let next = zoom * 2 ** (-turned / DOUBLING);
-      if ((zoom - fit) * (next - fit) < 0) next = fit; // The way back leads through what fits.
-      zoomTo(next, [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2]);
-    }, { passive: false });
+    // Nothing is selected on the way, and what was selected is not dragged instead.
+    view.addEventListener("mousedown", (event) => event.preventDefault());
+    view.addEventListener("dragstart", (event) => event.preventDefault());
+    view.addEventListener(
+      "wheel",
+      (event) => {
+        const [zoom, fit] = [state.zoom ?? fitting(), fitting()];
+        const leaves = event.deltaY > 0 && zoom <= Math.min(fit, 1) + 1e-6;
+        if (event.deltaY === 0 || leaves || performance.now() - scrolled < STILL_SCROLLING) return;
+        event.preventDefault();
+        const box = view.getBoundingClientRect();
+        const turned = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY : event.deltaY * 40;
+        let next = zoom * 2 ** (-turned / DOUBLING);
+        if ((zoom - fit) * (next - fit) < 0) next = fit; // The way back leads through what fits.
+        zoomTo(next, [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2]);
+      },
+      { passive: false },
+    );
   }
 
   function setMode(mode) {
+    if (mode === "blink" && state.mode !== "blink") [state.shown, state.blinks] = ["expected", !reduced.matches];
     state.mode = mode;
-    if (mode === "blink") state.shown = "expected";
-    for (const button of the("modes").children) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
+    for (const button of the("modes").children)
+      button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
     the("blinking").hidden = mode !== "blink";
     buildStage();
     blink(mode === "blink" && state.blinks);
@@ -633,7 +734,12 @@
   function buildList() {
     const items = sheets.map((sheet, index) => {
       const label = make("span", { class: "label", title: sheet.name }, sheet.name);
-      const item = make("li", { id: `picture-${index}`, role: "option", class: sheet.passes ? "passed" : "failed" }, make("span", { class: "square" }), label);
+      const item = make(
+        "li",
+        { id: `picture-${index}`, role: "option", class: sheet.passes ? "passed" : "failed" },
+        make("span", { class: "square" }),
+        label,
+      );
       if (sheet.passes) item.setAttribute("aria-label", `${sheet.name}, ${sheet.verdict}`);
       else item.append(make("span", { class: "short" }, sheet.verdict.replace("same state, ", "")));
       item.addEventListener("click", () => go(index));
@@ -645,7 +751,9 @@
   function filter(only) {
     state.only = only && failures > 0;
     the("only").setAttribute("aria-pressed", String(state.only));
-    [...the("list").children].forEach((item, index) => { item.hidden = !isShown(index); });
+    [...the("list").children].forEach((item, index) => {
+      item.hidden = !isShown(index);
+    });
     if (!isShown(state.at)) step(1, isShown) || step(-1, isShown);
     else go(state.at);
   }
@@ -672,7 +780,10 @@
     if (sheet.size) facts.push(`${sheet.size[0]} × ${sheet.size[1]}`);
     the("facts").textContent = facts.join("  ·  ");
     the("words").className = sheet.passes ? "passed" : "failed";
-    the("words").replaceChildren(make("span", { class: "square", role: "img", "aria-label": sheet.passes ? "passed" : "failed" }), make("span", {}, sheet.words));
+    the("words").replaceChildren(
+      make("span", { class: "square", role: "img", "aria-label": sheet.passes ? "passed" : "failed" }),
+      make("span", {}, sheet.words),
+    );
     the("previous").disabled = !any(-1, isShown);
     the("next").disabled = !any(1, isShown);
     the("previous-failure").disabled = !any(-1, hasFailed);
@@ -682,7 +793,10 @@
     const item = list.children[index];
     item.setAttribute("aria-selected", "true");
     list.setAttribute("aria-activedescendant", item.id);
-    const [above, below] = [item.offsetTop - list.offsetTop - list.scrollTop, item.offsetTop + item.offsetHeight - list.offsetTop - list.scrollTop];
+    const [above, below] = [
+      item.offsetTop - list.offsetTop - list.scrollTop,
+      item.offsetTop + item.offsetHeight - list.offsetTop - list.scrollTop,
+    ];
     if (above < 0 || below > list.clientHeight) list.scrollTop += above - list.clientHeight / 2;
     fillStage();
     markStrip();
@@ -693,7 +807,9 @@
   let announcing = null;
   function announce(words) {
     clearTimeout(announcing);
-    announcing = setTimeout(() => { the("announced").textContent = words; }, 300);
+    announcing = setTimeout(() => {
+      the("announced").textContent = words;
+    }, 300);
   }
 
   // The address leads to a picture and a way to look at it.
@@ -751,8 +867,14 @@
   document.addEventListener("keydown", (event) => {
     const combined = (event.ctrlKey || event.altKey || event.metaKey) && !event.getModifierState("AltGraph");
     if (event.defaultPrevented || combined || the("keys").open || isTyped(event)) return;
-    const key = event.shiftKey && event.key === "ArrowLeft" ? "[" : event.shiftKey && event.key === "ArrowRight" ? "]" : event.key;
+    const key =
+      event.shiftKey && event.key === "ArrowLeft"
+        ? "["
+        : event.shiftKey && event.key === "ArrowRight"
+          ? "]"
+          : event.key;
     const action = Object.hasOwn(KEYS, key) ? KEYS[key] : KEYS[key.toLowerCase()];
+    if (sheets.length === 0 && key !== "?") return;
     if (action && action() !== false) event.preventDefault();
   });
 
@@ -761,7 +883,16 @@
     const present = stationOf(state.at);
     const at = pointed ?? (present < 0 ? 0 : present);
     const leap = Math.max(1, Math.round(stations.length / 10));
-    const moves = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: leap, PageDown: -leap, Home: -Infinity, End: Infinity };
+    const moves = {
+      ArrowLeft: -1,
+      ArrowDown: -1,
+      ArrowRight: 1,
+      ArrowUp: 1,
+      PageUp: leap,
+      PageDown: -leap,
+      Home: -Infinity,
+      End: Infinity,
+    };
     if (event.key in moves) {
       const next = clamp(at + moves[event.key], 0, stations.length - 1);
       if (stations[next].sheets.length > 0) go(stations[next].sheets[0]);
@@ -777,7 +908,14 @@
     const at = items.indexOf(the("list").children[state.at]);
     const columns = items.findIndex((item) => item.offsetTop > items[0].offsetTop);
     const row = columns < 0 ? items.length : columns;
-    const moves = { ArrowUp: -row, ArrowDown: row, Home: -Infinity, End: Infinity, PageUp: -8 * row, PageDown: 8 * row };
+    const moves = {
+      ArrowUp: -row,
+      ArrowDown: row,
+      Home: -Infinity,
+      End: Infinity,
+      PageUp: -8 * row,
+      PageDown: 8 * row,
+    };
     if (!(event.key in moves)) return;
     event.preventDefault();
     const to = at + moves[event.key];
@@ -791,9 +929,18 @@
   strip.addEventListener("pointerdown", (event) => event.preventDefault());
   strip.addEventListener("mousedown", (event) => event.preventDefault()); // Arrows go on choosing pictures.
   strip.addEventListener("click", (event) => choose(nearestStation(event)));
-  strip.addEventListener("pointermove", (event) => { pointed = nearestStation(event); markStrip(); });
-  strip.addEventListener("pointerleave", () => { pointed = null; markStrip(); });
-  strip.addEventListener("blur", () => { pointed = null; markStrip(); });
+  strip.addEventListener("pointermove", (event) => {
+    pointed = nearestStation(event);
+    markStrip();
+  });
+  strip.addEventListener("pointerleave", () => {
+    pointed = null;
+    markStrip();
+  });
+  strip.addEventListener("blur", () => {
+    pointed = null;
+    markStrip();
+  });
   const onClick = (id, action) => the(id).addEventListener("click", action);
   for (const button of the("modes").children) button.addEventListener("click", () => setMode(button.dataset.mode));
   onClick("previous", KEYS.ArrowLeft);
@@ -831,7 +978,9 @@
         copy.textContent = "Selected";
       }
       announce(copy.textContent);
-      setTimeout(() => { copy.textContent = "Copy"; }, 2000);
+      setTimeout(() => {
+        copy.textContent = "Copy";
+      }, 2000);
     });
   }
 
@@ -845,14 +994,19 @@
   for (const id of ["only", "failures"]) the(id).hidden = failures === 0;
   the("around").hidden = sheets.length < 2;
   the("aside").hidden = elsewhere === 0;
-  the("aside").textContent = `${plural(elsewhere, "picture")} without a frame ${elsewhere === 1 ? "is" : "are"} not shown here.`;
-  the("count").textContent = failures === 0
-    ? `${plural(sheets.length, "picture")}, all as expected`
-    : `${grouped(failures)} of ${plural(sheets.length, "picture")} failed`;
+  the("aside").textContent =
+    `${plural(elsewhere, "picture")} without a frame ${elsewhere === 1 ? "is" : "are"} not shown here.`;
+  the("count").textContent =
+    failures === 0
+      ? `${plural(sheets.length, "picture")}, all as expected`
+      : `${grouped(failures)} of ${plural(sheets.length, "picture")} failed`;
   if (sheets.length > 0) {
     buildList();
     const wanted = recall();
-    const firstFailure = Math.max(sheets.findIndex((sheet) => !sheet.passes), 0);
+    const firstFailure = Math.max(
+      sheets.findIndex((sheet) => !sheet.passes),
+      0,
+    );
     state.at = wanted.index >= 0 ? wanted.index : firstFailure;
     setMode(wanted.mode ?? "side");
     go(state.at);

@@ -1,0 +1,324 @@
+//! A small driver of Chromium by its DevTools protocol: messages of JSON over two pipes, each ended by a zero byte.
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Cursor, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// So long anything may take, on a slow machine that has other things to do.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// Conditions are asked for as often as this.
+const BETWEEN: Duration = Duration::from_millis(25);
+
+/// The names that a browser goes by, if `LOCALSHAPE_BROWSER` names none.
+const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+
+/// A browser with one page.
+pub(crate) struct Browser {
+    process: Child,
+    /// `None` when it is to go.
+    orders: Option<ChildStdin>,
+    answers: Receiver<Value>,
+    last_order: u64,
+    session: Option<String>,
+    events: Vec<Value>,
+    folder: TempDir,
+}
+
+/// Keys with a code of their own; all others are letters and signs.
+const NAMED_KEYS: [(&str, u32, &str); 9] = [
+    ("ArrowLeft", 37, ""),
+    ("ArrowUp", 38, ""),
+    ("ArrowRight", 39, ""),
+    ("ArrowDown", 40, ""),
+    ("Home", 36, ""),
+    ("End", 35, ""),
+    ("Tab", 9, ""),
+    ("Escape", 27, ""),
+    ("Enter", 13, "\r"),
+];
+
+/// What is held down with a key: nothing, or the shift key.
+pub(crate) const PLAIN: u32 = 0;
+pub(crate) const SHIFT: u32 = 8;
+
+impl Browser {
+    /// A browser, or `None` with a line on the standard error output if there is none and none is required.
+    pub(crate) fn start() -> Option<Self> {
+        let Some(program) = program() else {
+            let missing = "there is no Chromium: `apt install chromium`, or name one in LOCALSHAPE_BROWSER";
+            assert!(std::env::var_os("LOCALSHAPE_REQUIRE_BROWSER").is_none_or(|value| value != "1"), "{missing}");
+            eprintln!("skipped: {missing}");
+            return None;
+        };
+        let folder = tempfile::tempdir().expect("a folder for the browser");
+        let log = File::create(folder.path().join("log")).expect("a file for what the browser says");
+        // Chromium reads from file 3 and writes to file 4; the shell puts our pipes there.
+        let mut process = Command::new("sh")
+            .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>&2"])
+            .arg(program)
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
+            .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
+            .args(["--disable-dev-shm-usage", "--disable-extensions", "--no-default-browser-check"])
+            .args(["--force-color-profile=srgb", "--hide-scrollbars", "--remote-debugging-pipe"])
+            .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(log)
+            .spawn()
+            .expect("a shell");
+        let (orders, output) = (process.stdin.take(), process.stdout.take().expect("a pipe"));
+        let (sender, answers) = channel();
+        std::thread::spawn(move || {
+            let mut output = BufReader::new(output);
+            loop {
+                let mut message = Vec::new();
+                if output.read_until(0, &mut message).is_err() || message.pop() != Some(0) {
+                    return; // The browser is gone.
+                }
+                if sender.send(serde_json::from_slice(&message).expect("a message of JSON")).is_err() {
+                    return;
+                }
+            }
+        });
+        let mut browser = Self { process, orders, answers, last_order: 0, session: None, events: vec![], folder };
+        let target = browser.order("Target.createTarget", json!({ "url": "about:blank" }))["targetId"].clone();
+        let attached = browser.order("Target.attachToTarget", json!({ "targetId": target, "flatten": true }));
+        browser.session = Some(attached["sessionId"].as_str().expect("a session").to_owned());
+        for part in ["Page", "Runtime", "Network", "Log"] {
+            browser.order(&format!("{part}.enable"), json!({}));
+        }
+        browser.resize([1280, 900]);
+        Some(browser)
+    }
+
+    /// What the browser answers to an order.
+    pub(crate) fn order(&mut self, method: &str, parameters: Value) -> Value {
+        self.last_order += 1;
+        let mut message = json!({ "id": self.last_order, "method": method, "params": parameters });
+        if let Some(session) = &self.session {
+            message["sessionId"] = json!(session);
+        }
+        let bytes = format!("{message}\0");
+        let sent = self.orders.as_mut().expect("a browser that runs").write_all(bytes.as_bytes());
+        if let Err(error) = sent {
+            panic!("{method}: the browser does not listen ({error}): {}", self.log());
+        }
+        let start = Instant::now();
+        loop {
+            match self.answers.recv_timeout(PATIENCE.saturating_sub(start.elapsed())) {
+                Ok(answer) if answer["id"] == self.last_order => {
+                    assert!(answer.get("error").is_none(), "{method}: {}", answer["error"]);
+                    return answer["result"].clone();
+                }
+                Ok(event) => self.events.push(event),
+                Err(RecvTimeoutError::Timeout) => panic!("{method}: no answer within {PATIENCE:?}: {}", self.log()),
+                Err(RecvTimeoutError::Disconnected) => panic!("{method}: the browser has ended: {}", self.log()),
+            }
+        }
+    }
+
+    /// What the browser wrote on its standard error output.
+    fn log(&self) -> String {
+        std::fs::read_to_string(self.folder.path().join("log")).unwrap_or_default()
+    }
+
+    /// Opens a page that is written to a file of its own; `hash` is what follows the address. Returns the address.
+    pub(crate) fn open(&mut self, page: &str, hash: &str) -> String {
+        let path = self.folder.path().join("report.html");
+        std::fs::write(&path, page).expect("a file for the page");
+        let address = format!("file://{}", path.display());
+        // From another page, for a change of what follows the address alone would load nothing.
+        self.order("Page.navigate", json!({ "url": "about:blank" }));
+        self.until("an empty page", "location.href === 'about:blank'");
+        self.events.clear();
+        let opened = self.order("Page.navigate", json!({ "url": format!("{address}{hash}") }));
+        assert!(opened.get("errorText").is_none(), "{address}: {opened}");
+        self.until("the page", "location.protocol === 'file:' && document.readyState === 'complete'");
+        address
+    }
+
+    /// The width and height of the window (px).
+    pub(crate) fn resize(&mut self, [width, height]: [u32; 2]) {
+        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.order("Emulation.setDeviceMetricsOverride", metrics);
+    }
+
+    /// What a medium is said to be like, such as `prefers-reduced-motion`.
+    pub(crate) fn pretend(&mut self, feature: &str, value: &str) {
+        self.order("Emulation.setEmulatedMedia", json!({ "features": [{ "name": feature, "value": value }] }));
+    }
+
+    /// The value of an expression in the page.
+    pub(crate) fn value(&mut self, expression: &str) -> Value {
+        let asked = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let answer = self.order("Runtime.evaluate", asked);
+        assert!(answer.get("exceptionDetails").is_none(), "{expression}: {}", answer["exceptionDetails"]);
+        answer["result"]["value"].clone()
+    }
+
+    /// The text of an expression in the page.
+    pub(crate) fn text(&mut self, expression: &str) -> String {
+        let value = self.value(expression);
+        value.as_str().unwrap_or_else(|| panic!("{expression} is {value}")).to_owned()
+    }
+
+    /// The number that an expression in the page is.
+    pub(crate) fn number(&mut self, expression: &str) -> f64 {
+        let value = self.value(expression);
+        value.as_f64().unwrap_or_else(|| panic!("{expression} is {value}"))
+    }
+
+    /// Waits until a condition holds in the page.
+    pub(crate) fn until(&mut self, what: &str, condition: &str) {
+        let start = Instant::now();
+        while self.value(condition) != true {
+            assert!(start.elapsed() < PATIENCE, "waited {PATIENCE:?} for {what}: {condition}");
+            std::thread::sleep(BETWEEN);
+        }
+    }
+
+    /// Presses and releases a key: a sign such as `b`, or a name such as `ArrowLeft`.
+    pub(crate) fn press(&mut self, key: &str, held: u32) {
+        let named = NAMED_KEYS.iter().find(|(name, ..)| *name == key);
+        let letter = key.chars().next().unwrap_or_default().to_ascii_uppercase();
+        let (code, text) = named.map_or((letter as u32, key), |&(_, code, text)| (code, text));
+        let code = if named.is_none() && !letter.is_ascii_alphanumeric() && letter != ' ' { 0 } else { code };
+        let mut event = json!({ "type": "keyDown", "key": key, "windowsVirtualKeyCode": code, "modifiers": held });
+        if text.is_empty() {
+            event["type"] = json!("rawKeyDown");
+        } else {
+            event["text"] = json!(text);
+        }
+        self.order("Input.dispatchKeyEvent", event.clone());
+        event["type"] = json!("keyUp");
+        self.order("Input.dispatchKeyEvent", event);
+    }
+
+    /// Moves the focus on until it is on the element with this id.
+    pub(crate) fn tab_to(&mut self, id: &str) {
+        for _ in 0..60 {
+            if self.value("document.activeElement.id") == id {
+                return;
+            }
+            self.press("Tab", PLAIN);
+        }
+        panic!("the focus never comes to {id}");
+    }
+
+    fn mouse(&mut self, kind: &str, [x, y]: [f64; 2], buttons: u32) {
+        let button = if buttons > 0 || kind == "mouseReleased" { "left" } else { "none" };
+        let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
+        self.order("Input.dispatchMouseEvent", event);
+    }
+
+    /// Moves the mouse pointer.
+    pub(crate) fn point(&mut self, at: [f64; 2]) {
+        self.mouse("mouseMoved", at, 0);
+    }
+
+    /// Clicks with the left button.
+    pub(crate) fn click(&mut self, at: [f64; 2]) {
+        self.drag(at, at);
+    }
+
+    /// Clicks on what a selector finds.
+    pub(crate) fn click_on(&mut self, selector: &str) {
+        let [x, y, width, height] = self.place(selector);
+        self.click([x + width / 2.0, y + height / 2.0]);
+    }
+
+    /// Presses the left button at one place, moves to another one and releases it there.
+    pub(crate) fn drag(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.point(from);
+        self.mouse("mousePressed", from, 1);
+        if from != to {
+            let middle = [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
+            self.mouse("mouseMoved", middle, 1);
+            self.mouse("mouseMoved", to, 1);
+        }
+        self.mouse("mouseReleased", to, 0);
+    }
+
+    /// Turns the wheel (px; up is negative).
+    pub(crate) fn wheel(&mut self, [x, y]: [f64; 2], turned: f64) {
+        let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turned });
+        self.order("Input.dispatchMouseEvent", event);
+    }
+
+    /// Left, top, width and height of what a selector finds, after scrolling to it (px in the window).
+    pub(crate) fn place(&mut self, selector: &str) -> [f64; 4] {
+        let found = self.value(&format!(
+            "(() => {{ const found = document.querySelector({}); found.scrollIntoView({{ block: 'center' }}); \
+             const box = found.getBoundingClientRect(); return [box.left, box.top, box.width, box.height]; }})()",
+            json!(selector)
+        ));
+        std::array::from_fn(|at| found[at].as_f64().unwrap_or_else(|| panic!("{selector} is nowhere")))
+    }
+
+    /// The colour in the middle of each of some places in the window, as it is on the screen.
+    pub(crate) fn colours<const COUNT: usize>(&mut self, places: [[f64; 2]; COUNT]) -> [[u8; 3]; COUNT] {
+        let shot = self.order("Page.captureScreenshot", json!({ "format": "png" }));
+        let file = BASE64_STANDARD.decode(shot["data"].as_str().expect("a picture")).expect("base64");
+        let mut reader = png::Decoder::new(Cursor::new(file)).read_info().expect("a PNG picture");
+        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut bytes).expect("a whole picture");
+        let channels = info.color_type.samples();
+        places.map(|[x, y]| {
+            let at = (y as usize * info.width as usize + x as usize) * channels;
+            [bytes[at], bytes[at + 1], bytes[at + 2]]
+        })
+    }
+
+    /// All that was asked for since the page was opened.
+    pub(crate) fn requests(&mut self) -> Vec<String> {
+        self.value("1"); // Whatever came before this has been told.
+        let asked = self.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
+        asked.map(|event| event["params"]["request"]["url"].as_str().unwrap_or_default().to_owned()).collect()
+    }
+
+    /// What went wrong in the page since it was opened: exceptions, errors that it or the browser told.
+    pub(crate) fn complaints(&mut self) -> Vec<String> {
+        self.value("1");
+        let is_complaint = |event: &&Value| match event["method"].as_str() {
+            Some("Runtime.exceptionThrown") => true,
+            Some("Runtime.consoleAPICalled") => event["params"]["type"] == "error",
+            Some("Log.entryAdded") => event["params"]["entry"]["level"] == "error",
+            _ => false,
+        };
+        self.events.iter().filter(is_complaint).map(Value::to_string).collect()
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // Without anyone to listen to the browser ends by itself, with all its processes; it is not waited for long.
+        self.orders = None;
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(3) {
+            if !matches!(self.process.try_wait(), Ok(None)) {
+                return;
+            }
+            std::thread::sleep(BETWEEN);
+        }
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The browser's program.
+fn program() -> Option<OsString> {
+    if let Some(named) = std::env::var_os("LOCALSHAPE_BROWSER").filter(|named| !named.is_empty()) {
+        return Some(named);
+    }
+    let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
+    let found = NAMES.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    found.into_iter().find(|path| Path::is_file(path)).map(PathBuf::into_os_string)
+}
