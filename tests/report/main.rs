@@ -63,7 +63,7 @@ fn courses(frames: u64) -> Vec<Course> {
             let displacement = if !moved { Some(0.0) } else { (frame < 38).then_some(far) };
             Moment {
                 frame,
-                time: frame as f64 / 60.0,
+                time: Some(frame as f64 / 60.0),
                 moved,
                 displacement,
                 node: displacement.and(moved.then_some(12)),
