@@ -22,9 +22,21 @@ mod distance;
 pub(crate) mod draw;
 mod page;
 mod picture;
+#[cfg_attr(
+    not(feature = "render"),
+    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
+)]
 mod record;
 pub mod report;
+#[cfg_attr(
+    not(feature = "render"),
+    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
+)]
 mod side;
+#[cfg_attr(
+    not(feature = "render"),
+    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
+)]
 mod states;
 #[cfg(feature = "render")]
 mod suite;

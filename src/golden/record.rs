@@ -332,7 +332,7 @@ mod tests {
         for frame in 0..=20_u64 {
             for run in ["Local shape", "½ \"quoted\" '''"] {
                 let at: Vec<_> = (0..5).map(|node| DVec3::new(node as f64 * 0.1, frame as f64 * 0.01, -0.2)).collect();
-                let places = (frame % 10 == 0).then(|| Places { quantum: 0.0, every: 1, nodes: 5, at });
+                let places = (frame % 10 == 0).then_some(Places { quantum: 0.0, every: 1, nodes: 5, at });
                 let numbers = Numbers {
                     kinetic: 1.5,
                     elastic: f64::NAN,

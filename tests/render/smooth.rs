@@ -180,7 +180,7 @@ fn what_turns_slowly_changes_slowly() {
 #[test]
 fn obstacles_are_drawn_alike_every_time() {
     let Some(gpu) = gpu("obstacles_are_drawn_alike_every_time") else { return };
-    let text = include_str!("../golden/obstacles.toml");
+    let text = include_str!("../golden/primitives/obstacles.toml");
     let scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("the scene is sound");
     let frame = &frames(&scene, 6..7)[0];
     for samples in [1, 4] {
