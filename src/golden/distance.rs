@@ -5,6 +5,7 @@
 //! the silhouettes pixels differ by a little, but what lies between them must be the same.
 
 use super::picture::Pixels;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 
@@ -169,43 +170,65 @@ fn seen(one: &[u8], other: &[u8]) -> u8 {
 
 /// For each pixel whether it belongs to a silhouette, a line or a letter in one of two pictures.
 pub(super) fn silhouettes(pictures: [&Pixels; 2]) -> Vec<bool> {
-    let [width, height] = pictures[0].size.map(|side| side as usize);
-    let mut mask = vec![false; width * height];
-    for picture in pictures {
-        let (channels, row) = (picture.channels, width * picture.channels);
-        // The least and the greatest of three pixels side by side, and then of three rows.
-        let mut least = picture.bytes.clone();
-        let mut greatest = picture.bytes.clone();
-        for ((from, low), high) in
-            picture.bytes.chunks_exact(row).zip(least.chunks_exact_mut(row)).zip(greatest.chunks_exact_mut(row))
-        {
-            let inner = row - channels;
-            for at in 0..inner {
-                low[at] = low[at].min(from[at + channels]);
-                high[at] = high[at].max(from[at + channels]);
+    const ROWS: usize = 32;
+    let (width, channels) = (pictures[0].size[0] as usize, pictures[0].channels);
+    let mut mask = vec![false; pictures[0].bytes.len() / channels];
+    // Row by row in plain loops over bytes, which compilers turn into vector code: 3 ms instead of 14 for two pictures of
+    // 1280×720.
+    mask.par_chunks_mut(ROWS * width).enumerate().for_each(|(band, mask)| {
+        let row = width * channels;
+        let (mut low, mut high, mut contrast) = (vec![0; row], vec![0; row], vec![0; row]);
+        for (line, mask) in mask.chunks_exact_mut(width).enumerate() {
+            contrast.fill(0);
+            for picture in pictures {
+                extremes(&picture.bytes, row, band * ROWS + line, &mut low, &mut high);
+                widen(&low, &high, channels, &mut contrast);
             }
-            for at in 0..inner {
-                low[at + channels] = low[at + channels].min(from[at]);
-                high[at + channels] = high[at + channels].max(from[at]);
+            for (is_silhouette, pixel) in mask.iter_mut().zip(contrast.chunks_exact(channels)) {
+                *is_silhouette = pixel.iter().any(|&contrast| contrast > CONTRAST);
             }
         }
-        let mut contrast = vec![0_u8; row];
-        for line in 0..height {
-            let rows = line.saturating_sub(1)..(line + 2).min(height);
-            let [mut low, mut high] = [vec![255_u8; row], vec![0_u8; row]];
-            for near in rows {
-                let part = near * row..(near + 1) * row;
-                low.iter_mut().zip(&least[part.clone()]).for_each(|(low, &near)| *low = (*low).min(near));
-                high.iter_mut().zip(&greatest[part]).for_each(|(high, &near)| *high = (*high).max(near));
-            }
-            contrast.iter_mut().zip(high.iter().zip(&low)).for_each(|(into, (high, low))| *into = high - low);
-            let mask = &mut mask[line * width..(line + 1) * width];
-            for (is_silhouette, pixel) in mask.iter_mut().zip(contrast.chunks_exact(channels)) {
-                *is_silhouette |= pixel.iter().any(|&contrast| contrast > CONTRAST);
-            }
+    });
+    mask
+}
+
+/// The least and the greatest of each byte of a row, the one above and the one below.
+fn extremes(bytes: &[u8], row: usize, line: usize, low: &mut [u8], high: &mut [u8]) {
+    let rows = bytes.len() / row;
+    let part = |line: usize| &bytes[line * row..(line + 1) * row];
+    low.copy_from_slice(part(line));
+    high.copy_from_slice(part(line));
+    for near in [line.saturating_sub(1), (line + 1).min(rows - 1)] {
+        for ((low, high), &near) in low.iter_mut().zip(high.iter_mut()).zip(part(near)) {
+            *low = near.min(*low);
+            *high = near.max(*high);
         }
     }
-    mask
+}
+
+/// How far the greatest lies above the least of three pixels side by side, or what was there before if that is more.
+fn widen(low: &[u8], high: &[u8], channels: usize, contrast: &mut [u8]) {
+    let row = low.len();
+    if row < 3 * channels {
+        // One or two pixels in a row.
+        for (at, contrast) in contrast.iter_mut().enumerate() {
+            let beside = || (at % channels..row).step_by(channels);
+            let least = beside().map(|at| low[at]).min().unwrap_or(0);
+            let greatest = beside().map(|at| high[at]).max().unwrap_or(0);
+            *contrast = (*contrast).max(greatest - least);
+        }
+        return;
+    }
+    let [inner, right] = [row - 2 * channels, 2 * channels];
+    let three = low[..inner].iter().zip(&low[channels..]).zip(&low[right..]);
+    let greatest = high[..inner].iter().zip(&high[channels..]).zip(&high[right..]);
+    for ((contrast, ((a, b), c)), ((d, e), f)) in contrast[channels..].iter_mut().zip(three).zip(greatest) {
+        *contrast = (*contrast).max(*d.max(e).max(f) - *a.min(b).min(c));
+    }
+    for at in (0..channels).chain(row - channels..row) {
+        let beside = if at < channels { at + channels } else { at - channels };
+        contrast[at] = contrast[at].max(high[at].max(high[beside]) - low[at].min(low[beside]));
+    }
 }
 
 impl fmt::Display for Distance {
@@ -252,6 +275,34 @@ mod tests {
             let mask = silhouettes(two);
             for (at, is_silhouette) in mask.into_iter().enumerate() {
                 assert_eq!(is_silhouette, (at / 9).abs_diff(3) <= 1 && (at % 9).abs_diff(4) <= 1, "{at}");
+            }
+        }
+    }
+
+    #[test]
+    fn silhouettes_are_the_same_in_rows_of_any_length() {
+        for size in [[1, 1], [1, 5], [2, 3], [3, 2], [7, 70]] {
+            for channels in [3, 4] {
+                let [width, height] = size.map(|side| side as usize);
+                let mut seed = 1_u32;
+                let mut byte = || {
+                    seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    100 + (seed >> 24) as u8 / 20
+                };
+                let bytes = (0..width * height * channels).map(|_| byte()).collect();
+                let picture = Pixels { size, channels, bytes, label: None };
+                let mask = silhouettes([&picture, &picture]);
+                for (at, is_silhouette) in mask.into_iter().enumerate() {
+                    let [x, y] = [at % width, at / width];
+                    let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+                    let is = (0..channels).any(|channel| {
+                        let around =
+                            near(y, height).flat_map(|y| near(x, width).map(move |x| (y * width + x) * channels));
+                        let all: Vec<u8> = around.map(|at| picture.bytes[at + channel]).collect();
+                        all.iter().max().unwrap() - all.iter().min().unwrap() > CONTRAST
+                    });
+                    assert_eq!(is_silhouette, is, "{size:?} {channels} {at}");
+                }
             }
         }
     }

@@ -335,7 +335,9 @@ impl Read {
             })
         };
         let (expected, actual) = match (expected, actual) {
-            (Some(expected), Some(actual)) => (pixels(&expected, "expected"), pixels(&actual, "actual")),
+            (Some(expected), Some(actual)) => {
+                rayon::join(|| pixels(&expected, "expected"), || pixels(&actual, "actual"))
+            }
             (expected, None) => {
                 let label = expected.and_then(|source| source.pixels().ok()?.label);
                 return Self { name, labels: [label, None], verdict: Verdict::Missing };
