@@ -458,7 +458,9 @@ impl Comparison {
         if self.pictures.len() > 1 {
             match wrong.len() {
                 0 => writeln!(f, "{}", self.pass())?,
-                count => writeln!(f, "{count} of {} pictures are not as expected", self.pictures.len())?,
+                count => {
+                    writeln!(f, "{}: {count} of {} pictures are not as expected", self.verdict(), self.pictures.len())?;
+                }
             }
         }
         if let Some(moved) = self.first_moved().filter(|_| self.pictures.len() > 1) {

@@ -74,7 +74,7 @@ fn two_folders() {
          frame_00004.png: state moved: Local shape\n\
          gone.png: missing\n\
          new.png: extra\n\
-         4 of 7 pictures are not as expected\n\
+         state moved: 4 of 7 pictures are not as expected\n\
          the first picture whose state moved is frame_00003.png\n\
          accept with: localshape compare --bless-state was is\n"
     );
