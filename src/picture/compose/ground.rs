@@ -21,8 +21,9 @@ const USUAL_DISTANCE: f64 = 12.0;
 /// So far above the room for words below the body the floor begins to fade (px at type of the reference size): words
 /// stand on clean ground.
 const FADE_ABOVE: f64 = 9.0;
-/// The grid's lines are a side apart, or more if that were more cells than this beside a body.
-const MOST_CELLS: f64 = 10.0;
+/// The grid's lines are a side apart, or more if that were more cells than this beside a body that is a lattice, whose
+/// cells the grid repeats, and beside one that is not: there a fine grid would only be restless.
+const MOST_CELLS: [f64; 2] = [10.0, 5.0];
 /// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
 const SHEER: f64 = 0.38;
 
@@ -115,7 +116,8 @@ impl Draft<'_> {
 
     /// The distance of the grid's lines (sides).
     pub(super) fn cell(&self) -> f64 {
-        cell(self.composer.extent * self.composer.spread / self.side)
+        let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
+        cell(self.composer.extent * self.composer.spread / self.side, most)
     }
 }
 
@@ -128,11 +130,12 @@ pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
     (level + slope * DVec3::Y).normalize()
 }
 
-/// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …
-fn cell(extent: f64) -> f64 {
+/// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most: 1, 2, 5,
+/// 10, 20, …
+fn cell(extent: f64, most: f64) -> f64 {
     let mut cells = 1.0;
     for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {
-        if extent / cells <= MOST_CELLS {
+        if extent / cells <= most {
             break;
         }
         cells *= factor;
