@@ -40,6 +40,8 @@ struct Panel {
     behind: f32,
     // How much is drawn of the lines of elements, from 0 to 1.
     line_share: f32,
+    // How wide contours of bodies are, from 0 to 1.
+    contour_share: f32,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

@@ -184,6 +184,8 @@ pub struct Sight {
     pub element: f32,
     /// How much is drawn of the lines of elements, from 0 to 1: less than all where many small ones are drawn apart.
     pub line_share: f32,
+    /// How wide the contours of the body are, from 0 to 1: less than all where the body itself is small.
+    pub contour_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
     /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.

@@ -32,6 +32,8 @@ pub(super) struct PanelUniform {
     pub(super) hatch: f32,
     pub(super) behind: f32,
     pub(super) line_share: f32,
+    pub(super) contour_share: f32,
+    pub(super) unused: [f32; 3],
 }
 
 /// An sRGB colour as linear light.
@@ -115,6 +117,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         hatch: if panel.hatch { 1.0 } else { 0.0 },
         behind: if has_behind(panel) { 1.0 } else { 0.0 },
         line_share: sight.line_share,
+        contour_share: sight.contour_share,
+        unused: [0.0; 3],
     }
 }
 

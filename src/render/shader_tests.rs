@@ -90,7 +90,8 @@ fn structs_are_laid_out_alike_on_both_sides() {
             opacity,
             hatch,
             behind,
-            line_share
+            line_share,
+            contour_share
         ]
     );
     same_layout!(

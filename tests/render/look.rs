@@ -365,3 +365,17 @@ fn type_and_lines_become_larger_and_stay_in_the_picture() {
         }
     }
 }
+
+#[test]
+fn small_bodies_have_narrower_contours_and_large_ones_the_usual() {
+    let share = |times: f64| {
+        let (mut scene, frame) = fig4b(0);
+        scene.view.camera.distance *= times;
+        compose(&scene, &frame).panels[0].sight.contour_share
+    };
+    assert_eq!(share(1.0), 1.0);
+    assert!((share(100.0) - 0.4).abs() < 1e-6);
+    let shares: Vec<_> = (0..200).map(|step| share(1.0 + 0.1 * f64::from(step))).collect();
+    assert!(shares.windows(2).all(|two| two[1] <= two[0] && two[0] - two[1] < 0.05), "{shares:?}");
+    assert!(shares.iter().any(|share| (0.5..0.7).contains(share)));
+}
