@@ -249,6 +249,8 @@ impl<'a> Draft<'a> {
             cell: self.cell(),
             ground: contact::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
+            skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.composer.skin),
+            soft: self.composer.soft * self.side,
             start: self.composer.start_box,
         };
         staging.arrows(&self.pointers(), above);

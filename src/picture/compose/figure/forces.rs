@@ -320,7 +320,7 @@ impl<'a> Drawn<'a> {
             triangles: skin.triangles.clone(),
             shades: Vec::new(),
         };
-        Solid { mesh, colour: self.ghost_colour(), rim: None }
+        Solid { mesh, colour: self.ghost_colour(), rim: None, near: Vec::new() }
     }
 
     /// The edges of all elements, each once.
