@@ -171,7 +171,7 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
         }
         let behind = mix(0.15, hidden_alpha.y, free);
         let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
-        return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale), 0.0, 0.0);
+        return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale * panel.contour_share), 0.0, 0.0);
     }
     if kind == BAR {
         let seen = select(shares.x, 1.0, panel.flatness > 0.5);
@@ -201,8 +201,10 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
         shares += contour_shares(at, segment.kind, sample) / f32(SAMPLES);
     }
     shares *= segment.strength;
-    let outline = shares.x * covered(at.distance, 2.2 * scale);
-    let step = 0.85 * shares.y * covered(at.distance, 1.5 * scale);
+    // Small bodies would be mostly outline.
+    let width = scale * select(panel.contour_share, 1.0, segment.kind == OBSTACLE_CONTOUR);
+    let outline = shares.x * covered(at.distance, 2.2 * width);
+    let step = 0.85 * shares.y * covered(at.distance, 1.5 * width);
     var through = 0.0;
     if of_alarm {
         // Where the set ends, its outline is drawn at full strength.
@@ -217,7 +219,7 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
         }
         let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
         let fold = mix(smallness * smallness, 1.0, ends);
-        through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * scale);
+        through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * width);
     }
     return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);
 }

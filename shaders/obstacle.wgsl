@@ -10,6 +10,8 @@ struct SolidCorner {
     // How far inside the outline (px).
     @location(4) inward: f32,
     @location(5) above: f32,
+    // How near the body is.
+    @location(6) near: f32,
 }
 
 struct SolidPixel {
@@ -30,9 +32,10 @@ fn solid_corner(
     @location(2) colour: vec3<f32>,
     @location(3) rim: vec3<f32>,
     @location(4) inward: f32,
+    @location(5) near: f32,
 ) -> SolidCorner {
     let above = dot(position, panel.up) - panel.floor;
-    return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above);
+    return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above, near);
 }
 
 fn solid(corner: SolidCorner, opacity: f32) -> SolidPixel {
@@ -43,7 +46,7 @@ fn solid(corner: SolidCorner, opacity: f32) -> SolidPixel {
         let above = corner.above + dot(rise, sample_place(sample) - 0.5);
         samples |= select(0u, 1u << sample, above >= 0.0);
     }
-    let light = light(corner.position, corner.normal);
+    let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.near);
     let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
     let colour = material * light.diffuse + light.gloss;
     let inside = saturate(corner.inward + 0.5);

@@ -1,5 +1,14 @@
 // What every pass knows of the panel it draws. Lengths are in sides from the panel's origin, colours are linear.
 
+struct Occluder {
+    // The middle of a box, and how far around it the obstacle reaches.
+    first: vec4<f32>,
+    // Half the sides of the box; 1 if one sees through the obstacle.
+    second: vec4<f32>,
+    // How the box is turned, as quaternion.
+    turn: vec4<f32>,
+}
+
 struct Panel {
     // From the panel's coordinates to clip space of what is drawn into; depth is near / distance.
     clip: mat4x4<f32>,
@@ -40,6 +49,10 @@ struct Panel {
     behind: f32,
     // How much is drawn of the lines of elements, from 0 to 1.
     line_share: f32,
+    // How wide contours of bodies are, from 0 to 1.
+    contour_share: f32,
+    // The obstacles near the body; what there is too much of reaches nothing.
+    occluders: array<Occluder, 5>,
 }
 
 @group(0) @binding(0) var<uniform> panel: Panel;

@@ -16,6 +16,10 @@ const WRAP = 0.12;
 // Below this height above the floor (soft units) side faces get less light, down to this part of it.
 const CONTACT_HEIGHT = 0.9;
 const CONTACT_LIGHT = 0.72;
+// Where a body and an obstacle touch face to face they take this part of the light around them from each other, and less
+// of the key light.
+const TAKEN = 0.75;
+const KEY_TAKEN = 0.8;
 // The turned-over set is drawn this much nearer (sides), so that faces shared with the sound one are its own.
 const NEARER = 0.02;
 // A face turned away lies this much farther back, as a part of the distance.
@@ -68,17 +72,28 @@ struct Light {
     gloss: f32,
 }
 
-fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
+// A unit normal that is turned towards the viewer.
+fn facing_normal(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let view = normalize(panel.eye - position);
     // A corner of a collapsed face has no normal; it shows the viewer what it can.
     let size = length(normal);
-    var facing = select(view, normal / size, size > 1e-12);
-    facing = select(-facing, facing, dot(facing, view) >= 0.0);
-    let key = max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
+    let facing = select(view, normal / size, size > 1e-12);
+    return select(-facing, facing, dot(facing, view) >= 0.0);
+}
+
+fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
+    let facing = facing_normal(position, normal);
+    return light_left(position, facing, left_by_obstacles(position, facing));
+}
+
+// The light on a point with a unit normal, of which something near leaves a part.
+fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
+    let view = normalize(panel.eye - position);
+    let key = mix(1.0, left, KEY_TAKEN) * max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
     let upward = dot(facing, panel.up);
     let height = dot(position, panel.up) - panel.floor;
     let contact = mix(CONTACT_LIGHT, 1.0, smoothstep(0.0, CONTACT_HEIGHT * panel.soft, height));
-    let around = mix(GROUND, SKY, 0.5 + 0.5 * upward) * mix(contact, 1.0, abs(upward));
+    let around = left * mix(GROUND, SKY, 0.5 + 0.5 * upward) * mix(contact, 1.0, abs(upward));
     let shine = max(0.0, dot(facing, normalize(view + panel.key)));
     let shine4 = shine * shine * shine * shine;
     let shine16 = shine4 * shine4 * shine4 * shine4;

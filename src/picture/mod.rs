@@ -108,6 +108,27 @@ pub struct Obstacles {
     pub solids: Vec<Solid>,
     /// What is seen through, from the farthest to the nearest.
     pub slabs: Vec<Slab>,
+    /// In space, those near the body, which take light away from it where it touches them; [`MOST_OCCLUDERS`] at most.
+    pub occluders: Vec<Occluder>,
+}
+
+/// So many obstacles at most take light away from a body.
+pub const MOST_OCCLUDERS: usize = 5;
+
+/// An obstacle that takes light away from the body near it: all points within a distance of a box. That is a box with
+/// round edges, a rod or a ball; a plate or a wall is a very large one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occluder {
+    /// The middle of the box.
+    pub centre: Vec3,
+    /// Half of its sides.
+    pub half: Vec3,
+    /// How its sides are turned, as quaternion.
+    pub turn: [f32; 4],
+    /// The distance.
+    pub radius: f32,
+    /// Whether one sees through it.
+    pub is_clear: bool,
 }
 
 impl Obstacles {
@@ -127,6 +148,9 @@ pub struct Solid {
     /// The colour of its rim, in the plane. There `hatch` says how far inside its outline a corner is (px), and corners
     /// reach beyond it by more than half a pixel.
     pub rim: Option<Colour>,
+    /// How near the body is to each corner, in space: 1 where they touch face to face, 0 where it takes no light away.
+    /// Empty if it is nowhere near.
+    pub near: Vec<f32>,
 }
 
 /// Something transparent.
@@ -184,6 +208,8 @@ pub struct Sight {
     pub element: f32,
     /// How much is drawn of the lines of elements, from 0 to 1: less than all where many small ones are drawn apart.
     pub line_share: f32,
+    /// How wide the contours of the body are, from 0 to 1: less than all where the body itself is small.
+    pub contour_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
     /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.

@@ -54,6 +54,13 @@ impl Plane {
         Foot { at: DVec2::new(point.dot(self.axes[0]), point.dot(self.axes[1])), above }
     }
 
+    /// Where the shadow of a point falls in light from a direction, along both axes. From light that is level with the
+    /// plane it falls nowhere, and from there on it stays below the point.
+    pub(super) fn shadow(&self, point: DVec3, towards_light: DVec3) -> DVec2 {
+        let foot = self.foot(point);
+        if self.normal.dot(towards_light) > 0.05 { foot.shadow(self.slant(towards_light)) } else { foot.at }
+    }
+
     /// How far light from a direction moves the shadow of what is one unit above the plane.
     fn slant(&self, towards_light: DVec3) -> DVec2 {
         let along = DVec2::new(towards_light.dot(self.axes[0]), towards_light.dot(self.axes[1]));

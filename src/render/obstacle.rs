@@ -21,10 +21,12 @@ struct SolidVertex {
     rim: [f32; 3],
     /// How far inside the outline it is (px).
     inward: f32,
+    /// How near the body is.
+    near: f32,
 }
 
-const SOLID: [wgpu::VertexAttribute; 5] = wgpu::vertex_attr_array![
-    0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32
+const SOLID: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+    0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32, 5 => Float32
 ];
 
 /// In space outlines are lines, and their solids have no rim.
@@ -93,7 +95,7 @@ impl Solids {
 
     fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str, samples: u32) -> wgpu::RenderPipeline {
         // The light is that on bodies.
-        let module = shader(gpu, "obstacle", &[&super::surface::parts(samples)[..], &[SHADER]].concat());
+        let module = shader(gpu, "obstacle", &[&super::surface::parts(samples, 0)[..], &[SHADER]].concat());
         let recipe = Recipe {
             label: "obstacle",
             shader: &module,
@@ -123,11 +125,12 @@ impl Solids {
             for solid in &panel.obstacles.solids {
                 let (base, colour) = (vertices.len() as u32, linear(solid.colour).to_array());
                 let rim = solid.rim.map_or(colour, |rim| linear(rim).to_array());
-                let vertex = |&crate::picture::Vertex { position, normal, hatch }| {
+                let vertex = |(at, &crate::picture::Vertex { position, normal, hatch })| {
                     let inward = if solid.rim.is_some() { hatch } else { DEEP_INSIDE };
-                    SolidVertex { position, normal, colour, rim, inward }
+                    let near = solid.near.get(at).copied().unwrap_or(0.0);
+                    SolidVertex { position, normal, colour, rim, inward, near }
                 };
-                vertices.extend(solid.mesh.vertices.iter().map(vertex));
+                vertices.extend(solid.mesh.vertices.iter().enumerate().map(vertex));
                 indices.extend(solid.mesh.triangles.iter().flatten().map(|at| base + at));
             }
             self.ranges.push(start..indices.len() as u32);

@@ -1,7 +1,7 @@
 //! What every pass knows of a panel, as the shaders read it, and where bodies stand in the textures that hold them.
 
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Colour, Panel, Picture, Rectangle};
+use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
@@ -32,6 +32,29 @@ pub(super) struct PanelUniform {
     pub(super) hatch: f32,
     pub(super) behind: f32,
     pub(super) line_share: f32,
+    pub(super) contour_share: f32,
+    pub(super) unused: [f32; 3],
+    pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
+}
+
+/// The struct `Occluder` of `shaders/panel.wgsl`, field by field.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct OccluderUniform {
+    pub(super) first: Vec4,
+    pub(super) second: Vec4,
+    pub(super) turn: Vec4,
+}
+
+impl OccluderUniform {
+    /// Reaches nothing.
+    const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, turn: Vec4::W };
+
+    fn new(occluder: &Occluder) -> Self {
+        let Occluder { centre, half, turn, radius, is_clear } = *occluder;
+        let clear = if is_clear { 1.0 } else { 0.0 };
+        Self { first: centre.extend(radius), second: half.extend(clear), turn: Vec4::from(turn) }
+    }
 }
 
 /// An sRGB colour as linear light.
@@ -115,6 +138,11 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         hatch: if panel.hatch { 1.0 } else { 0.0 },
         behind: if has_behind(panel) { 1.0 } else { 0.0 },
         line_share: sight.line_share,
+        contour_share: sight.contour_share,
+        unused: [0.0; 3],
+        occluders: std::array::from_fn(|at| {
+            panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)
+        }),
     }
 }
 

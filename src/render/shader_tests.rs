@@ -2,12 +2,13 @@
 
 use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
-use super::panel::PanelUniform;
+use super::panel::{OccluderUniform, PanelUniform};
 use super::{
     ALARM_MULTISAMPLED_SHADER, ALARM_SINGLE_SHADER, FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER,
     PANEL_SHADER, SEGMENT_SHADER, SINGLE_SHADER, composite, curve, ground, line, obstacle, overlay, stroke, surface,
     tint,
 };
+use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
 
 fn parse(parts: &[&str]) -> naga::Module {
@@ -26,9 +27,11 @@ fn shaders_are_valid() {
     parse(&[overlay::SHADER]);
     parse(&[curve::SHADER]);
     for samples in [1, 4] {
-        parse(&surface::parts(samples));
-        parse(&[&surface::parts(samples)[..], &[tint::SHADER]].concat());
-        parse(&[&surface::parts(samples)[..], &[obstacle::SHADER]].concat());
+        for occluders in 0..=MOST_OCCLUDERS {
+            parse(&surface::parts(samples, occluders));
+            parse(&[&surface::parts(samples, occluders)[..], &[tint::SHADER]].concat());
+        }
+        parse(&[&surface::parts(samples, 0)[..], &[obstacle::SHADER]].concat());
     }
     for [places, reading, alarm] in [
         [ONE_SAMPLE_SHADER, SINGLE_SHADER, ALARM_SINGLE_SHADER],
@@ -90,9 +93,12 @@ fn structs_are_laid_out_alike_on_both_sides() {
             opacity,
             hatch,
             behind,
-            line_share
+            line_share,
+            contour_share,
+            occluders
         ]
     );
+    same_layout!(module, "Occluder", OccluderUniform, [first, second, turn]);
     same_layout!(
         module,
         "Ground",
@@ -105,7 +111,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
 
 #[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
-    let module = parse(&[&surface::parts(4)[..], &[tint::SHADER]].concat());
+    let module = parse(&[&surface::parts(4, 0)[..], &[tint::SHADER]].concat());
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
     let (_, ramp) = ramp.expect("the scale");
     let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner

@@ -5,7 +5,7 @@ use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, group_layout, shader, 
 use super::target::Bodies;
 use super::tint::Tint;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Mesh, Picture, Rectangle, Vertex};
+use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
@@ -21,9 +21,42 @@ pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
     }
 }
 
-/// The parts of the shader, for a number of samples.
-pub(super) fn parts(samples: u32) -> [&'static str; 4] {
-    [super::PANEL_SHADER, super::samples_shader(samples), super::alarm_shader(samples), SHADER]
+/// What light knows of obstacles near a body, where there are none and where there are some.
+const ALONE_SHADER: &str = include_str!("../../shaders/light_alone.wgsl");
+const AMONG_SHADER: &str = include_str!("../../shaders/light_among.wgsl");
+
+/// How many obstacles there are. A shader that knows it need not count, which saves drawing on a processor much time.
+const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
+    "",
+    "const OCCLUDERS = 1u;\n",
+    "const OCCLUDERS = 2u;\n",
+    "const OCCLUDERS = 3u;\n",
+    "const OCCLUDERS = 4u;\n",
+    "const OCCLUDERS = 5u;\n",
+];
+
+/// The parts of the shader, for a number of samples and of obstacles near a body.
+pub(super) fn parts(samples: u32, occluders: usize) -> [&'static str; 6] {
+    let obstacles = if occluders > 0 { AMONG_SHADER } else { ALONE_SHADER };
+    let [samples, alarm] = [super::samples_shader(samples), super::alarm_shader(samples)];
+    [super::PANEL_SHADER, samples, alarm, COUNTS[occluders], obstacles, SHADER]
+}
+
+/// How many obstacles take light away from a body of a picture at the most.
+pub(super) fn occluders(picture: &Picture) -> usize {
+    let counts = picture.panels.iter().map(|panel| panel.obstacles.occluders.len());
+    counts.max().unwrap_or(0).min(MOST_OCCLUDERS)
+}
+
+/// A thing for each number of obstacles near a body, made when it is first needed.
+pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
+
+/// How surfaces are drawn.
+#[derive(Debug)]
+pub(super) struct Ways {
+    pub(super) alarm_behind: wgpu::RenderPipeline,
+    pub(super) alarm: wgpu::RenderPipeline,
+    pub(super) sound: wgpu::RenderPipeline,
 }
 
 /// What surfaces read of what lies behind them.
@@ -34,9 +67,9 @@ pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
 /// The pipelines of the surfaces, and the meshes of one picture.
 #[derive(Debug)]
 pub(super) struct Surfaces {
-    alarm_behind: wgpu::RenderPipeline,
-    alarm: wgpu::RenderPipeline,
-    sound: wgpu::RenderPipeline,
+    /// Made when they are first needed.
+    ways: ForOccluders<Ways>,
+    samples: u32,
     behind_layout: wgpu::BindGroupLayout,
     behind: Option<wgpu::BindGroup>,
     vertices: GrowingBuffer<Vertex>,
@@ -46,9 +79,21 @@ pub(super) struct Surfaces {
 }
 
 impl Surfaces {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let module = shader(gpu, "surface", &parts(samples));
+    pub(super) fn new(gpu: &Gpu, samples: u32) -> Self {
         let behind_layout = group_layout(gpu, "turned over", &behind_entries(samples));
+        Self {
+            ways: ForOccluders::default(),
+            samples,
+            behind_layout,
+            behind: None,
+            vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
+            indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
+            ranges: Vec::new(),
+        }
+    }
+
+    fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, samples: u32, occluders: usize) -> Ways {
+        let module = shader(gpu, "surface", &parts(samples, occluders));
         let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
             let recipe = Recipe {
                 label,
@@ -64,16 +109,18 @@ impl Surfaces {
             };
             recipe.build(gpu)
         };
-        Self {
+        Ways {
             alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
             alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
-            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, &behind_layout]),
-            behind_layout,
-            behind: None,
-            vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
-            indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
-            ranges: Vec::new(),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, behind]),
         }
+    }
+
+    /// Prepares to draw a picture without a field.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
+        let count = occluders(picture);
+        let made = || Self::made(gpu, panels, &self.behind_layout, self.samples, count);
+        self.ways[count].get_or_insert_with(made);
     }
 
     /// Uploads the meshes of a picture.
@@ -96,6 +143,10 @@ impl Surfaces {
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
     }
 
+    fn ways(&self, occluders: usize) -> &Ways {
+        self.ways[occluders].as_ref().expect("prepared")
+    }
+
     /// Draws the turned-over sets by themselves, coloured by a field if there is a tint.
     pub(super) fn draw_behind(
         &self,
@@ -103,14 +154,15 @@ impl Surfaces {
         panels: &Panels,
         places: &[Rectangle],
         tint: Option<&Tint>,
+        occluders: usize,
     ) {
         let pipeline = match tint {
             Some(tint) => {
                 pass.set_bind_group(1, &tint.alarm_group, &[]);
                 pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
-                &tint.alarm_behind
+                &tint.ways(occluders).alarm_behind
             }
-            None => &self.alarm_behind,
+            None => &self.ways(occluders).alarm_behind,
         };
         self.draw(pass, pipeline, panels, places, 1);
     }
@@ -122,17 +174,20 @@ impl Surfaces {
         panels: &Panels,
         places: &[Rectangle],
         tint: Option<&Tint>,
+        occluders: usize,
     ) {
         let Some(tint) = tint else {
-            self.draw(pass, &self.alarm, panels, places, 1);
+            let ways = self.ways(occluders);
+            self.draw(pass, &ways.alarm, panels, places, 1);
             pass.set_bind_group(1, self.behind.as_ref(), &[]);
-            return self.draw(pass, &self.sound, panels, places, 0);
+            return self.draw(pass, &ways.sound, panels, places, 0);
         };
+        let ways = tint.ways(occluders);
         pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
         pass.set_bind_group(1, &tint.alarm_group, &[]);
-        self.draw(pass, &tint.alarm, panels, places, 1);
+        self.draw(pass, &ways.alarm, panels, places, 1);
         pass.set_bind_group(1, &tint.sound_group, &[]);
-        self.draw(pass, &tint.sound, panels, places, 0);
+        self.draw(pass, &ways.sound, panels, places, 0);
     }
 
     fn draw(

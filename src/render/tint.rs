@@ -2,7 +2,7 @@
 
 use super::panel::{Panels, linear};
 use super::pipeline::{BODY_FORMAT, Recipe, group_layout, shader, uniform_entry};
-use super::surface;
+use super::surface::{self, ForOccluders, Ways};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Picture, SHADES};
@@ -16,9 +16,9 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Flo
 /// first picture that has a field.
 #[derive(Debug)]
 pub(super) struct Tint {
-    pub(super) alarm_behind: wgpu::RenderPipeline,
-    pub(super) alarm: wgpu::RenderPipeline,
-    pub(super) sound: wgpu::RenderPipeline,
+    ways: ForOccluders<Ways>,
+    samples: u32,
+    alarm_layout: wgpu::BindGroupLayout,
     /// For the turned-over sets: the scale; for the sound ones also what lies behind them.
     pub(super) alarm_group: wgpu::BindGroup,
     pub(super) sound_group: wgpu::BindGroup,
@@ -28,13 +28,32 @@ pub(super) struct Tint {
 }
 
 impl Tint {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
-        let module = shader(gpu, "tint", &[&surface::parts(samples)[..], &[SHADER]].concat());
+    pub(super) fn new(gpu: &Gpu, bodies: &Bodies, samples: u32) -> Self {
         let scale = || uniform_entry(4, SHADES * size_of::<Vec4>(), false);
         let alarm_layout = group_layout(gpu, "scale", &[scale()]);
         let [depth, colour] = surface::behind_entries(samples);
         let behind = [depth, colour, scale()];
         let sound_layout = group_layout(gpu, "scale, turned over", &behind);
+        let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
+        let alarm_entries = [wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() }];
+        Self {
+            ways: ForOccluders::default(),
+            samples,
+            alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("scale"),
+                layout: &alarm_layout,
+                entries: &alarm_entries,
+            }),
+            alarm_layout,
+            sound_group: sound_group(gpu, &sound_layout, &ramp, bodies),
+            sound_layout,
+            ramp,
+            shades: GrowingBuffer::new(gpu, "shades", wgpu::BufferUsages::VERTEX, 1024),
+        }
+    }
+
+    fn made(gpu: &Gpu, panels: &Panels, layouts: [&wgpu::BindGroupLayout; 2], samples: u32, occluders: usize) -> Ways {
+        let module = shader(gpu, "tint", &[&surface::parts(samples, occluders)[..], &[SHADER]].concat());
         let vertices = [
             Some(surface::vertices()),
             Some(wgpu::VertexBufferLayout {
@@ -58,26 +77,24 @@ impl Tint {
             };
             recipe.build(gpu)
         };
-        let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
-        let alarm_entries = [wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() }];
-        Self {
-            alarm_behind: build(
-                "turned over, behind, coloured",
-                ["tinted_alarm_corner", "tinted_behind"],
-                &alarm_layout,
-            ),
-            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], &alarm_layout),
-            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], &sound_layout),
-            alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("scale"),
-                layout: &alarm_layout,
-                entries: &alarm_entries,
-            }),
-            sound_group: sound_group(gpu, &sound_layout, &ramp, bodies),
-            sound_layout,
-            ramp,
-            shades: GrowingBuffer::new(gpu, "shades", wgpu::BufferUsages::VERTEX, 1024),
+        let [of_alarm, of_sound] = layouts;
+        Ways {
+            alarm_behind: build("turned over, behind, coloured", ["tinted_alarm_corner", "tinted_behind"], of_alarm),
+            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm),
+            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound),
         }
+    }
+
+    /// Prepares to draw a picture.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
+        let count = surface::occluders(picture);
+        let layouts = [&self.alarm_layout, &self.sound_layout];
+        self.ways[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, self.samples, count));
+    }
+
+    /// How surfaces are drawn with a number of obstacles near a body.
+    pub(super) fn ways(&self, occluders: usize) -> &Ways {
+        self.ways[occluders].as_ref().expect("prepared")
     }
 
     /// Takes note of new textures.

@@ -31,6 +31,8 @@ pub struct View {
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
     pub side: f64,
+    /// Whether that is the side of a lattice's cells, which the floor's grid then repeats, or only the mean of many edges.
+    pub has_cells: bool,
     /// A title above all panels; empty for none.
     pub title: String,
     /// A caption below all panels; empty for none.
@@ -84,6 +86,7 @@ impl Default for View {
             colour: None,
             arrow_scale: 1.0,
             side: 1.0,
+            has_cells: false,
             title: String::new(),
             caption: String::new(),
             labels: Labels { letter: false, name: true, model: true, clock: true, count: true, number: true },
@@ -140,7 +143,7 @@ impl Default for Light {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FloorStyle {
-    /// In space with a grid of one cell for each edge of an element.
+    /// In space with a grid of one cell for each cell of a lattice, or of few cells beside other bodies.
     #[default]
     Grid,
     /// Without a grid.

@@ -5,8 +5,14 @@ use localshape::picture::{MarkShape, Picture, TextRun, compose_figure};
 use localshape::scene::figure::Figure;
 
 fn picture(name: &str, size: [u32; 2]) -> Picture {
+    picture_with(name, size, 1.0)
+}
+
+/// A figure with type so many times larger than usual.
+fn picture_with(name: &str, size: [u32; 2], text_scale: f64) -> Picture {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.size = size;
+    figure.look.text_scale = text_scale;
     compose_figure(&figure, &Moments::default()).expect("room")
 }
 
@@ -56,19 +62,20 @@ fn edges(word: &TextRun) -> [f32; 4] {
 #[test]
 fn no_label_overlaps_another_or_leaves_the_picture() {
     for name in ["fig1", "fig2", "fig3"] {
-        for size in [[640, 360], [1280, 720], [2560, 1440], [900, 1200]] {
-            let picture = picture(name, size);
+        let sizes = [[640, 360], [1280, 720], [2560, 1440], [900, 1200]];
+        for (size, text_scale) in sizes.into_iter().flat_map(|size| [0.8, 1.0, 1.5].map(|scale| (size, scale))) {
+            let picture = picture_with(name, size, text_scale);
             assert!(picture.words.len() > 4, "{name} {size:?}");
             for (at, word) in picture.words.iter().enumerate() {
                 let [left, top, right, bottom] = edges(word);
                 let inside = left >= 0.0 && top >= 0.0 && right <= size[0] as f32 && bottom <= size[1] as f32;
-                assert!(inside, "{name} {size:?}: {:?} leaves the picture", word.text);
+                assert!(inside, "{name} {size:?} {text_scale}: {:?} leaves the picture", word.text);
                 for other in &picture.words[..at] {
                     let [left2, top2, right2, bottom2] = edges(other);
                     let apart = right <= left2 || right2 <= left || bottom <= top2 || bottom2 <= top;
                     // An index stands at the foot of its letter.
                     let is_index = word.text == "i" || other.text == "i";
-                    assert!(apart || is_index, "{name} {size:?}: {:?} over {:?}", word.text, other.text);
+                    assert!(apart || is_index, "{name} {size:?} {text_scale}: {:?} over {:?}", word.text, other.text);
                 }
             }
         }
@@ -78,4 +85,15 @@ fn no_label_overlaps_another_or_leaves_the_picture() {
 #[test]
 fn a_figure_is_the_same_each_time() {
     assert_eq!(picture("fig1", [640, 360]), picture("fig1", [640, 360]));
+}
+
+#[test]
+fn type_is_as_many_times_larger_as_a_figure_says() {
+    let [usual, large] = [1.0, 1.5].map(|text_scale| picture_with("fig1", [2560, 1440], text_scale));
+    let size =
+        |picture: &Picture, text: &str| picture.words.iter().find(|word| word.text == text).map(|word| word.size);
+    for text in ["Local shape", "Apex pushed in", "0.508", "82° off", "rest shape, best fit"] {
+        let [usual, large] = [&usual, &large].map(|picture| size(picture, text).expect("written"));
+        assert!((large / usual - 1.5).abs() < 1e-4, "{text}: {usual} and {large}");
+    }
 }

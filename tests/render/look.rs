@@ -1,12 +1,13 @@
 //! Pictures without a background, and with fonts, colours and sizes of their own.
 
 use super::{fig4b, gpu};
+use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::render::Renderer;
-use localshape::scene::{FontFiles, Limits, Look, Scene, Theme};
+use localshape::scene::{Follow, FontFiles, Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 
@@ -364,4 +365,37 @@ fn type_and_lines_become_larger_and_stay_in_the_picture() {
             assert!(left >= 0.0 && right <= 1280.0 && top >= 0.0 && bottom <= 720.0, "{run:?}");
         }
     }
+}
+
+#[test]
+fn small_bodies_have_narrower_contours_and_large_ones_the_usual() {
+    let share = |times: f64| {
+        let (mut scene, frame) = fig4b(0);
+        scene.view.camera.distance *= times;
+        compose(&scene, &frame).panels[0].sight.contour_share
+    };
+    assert_eq!(share(1.0), 1.0);
+    assert!((share(100.0) - 0.4).abs() < 1e-6);
+    let shares: Vec<_> = (0..200).map(|step| share(1.0 + 0.1 * f64::from(step))).collect();
+    assert!(shares.windows(2).all(|two| two[1] <= two[0] && two[0] - two[1] < 0.05), "{shares:?}");
+    assert!(shares.iter().any(|share| (0.5..0.7).contains(share)));
+}
+
+#[test]
+fn the_floor_reaches_as_far_as_the_shadow_of_a_body_that_flies() {
+    let fade = |up: f64, aside: f64| {
+        let (mut scene, mut frame) = fig4b(0);
+        scene.view.camera.follow = Follow::Nothing;
+        for run in &mut frame.runs {
+            run.snapshot.position.iter_mut().for_each(|at| *at += DVec3::new(aside, up, 0.0));
+        }
+        compose(&scene, &frame).panels[0].floor.clone().expect("a floor").fade
+    };
+    let usual = fade(0.0, 0.0);
+    assert_eq!(fade(0.0, -0.02), usual);
+    for farther in [fade(1.0, 0.0), fade(0.0, 0.6)] {
+        assert!(farther[0] > usual[0] + 1.0 && farther[1] > usual[1] + 1.0, "{farther:?} {usual:?}");
+    }
+    let all: Vec<_> = (0..400).map(|step| fade(0.01 * f64::from(step), 0.0)[0]).collect();
+    assert!(all.windows(2).all(|two| (0.0..0.2).contains(&(two[1] - two[0]))), "{all:?}");
 }

@@ -2,7 +2,9 @@
 
 use super::{fig4b, gpu};
 use glam::{DVec3, Vec3};
-use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Panel, Picture, compose};
+use localshape::picture::{
+    Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
+};
 use localshape::render::Renderer;
 use localshape::scene::{Follow, Limits, Scene};
 use localshape::sequence::Sequence;
@@ -69,6 +71,7 @@ fn numbers(panel: &Panel) -> Vec<f32> {
     let mut all = Vec::new();
     for solid in &panel.obstacles.solids {
         all.extend(solid.mesh.vertices.iter().flat_map(|vertex| [vertex.position, vertex.normal].concat()));
+        all.extend(&solid.near);
     }
     for slab in &panel.obstacles.slabs {
         for corner in slab.panes.iter().flat_map(|pane| &pane.corners) {
@@ -342,4 +345,94 @@ fn following_the_body_lets_the_grid_scroll_below() {
     assert!(off.min(1.0 - off) < 1e-3, "{grid:?} {gone}");
     let still = [25, 0].map(|index| picture(&height, index).panels[0].floor.as_ref().expect("a floor").grid);
     assert_eq!(still[0], still[1]);
+}
+
+/// A block between a floor and an obstacle of a kind, its lower side at a height (m).
+fn below(obstacle: &str) -> Panel {
+    let block = "body = { lattice = { cells = [3, 2, 3], side = 0.1 }, lowest = 0 }\n";
+    let obstacle = format!("[[obstacle]]\n{obstacle}\n");
+    picture(&scene(&[WORLD, block, FLOOR, &obstacle]), 0).panels.remove(0)
+}
+
+/// How near the body comes to the only solid of a panel.
+fn nearest(panel: &Panel) -> f32 {
+    let [solid] = &panel.obstacles.solids[..] else { panic!("one solid") };
+    assert!(solid.near.is_empty() || solid.near.len() == solid.mesh.vertices.len());
+    assert!(is_closed(&solid.mesh) && solid.near.iter().all(|near| (0.0..=1.0).contains(near)));
+    solid.near.iter().copied().fold(0.0, f32::max)
+}
+
+#[test]
+fn bodies_and_obstacles_take_light_from_each_other_as_they_come_near() {
+    let kinds: [&dyn Fn(f64) -> String; 3] = [
+        &|height| format!("kind = 'sphere'\ncentre = [0, {}, 0]\nradius = 0.15", height + 0.15),
+        &|height| {
+            let level = height + 0.05;
+            format!("kind = 'capsule'\nfrom = [-0.3, {level}, 0]\nto = [0.3, {level}, 0]\nradius = 0.05")
+        },
+        &|height| {
+            let turned = "rotation = { axis = [0, 1, 0], angle = 0.4 }";
+            format!("kind = 'box'\ncentre = [0, {}, 0]\nsize = [0.4, 0.1, 0.2]\n{turned}", height + 0.05)
+        },
+    ];
+    for kind in kinds {
+        // The upper side of the block is at 0.2 m, and what starts inside of it is refused.
+        let touching = below(&kind(0.2005));
+        assert!(nearest(&touching) > 0.9, "{}", nearest(&touching));
+        assert_eq!(touching.obstacles.occluders.len(), 1);
+        let mut last = nearest(&touching);
+        for step in 1..=40 {
+            let near = nearest(&below(&kind(0.2005 + 0.005 * f64::from(step))));
+            assert!(near <= last + 1e-3 && last - near < 0.1, "{step}: {last} {near}");
+            last = near;
+        }
+        assert_eq!(last, 0.0);
+        assert!(below(&kind(1.2)).obstacles.occluders.is_empty());
+    }
+}
+
+#[test]
+fn the_ground_takes_no_light_twice_and_plates_do() {
+    assert!(picture(&scene(&[WORLD, CUBE, FLOOR]), 0).panels[0].obstacles.occluders.is_empty());
+    let plate = below("kind = 'plate'\npoint = [0, 0.25, 0]\nnormal = [0, -1, 0]");
+    assert!(matches!(plate.obstacles.occluders[..], [Occluder { is_clear: true, .. }]));
+    // However many there are, so many count, and those are the nearest.
+    let ball = |at: i32| {
+        let height = 0.41 + 0.005 * f64::from(at);
+        format!("[[obstacle]]\nkind = 'sphere'\ncentre = [0, {height}, 0]\nradius = 0.1\n")
+    };
+    let balls: Vec<_> = (0..9).map(ball).collect();
+    let crowded = picture(&scene(&[WORLD, CUBE, FLOOR, &balls.concat()]), 0);
+    let Obstacles { occluders, solids, .. } = &crowded.panels[0].obstacles;
+    assert_eq!((occluders.len(), solids.len()), (MOST_OCCLUDERS, 9));
+}
+
+#[test]
+fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_light() {
+    let Some(gpu) = gpu("a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_light") else {
+        return;
+    };
+    let block = "body = { lattice = { cells = [3, 2, 3], side = 0.1 }, lowest = 0 }\n";
+    let brightness = |height: f64| {
+        let rod = format!(
+            "[[obstacle]]\nkind = 'capsule'\nfrom = [-0.5, {height}, 0]\nto = [0.5, {height}, 0]\nradius = 0.03\n"
+        );
+        let view = "[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\n\
+                    camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0, elevation = 1.2 }\n";
+        let mut picture = picture(&scene(&[WORLD, block, FLOOR, &rod, view]), 0);
+        // Only what takes light away is left of the rod.
+        picture.panels[0].obstacles.solids.clear();
+        picture.panels[0].lines.clear();
+        let image =
+            Renderer::new(gpu, picture.size, 4).and_then(|mut renderer| renderer.draw(&picture)).expect("drawn");
+        let [near, far] = [0.02, 0.14].map(|z| {
+            let at = picture.panels[0].sight.clip
+                * seen(&scene(&[WORLD, block, FLOOR, &rod, view]), [0.02, 0.2, z]).extend(1.0);
+            let pixel = [(0.5 + 0.5 * at.x / at.w) * 320.0, (0.5 - 0.5 * at.y / at.w) * 240.0];
+            f64::from(image.get_pixel(pixel[0] as u32, pixel[1] as u32)[1])
+        });
+        near / far
+    };
+    let [touching, hovering] = [0.2305, 0.5].map(brightness);
+    assert!(touching < 0.85 && (hovering - 1.0).abs() < 0.05, "{touching} {hovering}");
 }

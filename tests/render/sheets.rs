@@ -77,19 +77,50 @@ fn no_words_overlap_and_all_can_be_read() {
         for size in [[2400, 1350], [1200, 675], [640, 360], [480, 270], [3000, 1700], [700, 1200], [200, 150], [64, 64]]
         {
             figure.size = size;
-            let picture = compose_figure(&figure, &moments).expect("room");
-            if let Some([one, other]) = overlapping(&picture) {
-                panic!("“{}” lies over “{}” in {size:?} of {}", one.text, other.text, figure.title);
-            }
-            let [width, height] = size.map(|length| length as f32);
-            for word in &picture.words {
-                let [left, top, right, bottom] = word.bounds();
-                let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
-                assert!(inside, "“{}” leaves the picture of {size:?}: {:?}", word.text, word.bounds());
-                assert!(word.size >= SMALLEST_TYPE, "“{}” in {size:?} is {} px high", word.text, word.size);
+            for times in [1.0, 1.5, 3.0] {
+                figure.look.text_scale = times;
+                let picture = compose_figure(&figure, &moments).expect("room");
+                let figure = format!("{size:?} of {} with type {times} times as large", figure.title);
+                if let Some([one, other]) = overlapping(&picture) {
+                    panic!("“{}” lies over “{}” in {figure}", one.text, other.text);
+                }
+                let [width, height] = size.map(|length| length as f32);
+                for word in &picture.words {
+                    let [left, top, right, bottom] = word.bounds();
+                    let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+                    assert!(inside, "“{}” leaves the picture of {figure}: {:?}", word.text, word.bounds());
+                    assert!(word.size >= SMALLEST_TYPE, "“{}” in {figure} is {} px high", word.text, word.size);
+                }
             }
         }
     }
+}
+
+/// The sizes of words (px) by what they say.
+fn sizes(picture: &Picture) -> std::collections::BTreeMap<&str, f32> {
+    picture.words.iter().map(|word| (word.text.as_str(), word.size)).collect()
+}
+
+#[test]
+fn type_is_as_many_times_larger_as_a_figure_says() {
+    let usual = "title = 'A title'\ncaption = 'In a few words'\n\
+                 [sheet]\nscene = 'fig4b.toml'\nmoments = [0, 0.5, 1]\nstrips = ['turned_over', 'shape_error']\n";
+    let picture = |text: &str| {
+        let figure = own(text);
+        compose_figure(&figure, &Moments::new(&figure)).expect("room")
+    };
+    let (plain, large) = (picture(usual), picture(&format!("text_scale = 1.5\n{usual}")));
+    let (plain_sizes, large_sizes) = (sizes(&plain), sizes(&large));
+    let words =
+        ["A title", "In a few words", "Local shape", "500 ms", "Turned over", "of 27 cubes", "Shape error", "9"];
+    for word in words {
+        let times = large_sizes[word] / plain_sizes[word];
+        assert!((times - 1.5).abs() < 1e-4, "“{word}” is {times} times larger");
+    }
+    // The bodies have what words leave, which is most of it.
+    let heights = [&plain, &large].map(|picture| picture.panels[0].viewport[3] as f32);
+    assert!(heights[1] > 0.8 * heights[0], "{heights:?}");
+    assert_eq!(picture(&format!("text_scale = 1\n{usual}")), plain);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Figure files: every mistake is said where it is, in words that help.
 
 use localshape::scene::figure::{Content, Figure, NAMES, Sheet};
-use localshape::scene::{Limits, Scene, SceneError};
+use localshape::scene::{Limits, Scene, SceneError, Theme};
 use std::path::Path;
 
 /// Reads a figure beside a scene `fig4b.toml` of 3 s, one of the plane and one without a run `Mass-spring`.
@@ -37,6 +37,18 @@ fn every_mistake_is_said_where_it_is() {
         ("[sheet]\nscene = 'fig4b.toml'\nmoment = [0]", 3, 1, "unknown key `moment` in `sheet`"),
         ("[sheet]\nscene = 'fig4b.toml'", 1, 1, "the sheet has no columns: expected `moments` or `[[sheet.column]]`"),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = []", 3, 11, "`sheet.moments`"),
+        (
+            "text_scale = 0.4\n[sheet]\nscene = 'fig4b.toml'\nmoments = [0]",
+            1,
+            14,
+            "`text_scale` is 0.4; expected a number from 0.5 to 3",
+        ),
+        (
+            "text_scale = 3.1\n[forces]\nscenes = ['fig4b.toml']",
+            1,
+            14,
+            "`text_scale` is 3.1; expected a number from 0.5 to 3",
+        ),
         ("[sheet]\nscene = 'nowhere.toml'\nmoments = [0]", 2, 9, "nowhere.toml: there is no such file"),
         ("[sheet]\nmoments = [0]", 2, 1, "there is no `scene` beside the moments that are shown of it"),
         ("[sheet]\n[[sheet.column]]\ntime = 0", 2, 1, "the column has no scene: expected `scene` here or in `[sheet]`"),
@@ -133,6 +145,17 @@ fn every_mistake_is_said_where_it_is() {
         let said = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
         assert!(said.contains(words), "{words:?} is not in\n{error}");
     }
+}
+
+#[test]
+fn type_is_as_large_as_the_figure_or_else_its_first_scene_says() {
+    let sheet = "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]";
+    let scale = |text: &str| load(text).unwrap_or_else(|error| panic!("{error}")).look.text_scale;
+    assert_eq!(scale(sheet), 1.0);
+    assert_eq!(scale(&format!("text_scale = 1.5\n{sheet}")), 1.5);
+    let mut dark = load(&format!("text_scale = 2\n{sheet}")).unwrap_or_else(|error| panic!("{error}"));
+    dark.set_theme(Theme::Dark);
+    assert_eq!((dark.look.text_scale, dark.look.theme), (2.0, Theme::Dark));
 }
 
 #[test]

@@ -16,13 +16,19 @@ use std::borrow::Cow;
 const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+/// As far as its shadow goes beyond the first distance from the point looked at, up to the third one, the floor is drawn
+/// farther, less by the second one where that begins (sizes of the body).
+const STILL_NEAR: f64 = 0.5;
+const GENTLY: f64 = 0.3;
+const FARTHEST_SHADOW: f64 = 3.0;
 /// Distance of the camera above which the floor is drawn wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
 /// So far above the room for words below the body the floor begins to fade (px at type of the reference size): words
 /// stand on clean ground.
 const FADE_ABOVE: f64 = 9.0;
-/// The grid's lines are a side apart, or more if that were more cells than this beside a body.
-const MOST_CELLS: f64 = 10.0;
+/// The grid's lines are a side apart, or more if that were more cells than this beside a body that is a lattice, whose
+/// cells the grid repeats, and beside one that is not: there a fine grid would only be restless.
+const MOST_CELLS: [f64; 2] = [10.0, 5.0];
 /// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
 const SHEER: f64 = 0.38;
 
@@ -35,8 +41,9 @@ impl Draft<'_> {
         let (normal, height) = contact::ground(&self.scene.obstacles, self.run.snapshot.time)?;
         let (plane, anchor) = self.plane(normal, height);
         let view = &self.scene.view;
-        let fade =
-            FLOOR_FADE.map(|sizes| sizes * self.composer.extent * self.composer.spread / self.side * self.widening());
+        let farther = self.farther(&plane);
+        let fade = FLOOR_FADE
+            .map(|sizes| sizes * self.composer.extent * self.composer.spread / self.side * self.widening() + farther);
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
         let cell = self.cell();
@@ -54,6 +61,20 @@ impl Draft<'_> {
             has_grid: view.floor == FloorStyle::Grid,
             shades: self.shadows(staged, &plane, middle, fade[1]),
         })
+    }
+
+    /// How much farther than usual the floor is drawn so that the shadow of a body that has gone away or flies high still
+    /// falls on it (sides).
+    fn farther(&self, plane: &Plane) -> f64 {
+        if self.diverged || self.position.is_empty() {
+            return 0.0;
+        }
+        let middle = self.position.iter().sum::<DVec3>() / self.position.len() as f64;
+        let size = self.composer.extent * self.composer.spread / self.side;
+        let gone = plane.shadow((middle - self.origin) / self.side, self.key).length();
+        // It begins gently.
+        let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
+        beyond * beyond / (beyond + GENTLY * size)
     }
 
     /// The plane of the ground, and a point through which lines of its grid go (m): the origin of the world, or where a
@@ -115,7 +136,8 @@ impl Draft<'_> {
 
     /// The distance of the grid's lines (sides).
     pub(super) fn cell(&self) -> f64 {
-        cell(self.composer.extent * self.composer.spread / self.side)
+        let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
+        cell(self.composer.extent * self.composer.spread / self.side, most)
     }
 }
 
@@ -128,11 +150,12 @@ pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
     (level + slope * DVec3::Y).normalize()
 }
 
-/// The distance of the grid's lines (sides) beside a body of an extent (sides): 1, 2, 5, 10, 20, …
-fn cell(extent: f64) -> f64 {
+/// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most: 1, 2, 5,
+/// 10, 20, …
+fn cell(extent: f64, most: f64) -> f64 {
     let mut cells = 1.0;
     for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {
-        if extent / cells <= MOST_CELLS {
+        if extent / cells <= most {
             break;
         }
         cells *= factor;

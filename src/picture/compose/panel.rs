@@ -19,11 +19,16 @@ use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::field::Support;
 use crate::sim::snapshot::{RunFrame, Status};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
 /// Coordinates of what blew up are kept within this (sides).
 const FARTHEST: f64 = 1e12;
+
+/// At its widest, a body of the second size has contours of the usual width, and a smaller one narrower ones, down to the
+/// first size (px in the reference picture) and this part of the usual width: else it would be mostly outline.
+const SMALL_BODY: [f64; 2] = [30.0, 150.0];
+const LEAST_CONTOUR: f64 = 0.4;
 
 /// One panel that is being composed, and what all its parts need to know.
 pub(super) struct Draft<'a> {
@@ -151,8 +156,23 @@ impl<'a> Draft<'a> {
             soft: narrow(self.composer.soft),
             element: narrow(self.element),
             line_share: narrow(if self.composer.exploded.is_some() { own_lines(self.element) } else { 1.0 }),
+            contour_share: narrow(self.contour_share()),
             middle: self.middle(),
         }
+    }
+
+    /// How wide the contours of the body are, in parts of their usual width.
+    fn contour_share(&self) -> f64 {
+        if self.flat || self.diverged {
+            return 1.0;
+        }
+        let nodes = self.composer.skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
+        let pixels = nodes.filter_map(|&at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
+        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
+        let widest = (high - low).max_element() / (self.scale.line() / self.scale.line_factor);
+        let share = ((widest - SMALL_BODY[0]) / (SMALL_BODY[1] - SMALL_BODY[0])).clamp(0.0, 1.0);
+        1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
     }
 
     /// The pixel of the body's middle.
@@ -229,6 +249,8 @@ impl<'a> Draft<'a> {
             cell: self.cell(),
             ground: contact::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
+            skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.composer.skin),
+            soft: self.composer.soft * self.side,
             start: self.composer.start_box,
         };
         staging.arrows(&self.pointers(), above);

@@ -3,6 +3,8 @@
 //! flat.
 
 mod half_space;
+mod near;
+mod occluder;
 mod pierced;
 mod plane;
 mod shapes;

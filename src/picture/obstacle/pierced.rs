@@ -62,7 +62,7 @@ impl Staging<'_> {
 }
 
 /// How far a point is from a solid shape before it moves (m); negative inside.
-fn height(shape: &Shape, point: DVec3) -> f64 {
+pub(super) fn height(shape: &Shape, point: DVec3) -> f64 {
     match *shape {
         Shape::Floor { normal, height } => normal.dot(point) - height,
         Shape::Plate { point: surface, normal } => normal.dot(point - surface),

@@ -53,7 +53,7 @@ impl Flat<'_> {
             solids.extend(self.solid(obstacle, &solid));
             outermost.extend(outline);
         }
-        (Obstacles { solids, slabs: Vec::new() }, Staged { outermost, ..Staged::default() })
+        (Obstacles { solids, ..Obstacles::default() }, Staged { outermost, ..Staged::default() })
     }
 
     /// An obstacle as far as it lies outside of half-spaces; `None` for these and where nothing is left.
@@ -82,7 +82,7 @@ impl Flat<'_> {
         let [colour, rim] = self.site.palette.obstacle_flat;
         // Without its outline it still has a smooth border.
         let rim = if self.outline { rim } else { colour };
-        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim) })
+        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim), near: Vec::new() })
     }
 
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and where

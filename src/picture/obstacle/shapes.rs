@@ -16,6 +16,27 @@ impl Lathe {
         self.rings.iter().flatten().map(|(at, _)| *at).collect()
     }
 
+    /// The same surface with more rings where two are farther apart than a length (m).
+    pub(super) fn refined(&self, longest: f64) -> Self {
+        const MOST: f64 = 64.0;
+        let mut rings: Vec<Vec<(DVec3, DVec3)>> = Vec::with_capacity(self.rings.len());
+        for ring in &self.rings {
+            if let Some(last) = rings.last().cloned() {
+                let apart = last.iter().zip(ring).map(|(one, other)| one.0.distance(other.0)).fold(0.0, f64::max);
+                let parts = (apart / longest).ceil().clamp(1.0, MOST) as usize;
+                rings.extend((1..parts).map(|at| {
+                    let share = at as f64 / parts as f64;
+                    let between = |(one, other): (&(DVec3, DVec3), &(DVec3, DVec3))| {
+                        (one.0.lerp(other.0, share), one.1.lerp(other.1, share).normalize_or(one.1))
+                    };
+                    last.iter().zip(ring).map(between).collect()
+                }));
+            }
+            rings.push(ring.clone());
+        }
+        Self { rings }
+    }
+
     /// Triangles, counter-clockwise from outside, without those that are only a line at a pole.
     pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
         let count = self.rings.first().map_or(0, Vec::len) as u32;

@@ -4,7 +4,7 @@ use super::Staged;
 use super::half_space::clipped_line;
 use super::shapes::{FACES, Lathe, edges, lathe};
 use super::space::Staging;
-use crate::picture::narrow::narrow_point;
+use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::{Line, LineKind, Mesh, Solid, Vertex};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -14,6 +14,10 @@ const FLATNESS: f64 = 0.12;
 /// Into how many segments something round is cut: at least and at most, and where it only throws a shadow.
 const SEGMENTS: [usize; 2] = [16, 128];
 const SHADOW_SEGMENTS: usize = 20;
+/// Where the body is near, surfaces are cut into cells of this size (soft units), of which a side of a box has so many at
+/// most.
+const CELL: f64 = 0.3;
+const MOST_CELLS: f64 = 64.0;
 /// Balls larger than this (body sizes) are cut finely where the body is, and coarsely elsewhere.
 const LARGE_BALL: f64 = 3.0;
 
@@ -33,10 +37,19 @@ impl Staging<'_> {
         let needed = (PI / (2.0 * FLATNESS / pixels.max(1e-3)).sqrt()).ceil();
         let segments = needed.clamp(SEGMENTS[0] as f64, SEGMENTS[1] as f64) as usize;
         let lathe = shape(segments.next_multiple_of(4));
-        let mesh = self.turned(&lathe);
+        let near = self.near(lathe.points().into_iter());
+        let (mesh, near) = match near {
+            // Its light changes where the body is near.
+            Some(near) => {
+                let fine = lathe.refined(CELL * self.soft);
+                let near: Vec<f32> = fine.rings.iter().flatten().map(|&(at, out)| narrow(near.to(at, out))).collect();
+                (self.turned(&fine), near)
+            }
+            None => (self.turned(&lathe), Vec::new()),
+        };
         self.outline(&lathe, lines);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None, near });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -68,17 +81,32 @@ impl Staging<'_> {
         staged: &mut Staged,
     ) {
         let mut mesh = Mesh::default();
+        let near = self.near(corners.iter().copied());
+        let mut light = Vec::new();
         let mut seen = [false; 6];
         for (face, nodes) in FACES.iter().enumerate() {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
             let base = mesh.vertices.len() as u32;
             let polygon = nodes.map(|node| corners[node]);
-            mesh.vertices.extend(polygon.map(|at| Vertex {
-                position: self.site.relative(at),
-                normal: narrow_point(normal).to_array(),
-                hatch: 0.0,
-            }));
-            mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|triangle: [u32; 3]| triangle.map(|at| base + at)));
+            // Its light changes where the body is near: there it is cut into cells.
+            let cells = |one: usize, other: usize| match near {
+                Some(_) => (polygon[one].distance(polygon[other]) / (CELL * self.soft)).ceil().clamp(1.0, MOST_CELLS),
+                None => 1.0,
+            };
+            let counts = [cells(0, 1), cells(0, 3)];
+            let [across, along] = counts.map(|count| count as u32);
+            for (row, column) in (0..=along).flat_map(|row| (0..=across).map(move |column| (row, column))) {
+                let [x, y] = [f64::from(column) / counts[0], f64::from(row) / counts[1]];
+                let at = polygon[0].lerp(polygon[1], x).lerp(polygon[3].lerp(polygon[2], x), y);
+                let (position, hatch) = (self.site.relative(at), 0.0);
+                mesh.vertices.push(Vertex { position, normal: narrow_point(normal).to_array(), hatch });
+                light.extend(near.as_ref().map(|near| narrow(near.to(at, normal))));
+            }
+            for (row, column) in (0..along).flat_map(|row| (0..across).map(move |column| (row, column))) {
+                let at = base + row * (across + 1) + column;
+                let above = at + across + 1;
+                mesh.triangles.extend([[at, at + 1, above + 1], [at, above + 1, above]]);
+            }
             seen[face] = self.site.lens.sees(polygon[0], normal);
             if seen[face] {
                 self.ground_line(&polygon, lines);
@@ -99,7 +127,7 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None, near: light });
     }
 
     /// The mesh of something round.

@@ -5,6 +5,7 @@ use super::shapes::{corners, rod};
 use super::slab::THICKNESS;
 use super::{Site, Staged};
 use crate::picture::pointer::Pointers;
+use crate::picture::skin::Skin;
 use crate::picture::{Line, Mark, Obstacles};
 use crate::sim::contact::{Motion, Shape};
 use glam::DVec3;
@@ -20,6 +21,10 @@ pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) ground: Option<HalfSpace>,
     /// The nodes now (m).
     pub(in crate::picture) position: &'a [DVec3],
+    /// The surface of the body; `None` if it is not drawn.
+    pub(in crate::picture) skin: Option<&'a Skin>,
+    /// Unit of soft distances (m).
+    pub(in crate::picture) soft: f64,
     /// The box around the nodes at the start (m).
     pub(in crate::picture) start: [DVec3; 2],
 }
@@ -63,7 +68,7 @@ impl Staging<'_> {
                 }
             }
         }
-        (Obstacles { solids, slabs: self.in_order(slabs) }, staged)
+        (Obstacles { solids, slabs: self.in_order(slabs), occluders: self.occluders() }, staged)
     }
 
     /// The arrows of plates that move.

@@ -22,6 +22,10 @@ pub(super) struct FigureFile {
     pub(super) size: [u32; 2],
     /// The colours. Default: those of the first scene.
     pub(super) theme: Option<Theme>,
+    /// How many times larger than usual all type is, with the rows it stands in. What has no room, or would be too small to
+    /// be read, is left out. Default: that of the first scene.
+    #[schemars(range(min = 0.5, max = 3.0))]
+    pub(super) text_scale: Option<f64>,
     /// A contact sheet: runs of scenes at chosen moments. Either this or `forces`.
     pub(super) sheet: Option<SheetFile>,
     /// A diagram of the forces at the start of scenes. Either this or `sheet`.

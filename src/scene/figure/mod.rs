@@ -143,7 +143,7 @@ impl Figure {
 
     /// Gives it the colours of a theme, unless it has these.
     pub fn set_theme(&mut self, theme: Theme) {
-        self.look = look(&self.scenes()[0], Some(theme));
+        self.look = look(&self.scenes()[0], Some(theme), Some(self.look.text_scale));
     }
 
     /// Reads a figure from a text; scenes are looked for from `folder` on.
@@ -178,8 +178,9 @@ static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     schema
 });
 
-/// The look of a figure: that of its first scene, in another theme if it says so, and never without a background.
-fn look(first: &Scene, theme: Option<Theme>) -> Look {
+/// The look of a figure: that of its first scene, in another theme and with larger type if it says so, and never without a
+/// background.
+fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Look {
     let look = match theme {
         Some(theme) if theme != first.view.look.theme => {
             let Look { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
@@ -187,5 +188,5 @@ fn look(first: &Scene, theme: Option<Theme>) -> Look {
         }
         _ => first.view.look.clone(),
     };
-    Look { transparent: false, ..look }
+    Look { transparent: false, text_scale: text_scale.unwrap_or(look.text_scale), ..look }
 }

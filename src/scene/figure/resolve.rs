@@ -44,7 +44,7 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let look = look(first, file.theme);
+    let look = look(first, file.theme, file.text_scale);
     Ok(Some(Figure {
         name: name.to_owned(),
         title: file.title.unwrap_or_default(),

@@ -24,6 +24,8 @@ pub(super) struct ResolvedBody {
     pub(super) springs: Option<Vec<[u32; 2]>>,
     /// Mean length of the elements' edges (m).
     pub(super) side: f64,
+    /// Whether that is the side of a lattice's cells.
+    pub(super) has_cells: bool,
 }
 
 /// Whether a body is meant to be in the plane or in space, from the first coordinates that say so.
@@ -91,8 +93,9 @@ fn generated(
         return None;
     }
     let body = Body::new(dimension, rest, mass, elements, solids, None);
-    let side = generator.side().unwrap_or_else(|| elements::mean_edge(&body));
-    Some(ResolvedBody { body, initial, springs: None, side })
+    let of_cells = generator.side();
+    let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
+    Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
 }
 
 /// What no other key shows to be wrong with a generator; the direction of bars, or any for others.
@@ -182,7 +185,7 @@ fn listed(
     }
     let body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
     let side = elements::mean_edge(&body);
-    Some(ResolvedBody { body, initial, springs, side })
+    Some(ResolvedBody { body, initial, springs, side, has_cells: false })
 }
 
 /// What elements of some numbers of nodes are meant to be.

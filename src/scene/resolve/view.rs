@@ -139,6 +139,7 @@ pub(super) fn resolve(
         colour,
         arrow_scale: typed.arrow_scale,
         side: body.side,
+        has_cells: body.has_cells,
         title: typed.title.trim().to_owned(),
         caption: typed.caption.trim().to_owned(),
         labels: labels(typed),

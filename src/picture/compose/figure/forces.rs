@@ -28,8 +28,10 @@ const ROW_ROOM: [f64; 2] = [44.0, 22.0];
 /// Heights of the heads of columns and of the key at the bottom (px in the reference picture).
 const HEADS: f64 = 106.0;
 const KEY: f64 = 74.0;
-/// Baselines of a column's name and note, and of a row's name below its top (px in the reference picture).
+/// Baselines of a column's name, the part of that which its type takes, and baselines of its note and of a row's name
+/// below its top (px in the reference picture).
 const NAME: f64 = 60.0;
+const NAME_TYPE: f64 = 20.0;
 const NOTE: f64 = 86.0;
 const ROW_NAME: f64 = 20.0;
 /// Free below the figure's title and caption, below which heads stand so much higher (px in the reference picture).
@@ -99,7 +101,8 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoo
     let has_notes = runs > 1 && forces.notes.iter().any(|note| !note.is_empty());
     let heads = scale.of_type(if has_notes { HEADS } else { HEADS - (NOTE - NAME) }) * unit - raised;
     let cells_top = top + heads;
-    let cells_bottom = height - KEY * unit;
+    // The key's line grows upward, out of the margin.
+    let cells_bottom = height - KEY * unit - (scale.caption() - Scale::at(unit).caption());
     let mut cells: Vec<Cell<'_>> = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
@@ -109,7 +112,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoo
             cells.push(Cell::new(&composers[scene], run, forces.compare.filter(|&compare| compare != run), room));
         }
     }
-    let side_room = if forces.numbers { LABEL_ROOM } else { BARE_ROOM } * unit;
+    let side_room = if forces.numbers { scale.of_type(LABEL_ROOM) } else { BARE_ROOM } * unit;
     let boxes = fit(&mut cells, columns, side_room, scale, runs > 1 && rows > 1);
     let (pixels, centres) = boxes.ok_or(NoRoom)?;
 
@@ -128,7 +131,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoo
         } else {
             (scenes[column].title.as_str(), "")
         };
-        let baseline = top + NAME * unit - raised;
+        let baseline = top + (NAME - NAME_TYPE + scale.of_type(NAME_TYPE)) * unit - raised;
         let name = fonts.shortened(name, Weight::SemiBold, scale.title(), room);
         writer.left(&name, Weight::SemiBold, scale.title(), palette.text, left, baseline);
         let note = fonts.shortened(note, Weight::Regular, scale.caption(), room);
@@ -147,7 +150,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoo
             let [left, top, width, _] = cell.room;
             let room = width - 2.0 * scale.margin();
             let name = fonts.shortened(&scenes[at / columns].title, Weight::SemiBold, scale.caption(), room);
-            let baseline = top + ROW_NAME * unit;
+            let baseline = top + scale.of_type(ROW_NAME) * unit;
             writer.left(&name, Weight::SemiBold, scale.caption(), palette.text, left + scale.margin(), baseline);
         }
     }
@@ -184,8 +187,7 @@ fn fit(
     let whole = of_rows.iter().copied().reduce(join)?;
     let [_, top, width, height] = cells.first()?.room;
     let unit = scale.unit;
-    let [above, below] =
-        [if has_names { scale.of_type(ROW_ROOM[0]) } else { ROW_ROOM[1] }, ROW_ROOM[1]].map(|l| l * unit);
+    let [above, below] = [ROW_ROOM[usize::from(!has_names)], ROW_ROOM[1]].map(|length| scale.of_type(length) * unit);
     let needed: f64 = of_rows.iter().map(|[low, high]| high.y - low.y).sum();
     let across = (width - 2.0 * side_room) / (whole[1].x - whole[0].x).max(1e-9);
     let down = (height - rows as f64 * (above + below)) / needed.max(1e-9);
@@ -318,7 +320,7 @@ impl<'a> Drawn<'a> {
             triangles: skin.triangles.clone(),
             shades: Vec::new(),
         };
-        Solid { mesh, colour: self.ghost_colour(), rim: None }
+        Solid { mesh, colour: self.ghost_colour(), rim: None, near: Vec::new() }
     }
 
     /// The edges of all elements, each once.

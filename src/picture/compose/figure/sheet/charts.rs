@@ -32,6 +32,8 @@ const RIM: f64 = 1.3;
 const LETTER: f64 = 14.0;
 const BESIDE_LETTER: f64 = 4.0;
 const RINGS_APART: f64 = 3.0;
+/// The part of the margin into which crowded rings reach at each end at the most.
+const BEYOND: f64 = 0.35;
 /// How far above the charts the lines of moments become upright, their width (px in the reference picture), and their
 /// opacity.
 const UPRIGHT_ABOVE: f64 = 9.0;
@@ -122,7 +124,8 @@ impl<'a> Charts<'a> {
         let widest = moments.iter().map(|(_, letter)| wide(letter)).fold(0.0, f64::max);
         let radius = (RING * scale.type_unit()).max(0.5 * widest + BESIDE_LETTER * scale.type_unit());
         let apart = 2.0 * radius + RINGS_APART * scale.type_unit();
-        let span = room.span[1] - room.span[0] + 2.0 * radius;
+        // The outermost ones reach into the margins, but not to the picture's sides.
+        let span = room.span[1] - room.span[0] + 2.0 * radius.min(BEYOND * scale.margin());
         // Many rings become smaller as long as their letters can be read, and are then left out.
         let smaller = (span / (apart * moments.len().max(1) as f64)).min(1.0);
         let letter = LETTER * scale.type_unit() * smaller;

@@ -165,6 +165,7 @@ impl Plan {
 }
 
 /// How high charts are (px).
+#[derive(Clone, Copy)]
 struct ChartsShape {
     count: usize,
     chart: f64,
@@ -177,12 +178,16 @@ impl ChartsShape {
         let [least, usual, _] = CHART;
         let [wide, narrow] = BETWEEN_CHARTS;
         let sizes = [(usual, wide), (0.75 * usual, wide), (0.75 * usual, narrow), (least, narrow)];
-        let all = (1..=count).rev().flat_map(|count| sizes.map(|size| (count, size)));
-        let shapes = all.map(|(count, (chart, between))| {
-            let [chart, between] = [chart, between].map(|length| length * scale.type_unit());
-            Self { count, chart, between }
-        });
-        { shapes }.find(|shape| shape.height(scale) <= CHARTS_SHARE * free)
+        // Where type is larger than usual, charts are lower rather than bodies small.
+        let wanted = CHARTS_SHARE * (scale.unit / scale.type_unit()).min(1.0);
+        (1..=count).rev().find_map(|count| {
+            let shapes = sizes.map(|size| {
+                let [chart, between] = [size.0, size.1].map(|length| length * scale.type_unit());
+                Self { count, chart, between }
+            });
+            let lowest = shapes.iter().rev().find(|shape| shape.height(scale) <= CHARTS_SHARE * free);
+            { shapes }.iter().find(|shape| shape.height(scale) <= wanted * free).or(lowest).copied()
+        })
     }
 
     /// The height of all charts with everything between and around them.

@@ -77,7 +77,9 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
         palette: &scene.view.look.palette,
     };
     let start = bounds(&scene.initial.position).into();
-    let staging = Staging { site, widening: 1.0, cell: 1.0, ground: None, position: &snapshot.position, start };
+    let position = &snapshot.position;
+    let staging =
+        Staging { site, widening: 1.0, cell: 1.0, ground: None, position, skin: None, soft: scene.view.side, start };
     let mut near = Vec::new();
     for obstacle in &scene.obstacles {
         let pose = obstacle.pose(snapshot.time);

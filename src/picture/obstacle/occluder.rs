@@ -1,0 +1,65 @@
+//! The obstacles that take light away from a body near them.
+
+use super::half_space::half_space;
+use super::near::REACH;
+use super::pierced::height;
+use super::space::Staging;
+use crate::picture::narrow::{narrow, narrow_point};
+use crate::picture::{MOST_OCCLUDERS, Occluder};
+use crate::sim::contact::{Obstacle, Shape};
+use glam::{DQuat, DVec3};
+
+/// Radius of the edges of boxes, and half the sides of a box that stands for a half-space (soft units).
+const ROUND: f64 = 0.1;
+const LARGE: f64 = 1e3;
+
+impl Staging<'_> {
+    /// The obstacles near the body but the ground, the nearest first.
+    pub(super) fn occluders(&self) -> Vec<Occluder> {
+        let Some(skin) = self.skin else { return Vec::new() };
+        let nodes = || skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
+        let middle = nodes().sum::<DVec3>() / nodes().count().max(1) as f64;
+        let size = nodes().map(|at| at.distance(middle)).fold(0.0, f64::max);
+        let time = self.site.time;
+        let mut near: Vec<_> = self
+            .site
+            .obstacles
+            .iter()
+            .filter(|obstacle| self.ground.is_none() || obstacle.floor(time) != self.ground)
+            .map(|obstacle| (height(&obstacle.shape, obstacle.pose(time).undo(obstacle.pivot, middle)), obstacle))
+            .filter(|(distance, _)| *distance < size + REACH * self.soft)
+            .collect();
+        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        near.into_iter().take(MOST_OCCLUDERS).map(|(_, obstacle)| self.occluder(obstacle)).collect()
+    }
+
+    fn occluder(&self, obstacle: &Obstacle) -> Occluder {
+        let pose = obstacle.pose(self.site.time);
+        let place = |point: DVec3| pose.apply(obstacle.pivot, point);
+        // Just inside of a box with round edges, too, there is a way out.
+        let round = |half: DVec3| half.min_element().min(ROUND * self.soft);
+        let (centre, half, turn, radius) = match obstacle.shape {
+            Shape::Floor { .. } | Shape::Plate { .. } => {
+                let (normal, height) = half_space(obstacle, self.site.time).unwrap_or((DVec3::Y, 0.0));
+                let foot = self.site.origin + (height - normal.dot(self.site.origin)) * normal;
+                let half = DVec3::splat(LARGE * self.soft);
+                (foot - half.x * normal, half - round(half), DQuat::from_rotation_arc(DVec3::Y, normal), round(half))
+            }
+            Shape::Sphere { centre, radius } => (place(centre), DVec3::ZERO, DQuat::IDENTITY, radius),
+            Shape::Capsule { from, to, radius } => {
+                let [from, to] = [from, to].map(place);
+                let axis = (to - from).try_normalize().unwrap_or(DVec3::Y);
+                let half = 0.5 * from.distance(to) * DVec3::Y;
+                (from.midpoint(to), half, DQuat::from_rotation_arc(DVec3::Y, axis), radius)
+            }
+            Shape::Box { centre, half, turn } => (place(centre), half - round(half), pose.turn * turn, round(half)),
+        };
+        Occluder {
+            centre: narrow_point((centre - self.site.origin) / self.site.side),
+            half: narrow_point(half / self.site.side),
+            turn: turn.to_array().map(narrow),
+            radius: narrow(radius / self.site.side),
+            is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
+        }
+    }
+}
