@@ -30,6 +30,18 @@ impl Moments {
     /// The states behind a figure, each with a name of its own: those of a contact sheet cell by cell; of a diagram of
     /// forces those at the start of all runs of its scenes.
     pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
+        let mut states = self.named_states(figure);
+        // Two scenes may have one title.
+        for at in 1..states.len() {
+            let same = states[..at].iter().filter(|state| state.0 == states[at].0).count();
+            if same > 0 {
+                states[at].0 += &format!(" ({})", same + 1);
+            }
+        }
+        states
+    }
+
+    fn named_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
         let named = |scene: &Scene, run: usize| format!("{} · {}", scene.title, scene.runs[run].name);
         match &figure.content {
             Content::Sheet(sheet) => {

@@ -12,7 +12,7 @@ use super::{
 };
 #[cfg(feature = "render")]
 use crate::golden::draw::{DrawError, Subject, Wish, draw, usual_gpu};
-use crate::golden::{BlessError, Comparison, ComparisonError, Side};
+use crate::golden::{BlessError, Blessed, Comparison, ComparisonError, Side};
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::output::write_whole;
@@ -101,13 +101,17 @@ struct Drawing {
 
 impl Compare {
     pub(super) fn run(self) -> Result<Status, Failure> {
+        if let Some(path) = &self.report {
+            replaceable(path)?;
+        }
         let Some(comparison) = self.comparison()? else { return Ok(Status::Interrupted) };
         if let Some(path) = &self.report {
             write_whole(path, comparison.report().page().as_bytes())?;
         }
         let blesses = self.bless || self.bless_state;
         let blessed = blesses.then(|| comparison.bless(self.bless_state)).transpose();
-        let accepted = matches!(blessed, Ok(Some(_)));
+        let is_changed = |blessed: &Blessed| !blessed.written.is_empty() || !blessed.removed.is_empty();
+        let accepted = matches!(&blessed, Ok(Some(blessed)) if is_changed(blessed) && blessed.left.is_empty());
         if self.json {
             let written = match &blessed {
                 Ok(Some(blessed)) => {
@@ -119,12 +123,17 @@ impl Compare {
         } else if !self.quiet {
             console::print(&comparison.told(!blesses))?;
             if let Ok(Some(blessed)) = &blessed {
-                console::print(&blessed.to_string())?;
+                let nothing = comparison.passes().then(|| "nothing to accept\n".to_owned());
+                console::print(&nothing.unwrap_or_else(|| blessed.to_string()))?;
             }
         }
         match blessed {
             Ok(_) => Ok(if comparison.passes() || accepted { Status::Done } else { Status::Difference }),
-            Err(error @ BlessError::Write(_)) => Err(Failure::files(with_causes(&error))),
+            Err(BlessError::Write { blessed, source }) => {
+                // What was done before is told.
+                let done = if blessed.written.is_empty() { String::new() } else { format!("\n{blessed}") };
+                Err(Failure::files(format!("{}{}", with_causes(&source), done.trim_end())))
+            }
             Err(error) => Err(Failure::difference(error.to_string())),
         }
     }
@@ -137,6 +146,13 @@ impl Compare {
         };
         let is_scene = self.actual.extension().is_some_and(|ending| ending == "toml") && !self.actual.is_dir();
         if !is_scene {
+            let is_scene = self.expected.extension().is_some_and(|ending| ending == "toml") && !self.expected.is_dir();
+            if is_scene {
+                let (scene, other) = (self.expected.display(), self.actual.display());
+                let message =
+                    format!("{scene} is a scene or figure and comes last: localshape compare {other} {scene}");
+                return Err(Failure::usage(message));
+            }
             self.no_drawing()?;
             return Comparison::of(&self.expected, &self.actual).map(Some).map_err(failed);
         }
@@ -145,7 +161,7 @@ impl Compare {
             let (expected, actual) = (self.expected.display(), self.actual.display());
             let message = format!(
                 "{expected} is no golden (a folder with golden.toml), and {actual} is a scene or figure, which is compared \
-                 with its golden; name another folder to make one"
+                 with its golden; to make one, name a folder that is not there"
             );
             return Err(Failure::usage(message));
         }
@@ -200,12 +216,13 @@ impl Compare {
         let open = || adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new);
         let gpu = driver::hushed(open).map_err(|error| Failure::adapter(&error))?;
         interrupt::listen();
-        draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested()).map_err(
-            |error| match error {
-                DrawError::Render(error) => super::render::failed(error),
-                DrawError::Wish(message) => Failure::usage(message),
-            },
-        )
+        let drawn = draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested());
+        let drawn = drawn.map_err(|error| match error {
+            DrawError::Render(error) => super::render::failed(error),
+            DrawError::Wish(message) => Failure::usage(message),
+        })?;
+        // Whoever stopped it while the last picture was drawn does not want it accepted.
+        Ok(drawn.filter(|_| !interrupt::requested()))
     }
 
     #[cfg(not(feature = "render"))]
@@ -219,12 +236,33 @@ impl Compare {
     }
 }
 
+/// That the page may have this name: one that nothing has, or an earlier page.
+fn replaceable(path: &Path) -> Result<(), Failure> {
+    let mut start = [0; PAGE.len()];
+    let mut is_page = || {
+        let mut file = std::fs::File::open(path).ok()?;
+        std::io::Read::read_exact(&mut file, &mut start).ok()?;
+        start.eq_ignore_ascii_case(PAGE).then_some(())
+    };
+    let is_file = path.metadata().is_ok_and(|found| found.is_file());
+    if path.symlink_metadata().is_err() || is_file && is_page().is_some() {
+        return Ok(());
+    }
+    let message =
+        format!("--report: {} is there already and is no page of a comparison; name another file", path.display());
+    Err(Failure::usage(message))
+}
+
+/// How pages begin.
+const PAGE: &[u8] = b"<!doctype html>";
+
 /// All that is known, for machines.
 fn document(comparison: &Comparison, blessed: &Value) -> Value {
     let head = json!({
         "passes": comparison.passes(),
         "verdict": comparison.verdict(),
         "first_moved": comparison.first_moved().map(|picture| &picture.name),
+        "golden_is_missing": comparison.is_golden_missing(),
         "accept": comparison.command_to_accept(),
         "blessed": blessed,
     });

@@ -60,6 +60,10 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
                 let (shape, count) = (array.shape_in_words(), frames.len());
                 return Err(told(format!("has the shape {shape}; {DIAGNOSTICS_FILE} tells of {count} frames")));
             }
+            // What is packed may be far larger than its file.
+            if array.bytes().is_none_or(|bytes| bytes > LARGEST) {
+                return Err(told("is too large to be read".to_owned()));
+            }
             archive.numbers(&array).map_err(told)
         };
         let [position, velocity] = [vectors("position")?, vectors("velocity")?];

@@ -2,8 +2,9 @@
 
 use super::record::{Drawn, RECORD_FILE, Record};
 use super::side::{Kind, Source, frame_of};
+use super::states::States;
 use super::{Comparison, Verdict};
-use crate::output::{Label, OutputError, write_whole};
+use crate::output::{AtomicFile, Label, OutputError};
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
@@ -22,15 +23,21 @@ pub struct Blessed {
 /// Why nothing was accepted.
 #[derive(Debug, thiserror::Error)]
 pub enum BlessError {
-    /// The simulation gave other states, and accepting that was not asked for.
+    /// The simulation gave other states, or ends earlier, and accepting that was not asked for.
     #[error("the state moved, so nothing was accepted; if that is meant: {command}")]
     StateMoved {
         /// What would accept it.
         command: String,
     },
-    /// What should be accepted is no picture.
+    /// What the golden expected cannot be read, so that nobody knows whether the state moved.
+    #[error("what was expected is damaged, so nothing was accepted; to replace it by what is there: {command}")]
+    Damaged {
+        /// What would accept it.
+        command: String,
+    },
+    /// What is there cannot be accepted.
     #[error("nothing was accepted: {0}")]
-    Unreadable(String),
+    Unfit(String),
     /// The golden records more states than the other side knows.
     #[error(
         "nothing was accepted: the golden records {recorded} states, and {known} of them are known here. \
@@ -42,86 +49,140 @@ pub enum BlessError {
         /// Those that could be renewed.
         known: usize,
     },
-    /// A file cannot be written.
-    #[error(transparent)]
-    Write(#[from] OutputError),
+    /// A file cannot be written; nothing was changed but what is told.
+    #[error("{source}; {blessed}")]
+    Write {
+        /// What was done before.
+        blessed: Blessed,
+        /// What failed.
+        source: OutputError,
+    },
 }
 
 impl Comparison {
     /// Whether accepting means to accept other states, or states instead of what cannot be read.
     pub(super) fn needs_state(&self) -> bool {
-        let is_unreadable = |verdict: &Verdict| matches!(verdict, Verdict::Unreadable { .. });
-        self.state_moved() || self.pictures.iter().any(|picture| is_unreadable(&picture.verdict))
+        self.state_moved() || self.is_damaged()
+    }
+
+    /// Whether something that was expected cannot be read.
+    fn is_damaged(&self) -> bool {
+        self.pictures.iter().any(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }))
     }
 
     /// What is wrong with a picture that would have to be accepted.
-    pub(super) fn unreadable_actual(&self) -> Option<String> {
-        let unreadable = self.pictures.iter().filter(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
-        let mut wrong = unreadable.filter_map(|picture| {
-            let source = self.actual_source(&picture.name)?;
-            source.pixels().err().map(|error| format!("{}: {error}", picture.name))
+    pub(super) fn unfit(&self) -> Option<String> {
+        let [expected, actual] = &self.sides;
+        if actual.is_undrawn {
+            return Some("without a graphics adapter there are no pictures to accept".to_owned());
+        }
+        if !self.unknown.is_empty() && actual.record.is_none() {
+            return Some(format!("the states of {} are not known here", self.unknown.join(", ")));
+        }
+        let is_golden = expected.kind == Kind::Golden;
+        let failed = self.pictures.iter().filter(|picture| !picture.verdict.passes());
+        let mut wrong = failed.filter_map(|picture| {
+            let told = |what: String| Some(format!("{}: {what}", picture.name));
+            match self.actual_source(&picture.name)?.pixels() {
+                Err(error) => told(error.to_string()),
+                Ok(pixels) if is_golden && pixels.label.is_none() => {
+                    told("it does not say which state it shows, and cannot belong to a golden".to_owned())
+                }
+                Ok(pixels) if is_golden && actual.record.is_none() => {
+                    let size = expected.record.as_ref().map(|record| record.size);
+                    let [width, height] = size.filter(|size| *size != pixels.size)?;
+                    told(format!(
+                        "a picture of this golden has {width}×{height} pixels; draw it so, or compare its scene"
+                    ))
+                }
+                Ok(_) => None,
+            }
         });
         wrong.next()
     }
 
     fn actual_source(&self, name: &str) -> Option<&Source> {
-        self.sides[1].pictures.get(name)
+        let actual = &self.sides[1];
+        match actual.kind {
+            Kind::Picture => actual.pictures.values().next(),
+            _ => actual.pictures.get(name),
+        }
     }
 
-    /// Replaces what was expected by what is there, as far as it failed. States are replaced only if that is asked for.
+    /// Replaces what was expected by what is there, as far as it failed. States are replaced only if that is asked for. All
+    /// files are written before the first one takes its place.
     ///
     /// # Errors
     /// If states moved and that was not to be accepted, if what is there cannot be read, or a file cannot be written.
     pub fn bless(&self, with_states: bool) -> Result<Blessed, BlessError> {
-        let mut blessed = Blessed::default();
         if self.passes() {
-            return Ok(blessed);
+            return Ok(Blessed::default());
         }
-        if let Some(message) = self.unreadable_actual() {
-            return Err(BlessError::Unreadable(message));
+        if let Some(message) = self.unfit() {
+            return Err(BlessError::Unfit(message));
         }
         let [expected, actual] = &self.sides;
-        if actual.is_undrawn {
-            return Err(BlessError::Unreadable(
-                "without a graphics adapter there are no pictures to accept".to_owned(),
-            ));
-        }
         if self.needs_state() && !with_states && expected.kind != Kind::Absent {
-            return Err(BlessError::StateMoved { command: self.command_to_accept().unwrap_or_default() });
+            let command = self.command_to_accept().unwrap_or_default();
+            return Err(match self.state_moved() {
+                true => BlessError::StateMoved { command },
+                false => BlessError::Damaged { command },
+            });
         }
         let record = self.record_to_write()?;
-        let is_golden = record.is_some();
+        let mut blessed = Blessed::default();
+        let mut gone = Vec::new();
+        let mut staged = Vec::new();
         let is_picture = expected.kind == Kind::Picture || actual.kind == Kind::Picture;
-        if !is_picture {
-            std::fs::create_dir_all(&expected.origin).map_err(OutputError::writing(&expected.origin))?;
-        }
-        for picture in self.pictures.iter().filter(|picture| !picture.verdict.passes()) {
-            let target = if is_picture { expected.origin.clone() } else { expected.origin.join(&picture.name) };
-            let Some(source) = self.actual_source(&picture.name) else {
-                let is_known = record
-                    .as_ref()
-                    .is_some_and(|record| record.pictures.iter().any(|drawn| drawn.file == picture.name));
-                if is_golden && !is_known && target.exists() {
-                    std::fs::remove_file(&target).map_err(OutputError::writing(&target))?;
-                    blessed.removed.push(target);
-                } else {
-                    blessed.left.push(format!(
-                        "{} is missing in {} and was left",
-                        target.display(),
-                        actual.origin.display()
-                    ));
+        let mut stage = || -> Result<(), OutputError> {
+            if !is_picture {
+                std::fs::create_dir_all(&expected.origin).map_err(OutputError::writing(&expected.origin))?;
+            }
+            for picture in self.pictures.iter().filter(|picture| !picture.verdict.passes()) {
+                let target = if is_picture { expected.origin.clone() } else { expected.origin.join(&picture.name) };
+                let is_drawn = |record: &Record| record.pictures.iter().any(|drawn| drawn.file == picture.name);
+                let belongs = record.as_ref().is_none_or(is_drawn);
+                match self.actual_source(&picture.name).filter(|_| belongs) {
+                    Some(source) => {
+                        let bytes = bytes(source, record.is_some()).map_err(OutputError::reading(&target))?;
+                        let mut file = AtomicFile::create(&target)?;
+                        file.append(&bytes)?;
+                        staged.push(file);
+                    }
+                    // The picture of a golden for which nothing stands any more.
+                    None if !belongs && expected.pictures.contains_key(&picture.name) => gone.push(target),
+                    None if expected.kind == Kind::Golden && !belongs => {}
+                    None => {
+                        let (target, actual) = (target.display(), actual.origin.display());
+                        blessed.left.push(format!("{target} is missing in {actual} and was left"));
+                    }
                 }
-                continue;
-            };
-            write_whole(&target, &bytes(source, is_golden).map_err(OutputError::reading(&target))?)?;
-            blessed.written.push(target);
+            }
+            if let Some(record) = &record {
+                let target = expected.origin.join(RECORD_FILE);
+                let text = record.text();
+                if std::fs::read(&target).ok().as_deref() != Some(text.as_bytes()) {
+                    let mut file = AtomicFile::create(&target)?;
+                    file.append(text.as_bytes())?;
+                    staged.push(file);
+                }
+            }
+            Ok(())
+        };
+        if let Err(source) = stage() {
+            return Err(BlessError::Write { blessed: Blessed::default(), source });
         }
-        if let Some(record) = record {
-            let target = expected.origin.join(RECORD_FILE);
-            let text = record.text();
-            if std::fs::read(&target).ok().as_deref() != Some(text.as_bytes()) {
-                write_whole(&target, text.as_bytes())?;
-                blessed.written.push(target);
+        for file in staged {
+            let path = file.path().to_owned();
+            match file.commit() {
+                Ok(()) => blessed.written.push(path),
+                Err(source) => return Err(BlessError::Write { blessed, source }),
+            }
+        }
+        for path in gone {
+            match std::fs::remove_file(&path).map_err(OutputError::writing(&path)) {
+                Ok(()) => blessed.removed.push(path),
+                Err(source) => return Err(BlessError::Write { blessed, source }),
             }
         }
         Ok(blessed)
@@ -130,72 +191,59 @@ impl Comparison {
     /// The record that a golden has after blessing; `None` if it is no golden.
     fn record_to_write(&self) -> Result<Option<Record>, BlessError> {
         let [expected, actual] = &self.sides;
-        let label = |name: &str| self.actual_source(name).and_then(|source| source.pixels().ok()?.label);
-        let drawn = |name: &str, label: &Label| Drawn {
-            file: name.to_owned(),
-            frame: frame_of(label).unwrap_or(0),
-            adapter: label.adapter().to_owned(),
-            version: label.version().to_owned(),
-        };
         let old = match (expected.kind, &expected.record) {
             (Kind::Golden, Some(old)) => old,
             // A new golden has a record if its states are known.
             (Kind::Absent, _) => return Ok(actual.record.clone()),
             _ => return Ok(None),
         };
-        let is_same = !self.needs_state();
         let mut record = match &actual.record {
             // Only pictures are renewed, and with them who drew them.
-            _ if is_same => old.clone(),
+            _ if !self.needs_state() => old.clone(),
             Some(record) => record.clone(),
-            None => {
-                let count =
-                    |states: &super::states::States| states.runs.iter().map(|run| run.states.len()).sum::<usize>();
-                let mut states = self.actual_states.clone();
-                for run in &mut states.runs {
-                    let before = old.states.run(&run.name);
-                    run.states.retain(|frame, _| before.is_some_and(|before| before.states.contains_key(frame)));
-                    for (frame, state) in &mut run.states {
-                        let is_placed =
-                            before.and_then(|run| run.states.get(frame)).is_some_and(|state| state.places.is_some());
-                        state.places.take_if(|_| !is_placed);
-                        if is_placed && state.places.is_none() {
-                            return Err(BlessError::StatesUnknown { recorded: count(&old.states), known: 0 });
-                        }
-                    }
-                }
-                let (recorded, known) = (count(&old.states), count(&states));
-                if known < recorded {
-                    return Err(BlessError::StatesUnknown { recorded, known });
-                }
-                Record { states, ..old.clone() }
-            }
+            None => Record { states: self.states_for(old)?, ..old.clone() },
         };
         // The adapters of pictures that stay are those that drew them.
         let passes = |name: &str| self.pictures.iter().any(|picture| picture.name == name && picture.verdict.passes());
-        let mut pictures = Vec::new();
-        for (name, _) in actual.pictures.iter().filter(|(name, _)| record_names(old, actual.record.as_ref(), name)) {
-            let kept = old.pictures.iter().find(|drawn| drawn.file == *name).filter(|_| passes(name)).cloned();
-            pictures.extend(kept.or_else(|| label(name).map(|label| drawn(name, &label))));
-        }
-        if actual.record.is_none() {
-            let missing = old.pictures.iter().filter(|drawn| !actual.pictures.contains_key(&drawn.file));
-            pictures.extend(missing.cloned());
-        }
-        pictures.sort_by(|one, other| one.file.cmp(&other.file));
-        record.pictures = pictures;
-        if let Some(record_of_actual) = &actual.record {
-            (record.size, record.samples) = (record_of_actual.size, record_of_actual.samples);
-            record.scenes.clone_from(&record_of_actual.scenes);
+        let label = |name: &str| self.actual_source(name).and_then(|source| source.pixels().ok()?.label);
+        let names = actual.record.as_ref().unwrap_or(old).pictures.iter().map(|drawn| drawn.file.as_str());
+        record.pictures = names
+            .filter_map(|name| {
+                let kept = old.pictures.iter().find(|drawn| drawn.file == name);
+                match label(name).filter(|_| !passes(name)) {
+                    Some(label) => Some(drawn(name, &label)),
+                    None => kept.cloned(),
+                }
+            })
+            .collect();
+        if let Some(drawn) = &actual.record {
+            (record.size, record.samples) = (drawn.size, drawn.samples);
+            record.scenes.clone_from(&drawn.scenes);
         }
         Ok(Some(record))
     }
+
+    /// The states of the actual side that a golden records.
+    fn states_for(&self, old: &Record) -> Result<States, BlessError> {
+        let count = |states: &States| states.runs.iter().map(|run| run.states.len()).sum::<usize>();
+        let mut states = self.actual_states.clone();
+        for run in &mut states.runs {
+            let before = old.states.run(&run.name);
+            run.states.retain(|frame, state| {
+                let Some(known) = before.and_then(|before| before.states.get(frame)) else { return false };
+                state.places.take_if(|_| known.places.is_none());
+                known.places.is_none() || state.places.is_some()
+            });
+        }
+        let (recorded, known) = (count(&old.states), count(&states));
+        if known < recorded { Err(BlessError::StatesUnknown { recorded, known }) } else { Ok(states) }
+    }
 }
 
-/// Whether a golden has a picture of that name: as it had, or as it would have now.
-fn record_names(old: &Record, new: Option<&Record>, name: &str) -> bool {
-    let names = |record: &Record| record.pictures.iter().any(|drawn| drawn.file == name);
-    new.map_or_else(|| names(old), names)
+/// A picture and who drew it, as it says itself.
+fn drawn(name: &str, label: &Label) -> Drawn {
+    let (adapter, version) = (label.adapter().to_owned(), label.version().to_owned());
+    Drawn { file: name.to_owned(), frame: frame_of(label).unwrap_or(0), adapter, version }
 }
 
 /// The bytes of a picture, for a golden as few as can be had.
@@ -213,7 +261,7 @@ fn bytes(source: &Source, is_golden: bool) -> io::Result<Vec<u8>> {
 impl fmt::Display for Blessed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.written.is_empty() && self.removed.is_empty() && self.left.is_empty() {
-            return writeln!(f, "nothing to accept");
+            return writeln!(f, "nothing was accepted");
         }
         for path in &self.written {
             writeln!(f, "accepted {}", path.display())?;

@@ -5,8 +5,8 @@ use super::record::{Drawn, Plan, Record};
 use super::side::{Kind, Side, Source};
 use super::states::{State, States};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
-use crate::history::History;
-use crate::moments::Moments;
+use crate::history::{History, Rehearsal};
+use crate::moments::Taking;
 use crate::output::{FigureTags, Label, Tags, frame_file_name};
 use crate::picture::{Composer, compose_figure};
 use crate::render::{RenderError, Renderer};
@@ -61,6 +61,24 @@ pub(crate) struct Wish {
     pub(crate) samples: Option<u32>,
 }
 
+impl Wish {
+    /// The options of the command line that ask for it, each with a space before it.
+    fn options(&self) -> String {
+        let mut options = String::new();
+        if let Some(frames) = &self.frames {
+            let frames: Vec<_> = frames.iter().map(u64::to_string).collect();
+            options += &format!(" --frames {}", frames.join(","));
+        }
+        if let Some([width, height]) = self.size {
+            options += &format!(" --size {width}x{height}");
+        }
+        if let Some(samples) = self.samples {
+            options += &format!(" --samples {samples}");
+        }
+        options
+    }
+}
+
 /// Why it cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum DrawError {
@@ -97,13 +115,20 @@ pub(crate) fn draw(
 ) -> Result<Option<Side>, DrawError> {
     let drawn = match subject {
         Subject::Scene(scene) => draw_scene(scene, wish, old.record.as_ref(), gpu, go_on)?,
-        Subject::Figure(figure) => draw_figure(figure, wish, old.record.as_ref(), gpu)?,
+        Subject::Figure(figure) => draw_figure(figure, wish, old.record.as_ref(), gpu, go_on)?,
     };
     Ok(drawn.map(|(mut record, pictures)| {
         record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let pictures: BTreeMap<_, _> =
             pictures.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
-        Side { origin: path.into(), kind: Kind::Drawn, pictures, record: Some(record), is_undrawn: gpu.is_none() }
+        Side {
+            origin: path.into(),
+            kind: Kind::Drawn,
+            pictures,
+            record: Some(record),
+            is_undrawn: gpu.is_none(),
+            options: wish.options(),
+        }
     }))
 }
 
@@ -120,9 +145,11 @@ fn draw_scene(
     let last = scene.last_frame();
     let frames: BTreeSet<u64> = match (&wish.frames, old) {
         (Some(frames), _) => frames.iter().copied().collect(),
-        (None, Some(old)) => old.pictures.iter().map(|drawn| drawn.frame).filter(|&frame| frame <= last).collect(),
-        (None, None) => {
-            let count = wish.pictures.unwrap_or(PICTURES).max(1);
+        (None, Some(old)) if old.pictures.iter().any(|drawn| drawn.frame <= last) => {
+            old.pictures.iter().map(|drawn| drawn.frame).filter(|&frame| frame <= last).collect()
+        }
+        (None, old) => {
+            let count = old.map_or(wish.pictures.unwrap_or(PICTURES), |old| old.pictures.len() as u64).max(1);
             (1..=count).map(|at| (u128::from(last) * u128::from(at) / u128::from(count)) as u64).collect()
         }
     };
@@ -135,7 +162,17 @@ fn draw_scene(
     if let Some(old) = old {
         plan = plan.with(old, last);
     }
-    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples)).transpose()?;
+    let mut history = None;
+    if gpu.is_some() && scene.view.strip.is_some() {
+        let mut rehearsal = Rehearsal::new(&scene, &runs);
+        while !rehearsal.advance(SLICE) {
+            if !go_on() {
+                return Ok(None);
+            }
+        }
+        history = Some(rehearsal.finish());
+    }
+    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples, history.as_ref())).transpose()?;
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut sequence = Sequence::new(&scene, &runs);
     for index in plan.frames() {
@@ -174,6 +211,7 @@ fn draw_figure(
     wish: &Wish,
     old: Option<&Record>,
     gpu: Option<&Gpu>,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Made>, DrawError> {
     let mut figure = figure.clone();
     if wish.frames.as_ref().is_some_and(|frames| frames != &[0]) {
@@ -181,7 +219,13 @@ fn draw_figure(
     }
     figure.size = size(figure.size, wish, old);
     let samples = samples(wish, old);
-    let moments = Moments::new(&figure);
+    let mut taking = Taking::new(&figure);
+    while !taking.advance(SLICE) {
+        if !go_on() {
+            return Ok(None);
+        }
+    }
+    let moments = taking.finish();
     let mut states = States::default();
     for (name, snapshot) in moments.states(&figure) {
         states.add(&name, 0, State::of(&snapshot, true));
@@ -232,15 +276,13 @@ struct Artist<'a> {
 }
 
 impl<'a> Artist<'a> {
-    fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
+    fn new(gpu: &Gpu, scene: &'a Scene, samples: u32, history: Option<&History>) -> Result<Self, RenderError> {
         let mut composers = match scene.view.look.transparent {
             false => vec![Composer::new(scene)],
             true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
         };
-        if scene.view.strip.is_some() {
-            let runs: Vec<usize> = (0..scene.runs.len()).collect();
-            let history = History::new(scene, &runs);
-            composers.iter_mut().for_each(|composer| composer.set_history(&history));
+        if let Some(history) = history {
+            composers.iter_mut().for_each(|composer| composer.set_history(history));
         }
         let renderer = Renderer::new(gpu, scene.view.size, samples)?;
         Ok(Self { scene, composers, renderer, adapter: gpu.description().to_string() })
@@ -266,37 +308,36 @@ mod tests {
     use super::*;
     use std::path::PathBuf;
 
-    /// Every scene that ships, with its golden.
-    fn shipped() -> Vec<[PathBuf; 2]> {
+    /// Every scene that ships.
+    fn shipped() -> Vec<PathBuf> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let mut scenes = Vec::new();
-        for (scenes_in, goldens_in) in [("scenes", "scenes"), ("scenes/elements", "elements")] {
-            for entry in std::fs::read_dir(root.join(scenes_in)).expect("scenes") {
-                let path = entry.expect("an entry").path();
-                if path.extension().is_some_and(|ending| ending == "toml") {
-                    let golden = root.join("tests/golden").join(goldens_in).join(path.file_stem().expect("a name"));
-                    scenes.push([path, golden]);
-                }
-            }
-        }
+        let files = ["scenes", "scenes/elements"].map(|folder| std::fs::read_dir(root.join(folder)).expect("scenes"));
+        let paths = files.into_iter().flatten().map(|entry| entry.expect("an entry").path());
+        let mut scenes: Vec<_> = paths.filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
         scenes.sort();
         scenes
     }
 
-    /// The first frames of a scene that are known to its golden, with one run as if its body had started elsewhere.
-    fn states(scene: &Scene, moved: &Scene, moved_run: usize, golden: &Record) -> States {
+    /// Some frames of a scene from its start on, with one run as if its body had started elsewhere.
+    fn record(scene: &Scene, moved: &Scene, moved_run: usize) -> Record {
         let mut states = States::default();
-        let all: Vec<usize> = (0..scene.runs.len()).collect();
-        let mut sequences = all.iter().map(|&run| Sequence::new(if run == moved_run { moved } else { scene }, &[run]));
-        let mut sequences: Vec<_> = sequences.by_ref().collect();
-        let frames: BTreeSet<u64> = golden.states.runs.iter().flat_map(|run| run.states.keys().copied()).collect();
-        for frame in frames.into_iter().take(4) {
-            for (run, sequence) in sequences.iter_mut().enumerate() {
+        for (number, run) in scene.runs.iter().enumerate() {
+            let scene = if number == moved_run { moved } else { scene };
+            let mut sequence = Sequence::new(scene, &[number]);
+            for frame in (0..=scene.last_frame()).take(4) {
                 let snapshot = &sequence.frame(frame).runs[0].snapshot;
-                states.add(&scene.runs[run].name, frame, State::of(snapshot, true));
+                states.add(&run.name, frame, State::of(snapshot, true));
             }
         }
-        states
+        let [file, adapter, version] = ["a.png", "", ""].map(str::to_owned);
+        let pictures = vec![Drawn { file, frame: 0, adapter, version }];
+        Record { subject: String::new(), scenes: Vec::new(), size: [320, 200], samples: 4, pictures, states }
+    }
+
+    fn side(record: Record, kind: Kind) -> Side {
+        let (origin, pictures) = ("golden".into(), BTreeMap::new());
+        let is_undrawn = kind == Kind::Drawn;
+        Side { origin, kind, pictures, record: Some(record), is_undrawn, options: String::new() }
     }
 
     /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.
@@ -304,23 +345,13 @@ mod tests {
     fn the_smallest_errors_of_a_node_are_seen_in_every_scene() {
         let shipped = shipped();
         assert!(shipped.len() >= 25, "{}", shipped.len());
-        for [path, golden] in shipped {
+        for path in shipped {
             let scene = Scene::load(&path, &Limits::default()).expect("a scene that ships");
-            let golden =
-                Side::read(&golden).unwrap_or_else(|error| panic!("{error}; UPDATE_GOLDENS=1 cargo test makes it"));
-            let record = golden.record.as_ref().expect("a record");
+            // As it is read from its file, with all that is lost there.
+            let golden = Record::parse(&record(&scene, &scene, 0).text()).expect("a record");
             let compare = |moved: &Scene, run: usize| {
-                let states = states(&scene, moved, run, record);
-                let actual = Record { states, ..record.clone() };
-                let kind = Kind::Drawn;
-                let side = Side {
-                    origin: path.clone(),
-                    kind,
-                    pictures: BTreeMap::new(),
-                    record: Some(actual),
-                    is_undrawn: true,
-                };
-                Comparison::between(golden.clone(), side).expect("a golden and its scene")
+                let actual = side(record(&scene, moved, run), Kind::Drawn);
+                Comparison::between(side(golden.clone(), Kind::Golden), actual).expect("a golden and its scene")
             };
             assert!(compare(&scene, 0).passes(), "{}: {}", path.display(), compare(&scene, 0));
             let run = scene.runs.len() - 1;

@@ -52,7 +52,7 @@ pub use states::{Change, Course, Displacement, Moment, Moved, Numbers};
 pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
 
-use crate::output::{Label, read_label};
+use crate::output::Label;
 use rayon::prelude::*;
 use serde::Serialize;
 use side::{Kind, Source, frame_of, states_of};
@@ -90,7 +90,11 @@ pub enum ComparisonError {
         actual: PathBuf,
     },
     /// The record of a golden makes no sense.
-    #[error("{}: this is no record of a golden that can be read: {what}", path.join(RECORD_FILE).display())]
+    #[error(
+        "{}: this is no record of a golden that can be read: {what}; if nothing else helps, delete the folder and make the \
+         golden again",
+        path.join(RECORD_FILE).display()
+    )]
     Record {
         /// The golden's folder.
         path: PathBuf,
@@ -111,6 +115,10 @@ pub struct Comparison {
     /// Whether both sides say that they come from the same scene; `None` if they do not say. Another scene with the same
     /// states is no difference of physics or drawing.
     pub same_scene: Option<bool>,
+    /// The last frame that the golden records and the one that its scene ends with now, if that is before it.
+    pub ends_early: Option<[u64; 2]>,
+    /// Recorded runs of which no state could be compared.
+    pub unknown: Vec<String>,
     /// What else is worth knowing, in words.
     pub notes: Vec<String>,
     #[serde(skip)]
@@ -150,9 +158,9 @@ impl Comparison {
         let pairs = pairs(&expected, &actual)?;
         let read: Vec<Read> = pairs.into_par_iter().map(|(name, sources)| Read::new(name, sources)).collect();
         // Frames beside those of a golden tell of states, too.
-        let beside = Self::beside(&expected, &actual);
+        let beside = beside(&expected, &actual);
         let labels = [0, 1].map(|side| -> Vec<&Label> {
-            let more = beside.iter().filter(|_| side == 1);
+            let more = beside.iter().filter_map(|(_, label)| label.as_ref().ok()?.as_ref()).filter(|_| side == 1);
             read.iter().filter_map(|read| read.labels[side].as_ref()).chain(more).collect()
         });
         let mut notes = Vec::new();
@@ -161,74 +169,84 @@ impl Comparison {
         let moved = moved(&before, &after, &courses);
         let scenes = [(&expected, &labels[0]), (&actual, &labels[1])].map(|(side, labels)| scenes(side, labels));
         let same_scene = scenes.iter().all(|scenes| !scenes.is_empty()).then(|| scenes[0] == scenes[1]);
-        if !beside.is_empty() {
-            notes.push(format!(
-                "{} more frames have no picture in the golden; only their states were compared",
-                beside.len()
-            ));
+        let ends_early = ends(&expected, &actual).filter(|[recorded, end]| end < recorded);
+        match ends(&expected, &actual) {
+            Some([recorded, end]) if end < recorded => {
+                notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));
+            }
+            Some([recorded, end]) if end > recorded => {
+                notes.push(format!("the golden ends with frame {recorded}, the scene goes on to frame {end}"));
+            }
+            _ => {}
         }
-        if let Some(note) = lost(&expected, &actual) {
-            notes.push(note);
+        let compared = |run: &&states::Run| !courses.iter().any(|course| course.run == run.name);
+        let is_gone = |run: &&states::Run| moved.iter().any(|moved| moved.run == run.name);
+        let recorded = expected.record.iter().flat_map(|record| &record.states.runs);
+        let unknown: Vec<_> =
+            recorded.filter(compared).filter(|run| !is_gone(run)).map(|run| run.name.clone()).collect();
+        if !unknown.is_empty() {
+            notes.push(format!("the golden records states of {}, of which none is known here", unknown.join(", ")));
         }
-        let mut pictures: Vec<Compared> = read.into_iter().map(Read::compared).collect();
-        for picture in &mut pictures {
-            complete(picture, &expected, &courses);
+        let judged: Vec<Compared> = beside.iter().filter_map(|(name, label)| judge(name, label, &expected)).collect();
+        let told = beside.len() - judged.len();
+        if told > 0 {
+            let frames = if told == 1 { "1 more frame has" } else { &format!("{told} more frames have") };
+            notes.push(format!("{frames} no picture in the golden; only states were compared"));
         }
+        let mut pictures: Vec<Compared> = read
+            .into_iter()
+            .map(|read| {
+                let label = read.labels[0].clone();
+                let mut picture = read.compared();
+                complete(&mut picture, label.as_ref(), &expected, &courses);
+                picture
+            })
+            .chain(judged)
+            .collect();
         if actual.is_undrawn {
-            pictures.clear();
+            // What is wrong with the golden itself is wrong without pictures, too.
+            pictures.retain(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
             notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
         }
-        Ok(Self { pictures, moved, courses, same_scene, notes, sides: [expected, actual], actual_states: after })
+        let sides = [expected, actual];
+        Ok(Self { pictures, moved, courses, same_scene, ends_early, unknown, notes, sides, actual_states: after })
     }
 
     /// What is known of the states of both sides.
     fn states(sides: [&Side; 2], labels: &[Vec<&Label>; 2], notes: &mut Vec<String>) -> [States; 2] {
-        let of_labels = [0, 1].map(|side| states_of(&labels[side]));
         let has_record = sides.iter().any(|side| side.record.is_some());
+        let of_labels = [0, 1].map(|side| states_of(&labels[side], has_record));
         let differs = !moved(&of_labels[0], &of_labels[1], &courses(&of_labels[0], &of_labels[1])).is_empty();
         let mut of_labels = of_labels.into_iter();
         [0, 1].map(|at| {
-            let of_labels = of_labels.next().unwrap_or_default();
+            let mut states = of_labels.next().unwrap_or_default();
             if let Some(record) = &sides[at].record {
                 return record.states.clone();
             }
             // Archives may be large: they are read only to tell how far states are apart, or where pictures do not tell.
-            if !has_record && !differs {
-                return of_labels;
-            }
-            match sides[at].archive(&labels[at]) {
-                Ok(Some(states)) => states,
-                Ok(None) => of_labels,
-                Err(note) => {
-                    notes.push(note);
-                    of_labels
+            if has_record || differs {
+                match sides[at].archive(&labels[at]) {
+                    // It says the same of every frame that has a picture, and more of it.
+                    Ok(Some(archive)) => states.extend(archive),
+                    Ok(None) => {}
+                    Err(note) => notes.push(note),
                 }
             }
+            states
         })
-    }
-
-    /// What frames say that are not among the pictures of a golden.
-    fn beside(expected: &Side, actual: &Side) -> Vec<Label> {
-        if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
-            return Vec::new();
-        }
-        let more = actual.pictures.iter().filter(|(name, _)| !expected.pictures.contains_key(*name));
-        let label = |(_, source): (_, &Source)| match source {
-            Source::File(path) => read_label(path).ok().flatten(),
-            Source::Memory(_) => None,
-        };
-        more.filter_map(label).collect()
     }
 
     /// Whether nothing is wrong.
     pub fn passes(&self) -> bool {
-        self.moved.is_empty() && self.pictures.iter().all(|picture| picture.verdict.passes())
+        let is_there = self.sides[0].kind != Kind::Absent;
+        let all_known = self.ends_early.is_none() && self.unknown.is_empty();
+        is_there && all_known && self.moved.is_empty() && self.pictures.iter().all(|picture| picture.verdict.passes())
     }
 
-    /// Whether there are other states than those that were expected.
+    /// Whether there are other states than those that were expected, or fewer of them.
     pub fn state_moved(&self) -> bool {
         let moved = |picture: &Compared| matches!(picture.verdict, Verdict::StateMoved { .. });
-        !self.moved.is_empty() || self.pictures.iter().any(moved)
+        !self.moved.is_empty() || self.ends_early.is_some() || self.pictures.iter().any(moved)
     }
 
     /// The verdict on the whole, in the words of the gravest on a picture.
@@ -245,8 +263,15 @@ impl Comparison {
             "identical",
         ];
         let kinds = self.pictures.iter().map(|picture| picture.verdict.kind());
-        let kinds: BTreeSet<_> = kinds.chain(self.state_moved().then_some("state moved")).collect();
+        let kinds = kinds.chain(self.state_moved().then_some("state moved"));
+        let kinds = kinds.chain((self.sides[0].kind == Kind::Absent || self.ends_early.is_some()).then_some("missing"));
+        let kinds: BTreeSet<_> = kinds.chain((!self.unknown.is_empty()).then_some("no state recorded")).collect();
         ORDER.into_iter().find(|kind| kinds.contains(kind)).unwrap_or("identical")
+    }
+
+    /// Whether there is no golden yet.
+    pub fn is_golden_missing(&self) -> bool {
+        self.sides[0].kind == Kind::Absent
     }
 
     /// The first picture whose state moved.
@@ -256,13 +281,13 @@ impl Comparison {
 
     /// The command that accepts what is actually there; `None` if nothing is to be accepted, or nothing can be.
     pub fn command_to_accept(&self) -> Option<String> {
-        if self.passes() || self.unreadable_actual().is_some() {
+        if self.passes() || self.unfit().is_some() {
             return None;
         }
         let [expected, actual] = &self.sides;
         let is_other = self.needs_state() && expected.kind != Kind::Absent;
         let option = if is_other { "--bless-state" } else { "--bless" };
-        Some(format!("localshape compare {option} {} {}", expected.typed(), actual.typed()))
+        Some(format!("localshape compare {option}{} {} {}", actual.options, expected.typed(), actual.typed()))
     }
 
     /// The states that were compared.
@@ -338,14 +363,20 @@ impl Read {
             (Some(expected), Some(actual)) => {
                 rayon::join(|| pixels(&expected, "expected"), || pixels(&actual, "actual"))
             }
-            (expected, None) => {
-                let label = expected.and_then(|source| source.pixels().ok()?.label);
-                return Self { name, labels: [label, None], verdict: Verdict::Missing };
+            // What is damaged is told, also if it is alone.
+            (Some(expected), None) => {
+                return match pixels(&expected, "expected") {
+                    Ok(pixels) => Self { name, labels: [pixels.label, None], verdict: Verdict::Missing },
+                    Err(message) => Self { name, labels: [None, None], verdict: Verdict::Unreadable { message } },
+                };
             }
             (None, Some(actual)) => {
-                let label = actual.pixels().ok().and_then(|pixels| pixels.label);
-                return Self { name, labels: [None, label], verdict: Verdict::Extra };
+                return match pixels(&actual, "actual") {
+                    Ok(pixels) => Self { name, labels: [None, pixels.label], verdict: Verdict::Extra },
+                    Err(message) => Self { name, labels: [None, None], verdict: Verdict::Unreadable { message } },
+                };
             }
+            (None, None) => return Self { name, labels: [None, None], verdict: Verdict::Missing },
         };
         match (expected, actual) {
             (Ok(expected), Ok(actual)) => {
@@ -367,8 +398,49 @@ impl Read {
     }
 }
 
+/// Frames of a folder that are not among the pictures of a golden, with what they say about themselves.
+fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Label>, PictureError>)> {
+    if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
+        return Vec::new();
+    }
+    let recorded = |name: &String| {
+        let drawn = expected.record.iter().flat_map(|record| &record.pictures);
+        expected.pictures.contains_key(name) || drawn.into_iter().any(|drawn| drawn.file == *name)
+    };
+    let more = actual.pictures.iter().filter(|(name, _)| !recorded(name));
+    let label = |source: &Source| match source {
+        Source::File(path) => Pixels::read_label(path),
+        Source::Memory(bytes) => Pixels::from_bytes(bytes).map(|pixels| pixels.label),
+    };
+    more.map(|(name, source)| (name.clone(), label(source))).collect()
+}
+
+/// What is wrong with a frame that has no picture in the golden; `None` if nothing is.
+fn judge(name: &str, label: &Result<Option<Label>, PictureError>, expected: &Side) -> Option<Compared> {
+    let verdict = match label {
+        Err(error) => Verdict::Unreadable { message: format!("{name}: {error}") },
+        Ok(None) => Verdict::Extra,
+        Ok(Some(label)) => {
+            let frame = frame_of(label).unwrap_or(0);
+            let runs = &expected.record.as_ref()?.states.runs;
+            let is_other = |(digest, run): &&(String, String)| {
+                let state = runs.iter().find(|known| known.name == *run).and_then(|run| run.states.get(&frame));
+                state.is_some_and(|state| !digest.starts_with(&state.digest))
+            };
+            let moved = label.states().iter().filter(is_other);
+            let runs: Vec<_> = moved.map(|(_, run)| MovedHere { run: run.clone(), displacement: None }).collect();
+            if runs.is_empty() {
+                return None;
+            }
+            Verdict::StateMoved { runs, distance: None }
+        }
+    };
+    let frame = label.as_ref().ok().and_then(|label| label.as_ref()).and_then(frame_of);
+    Some(Compared { name: name.to_owned(), frame, verdict })
+}
+
 /// Adds what is known besides the two pictures: by how much a state moved, and whether a golden contradicts itself.
-fn complete(picture: &mut Compared, expected: &Side, courses: &[Course]) {
+fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, courses: &[Course]) {
     if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
         for here in runs {
             let course = courses.iter().find(|course| course.run == here.run);
@@ -377,26 +449,32 @@ fn complete(picture: &mut Compared, expected: &Side, courses: &[Course]) {
             here.displacement = moment.and_then(|moment| moment.displacement);
         }
     }
-    let (Some(record), Some(source)) = (&expected.record, expected.pictures.get(&picture.name)) else { return };
-    if expected.kind != Kind::Golden || matches!(picture.verdict, Verdict::Unreadable { .. }) {
+    let Some(record) = &expected.record else { return };
+    if !expected.pictures.contains_key(&picture.name) || matches!(picture.verdict, Verdict::Unreadable { .. }) {
         return;
     }
-    let contradiction = match record.pictures.iter().find(|drawn| drawn.file == picture.name) {
-        None => Some(format!("{RECORD_FILE} does not know this picture")),
-        Some(drawn) => source.pixels().ok().and_then(|pixels| pixels.label).and_then(|label| {
-            let frame = frame_of(&label).unwrap_or(0);
+    let drawn = record.pictures.iter().find(|drawn| drawn.file == picture.name);
+    let contradiction = match (drawn, label) {
+        (None, _) => Some("does not know this picture"),
+        (Some(_), None) => Some("knows its state, this picture has lost what it said of itself"),
+        (Some(drawn), Some(label)) => {
             let is_other = label.states().iter().any(|(digest, run)| {
                 let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
                 state.is_none_or(|state| !digest.starts_with(&state.digest))
             });
-            (is_other || frame != drawn.frame)
-                .then(|| format!("{RECORD_FILE} records another state than this picture shows"))
-        }),
+            if is_other || frame_of(label).unwrap_or(0) != drawn.frame {
+                Some("records another state than this picture shows")
+            } else if label.adapter() != drawn.adapter {
+                Some("records that another adapter drew this picture")
+            } else {
+                None
+            }
+        }
     };
     if let Some(what) = contradiction {
         let path = expected.origin.join(&picture.name);
-        picture.verdict =
-            Verdict::Unreadable { message: format!("{}: the golden contradicts itself: {what}", path.display()) };
+        let message = format!("{}: the golden contradicts itself: {RECORD_FILE} {what}", path.display());
+        picture.verdict = Verdict::Unreadable { message };
     }
 }
 
@@ -408,14 +486,16 @@ fn scenes(side: &Side, labels: &[&Label]) -> BTreeSet<String> {
     }
 }
 
-/// What is said if a scene does not go as far as its golden.
-fn lost(expected: &Side, actual: &Side) -> Option<String> {
+/// The last frame that a golden records, and the last one of its scene.
+fn ends(expected: &Side, actual: &Side) -> Option<[u64; 2]> {
+    if actual.kind != Kind::Drawn || expected.kind != Kind::Golden {
+        return None;
+    }
     let last = |side: &Side| {
         let runs = side.record.iter().flat_map(|record| &record.states.runs);
         runs.filter_map(|run| run.states.keys().next_back()).max().copied()
     };
-    let (expected, actual) = (last(expected)?, last(actual)?);
-    (expected > actual).then(|| format!("the golden goes on to frame {expected}, the scene ends with frame {actual}"))
+    Some([last(expected)?, last(actual)?])
 }
 
 impl fmt::Display for Comparison {

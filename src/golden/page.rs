@@ -1,6 +1,6 @@
 //! A comparison as the page that tells of it.
 
-use super::distance::{CHANNEL, differences, silhouettes};
+use super::distance::{CHANNEL, Place, differences, silhouettes};
 use super::picture::Pixels;
 use super::report::{self, Report, Sheet};
 use super::side::{Kind, frame_of};
@@ -164,8 +164,8 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
         for (at, difference) in differences(expected, actual) {
             let colour = match (difference > CHANNEL, mask[at]) {
                 (false, _) => FAINT,
-                (true, true) => SILHOUETTE,
-                (true, false) => INTERIOR,
+                (true, Place::Silhouette) => SILHOUETTE,
+                (true, _) => INTERIOR,
             };
             bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
         }

@@ -4,8 +4,9 @@ use crate::output::Label;
 use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
-/// The longest side of a picture (px): more than any that is drawn, and little enough to be read.
+/// The longest side of a picture (px), and its most pixels: both sides of a pair are held in memory.
 const LONGEST_SIDE: u32 = 16_384;
+const MOST_PIXELS: u64 = 100_000_000;
 
 /// Why a file is no picture that can be compared.
 #[derive(Debug, thiserror::Error)]
@@ -67,6 +68,19 @@ impl Pixels {
         Self::decode(Cursor::new(bytes))
     }
 
+    /// What the header of a PNG file says about itself, without its pixels.
+    ///
+    /// # Errors
+    /// As [`Self::read`], as far as that can be told from the header.
+    pub(super) fn read_label(path: &Path) -> Result<Option<Label>, PictureError> {
+        if !path.metadata()?.is_file() {
+            return Err(PictureError::Foreign);
+        }
+        let file = std::io::BufReader::new(std::fs::File::open(path)?);
+        let reader = png::Decoder::new(file).read_info().map_err(|error| PictureError::Broken(error.to_string()))?;
+        Label::of(reader.info()).map_err(PictureError::Label)
+    }
+
     fn decode(mut file: impl BufRead + Seek) -> Result<Self, PictureError> {
         const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
         if !file.fill_buf()?.starts_with(SIGNATURE) {
@@ -79,7 +93,8 @@ impl Pixels {
         let mut reader = png::Decoder::new(file).read_info().map_err(broken)?;
         let info = reader.info();
         let kind = |what: String| Err(PictureError::Kind(what));
-        if info.width.max(info.height) > LONGEST_SIDE {
+        let all = u64::from(info.width) * u64::from(info.height);
+        if info.width.max(info.height) > LONGEST_SIDE || all > MOST_PIXELS {
             return kind(format!("says that it has {}×{} pixels", info.width, info.height));
         }
         if info.bit_depth != png::BitDepth::Eight {

@@ -10,10 +10,14 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
+use std::io;
 use std::path::Path;
 
 /// The name of the file in a golden's folder.
 pub const RECORD_FILE: &str = "golden.toml";
+
+/// The largest file that is read (bytes).
+const LARGEST_FILE: u64 = 4 << 20;
 
 /// The version of its format.
 const FORMAT: u32 = 1;
@@ -139,16 +143,53 @@ struct FileRun {
     quantum: f64,
 }
 
+impl File {
+    /// Refuses what no record says.
+    fn check(&self) -> Result<(), String> {
+        let twice = |names: Vec<&str>| names.iter().collect::<BTreeSet<_>>().len() < names.len();
+        if self.format != FORMAT {
+            return Err(format!("it has the format {}; this version reads format {FORMAT}", self.format));
+        }
+        if self.runs.is_empty() || twice(self.runs.iter().map(|run| run.name.as_str()).collect()) {
+            return Err("it has no `[[run]]`, or two of one name".to_owned());
+        }
+        let count = 1..=u32::MAX as usize;
+        for FileRun { name, nodes, every, quantum } in &self.runs {
+            let is_sound = count.contains(every) && *nodes <= *count.end();
+            if !is_sound || !quantum.is_finite() || *quantum <= 0.0 {
+                return Err(format!(
+                    "run “{}” has nodes = {nodes}, every = {every} and quantum = {quantum:e}; expected positive numbers",
+                    short(name)
+                ));
+            }
+        }
+        let is_plain =
+            |file: &str| file.ends_with(".png") && !file.starts_with('.') && !file.contains(['/', '\\', ':']);
+        if let Some(drawn) = self.pictures.iter().find(|drawn| !is_plain(&drawn.file)) {
+            return Err(format!("“{}” is no plain name of a PNG picture", short(&drawn.file)));
+        }
+        if self.pictures.is_empty() || twice(self.pictures.iter().map(|drawn| drawn.file.as_str()).collect()) {
+            return Err("it has no `[[picture]]`, or two of one name".to_owned());
+        }
+        let [width, height] = self.size;
+        if !self.size.iter().all(|side| (16..=16_384).contains(side)) || ![1, 4].contains(&self.samples) {
+            return Err(format!("pictures of {width}×{height} pixels with {} samples cannot be drawn", self.samples));
+        }
+        Ok(())
+    }
+}
+
 impl Record {
     /// Reads the text of a record.
     ///
     /// # Errors
     /// What is wrong with it, in words.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let file: File = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
-        if file.format != FORMAT {
-            return Err(format!("it has the format {}; this version reads format {FORMAT}", file.format));
-        }
+        let file: File = toml::from_str(text).map_err(|error| {
+            let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            format!("line {line}: {}", short(error.message()))
+        })?;
+        file.check()?;
         let mut runs: Vec<Run> =
             file.runs.iter().map(|run| Run { name: run.name.clone(), states: BTreeMap::new() }).collect();
         for line in lines(&file.digests) {
@@ -160,15 +201,18 @@ impl Record {
             if digests.len() != runs.len() {
                 return Err(wrong());
             }
+            if runs.iter().any(|run| run.states.contains_key(&frame)) {
+                return Err(format!("`digests` has frame {frame} twice"));
+            }
             for (run, digest) in runs.iter_mut().zip(digests) {
-                let is_digest = digest.len() >= DIGITS && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
-                if digest != "-" && !is_digest {
+                if digest.len() < DIGITS || !digest.bytes().all(|byte| byte.is_ascii_hexdigit()) {
                     return Err(wrong());
                 }
-                if digest != "-" {
-                    run.states.insert(frame, State { digest: digest.to_owned(), ..State::default() });
-                }
+                run.states.insert(frame, State { digest: digest.to_owned(), ..State::default() });
             }
+        }
+        if runs.iter().any(|run| run.states.is_empty()) {
+            return Err("`digests` is empty".to_owned());
         }
         for line in lines(&file.numbers) {
             let wrong = || format!("`numbers` has the line “{}”; expected frame, run and six numbers", short(line));
@@ -192,8 +236,9 @@ impl Record {
             let (run, state) = state_of(&mut runs, &words).ok_or_else(wrong)?;
             let FileRun { nodes, every, quantum, .. } = file.runs[run];
             let counts: Option<Vec<i64>> = words[2..].iter().map(|word| word.parse().ok()).collect();
-            let counts =
-                counts.filter(|counts| every > 0 && counts.len() == 3 * nodes.div_ceil(every)).ok_or_else(wrong)?;
+            // The bounds that were checked keep this from overflowing.
+            let coordinates = 3 * nodes.div_ceil(every);
+            let counts = counts.filter(|counts| counts.len() == coordinates).ok_or_else(wrong)?;
             let vector = |at: &[i64]| DVec3::new(at[0] as f64, at[1] as f64, at[2] as f64) * quantum;
             state.places = Some(Places { quantum, every, nodes, at: counts.chunks_exact(3).map(vector).collect() });
         }
@@ -204,10 +249,16 @@ impl Record {
     /// Reads the record of a golden's folder.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
-    pub(super) fn read(folder: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(folder.join(RECORD_FILE)).map_err(|error| error.to_string())?;
-        Self::parse(&text)
+    /// If the file cannot be read; inside, what is wrong with it, in words.
+    pub(super) fn read(folder: &Path) -> io::Result<Result<Self, String>> {
+        let path = folder.join(RECORD_FILE);
+        let found = path.metadata()?;
+        if !found.is_file() || found.len() > LARGEST_FILE {
+            return Ok(Err("it is no file, or far too large for one; a record has some tens of kilobytes".to_owned()));
+        }
+        Ok(String::from_utf8(std::fs::read(&path)?)
+            .map_err(|_| "it is no text".to_owned())
+            .and_then(|text| Self::parse(&text)))
     }
 
     /// The text of the file, with positions rounded.
@@ -216,9 +267,12 @@ impl Record {
         let [mut digests, mut numbers, mut positions] = [const { String::new() }; 3];
         let frames: BTreeSet<u64> = self.states.runs.iter().flat_map(|run| run.states.keys().copied()).collect();
         for frame in &frames {
+            // Only what is known of all runs is recorded.
+            let states: Option<Vec<&State>> = self.states.runs.iter().map(|run| run.states.get(frame)).collect();
+            let Some(states) = states else { continue };
             write!(digests, "\n{frame}").expect("a string takes all");
-            for run in &self.states.runs {
-                let digest = run.states.get(frame).map_or("-", |state| &state.digest[..DIGITS.min(state.digest.len())]);
+            for state in states {
+                let digest: String = state.digest.chars().take(DIGITS).collect();
                 write!(digests, " {digest}").expect("a string takes all");
             }
         }
@@ -237,7 +291,8 @@ impl Record {
             let kept = known().map(|places| places.every).max().unwrap_or(1) * every;
             runs.push(FileRun { name: run.name.clone(), nodes, every: kept, quantum });
             for (frame, state) in &run.states {
-                let Some(places) = &state.places else { continue };
+                let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
+                let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
                 if let Some(all) = &state.numbers {
                     let turned_over = all.turned_over;
                     let rest = [all.kinetic, all.elastic, all.gravitational].map(|number| format!("{number:.5e}"));
@@ -296,7 +351,7 @@ fn lines(table: &str) -> impl Iterator<Item = &str> {
 
 /// The start of a line, for messages.
 fn short(line: &str) -> String {
-    match line.char_indices().nth(40) {
+    match line.char_indices().nth(80) {
         Some((end, _)) => format!("{}…", &line[..end]),
         None => line.to_owned(),
     }
@@ -397,6 +452,14 @@ mod tests {
             ("\n10 0 1.50000e0", "\n10 7 1.50000e0", "`numbers`"),
             ("\n20 1 0 200000", "\n20 1 200000", "`positions`"),
             ("[[run]]", "[[runs]]", "runs"),
+            ("nodes = 5", "nodes = 6148914691236517206", "expected positive numbers"),
+            ("every = 1", "every = 0", "expected positive numbers"),
+            ("quantum = 1e-6", "quantum = nan", "expected positive numbers"),
+            ("quantum = 1e-6", "quantum = -1e-6", "expected positive numbers"),
+            ("frame_00010.png", "../frame_00010.png", "is no plain name"),
+            ("\n6 ", "\n5 ", "frame 5 twice"),
+            ("size = [320", "size = [0", "cannot be drawn"),
+            ("[[picture]]", "[picture_gone]", "picture_gone"),
         ] {
             assert!(text.contains(from), "{from}\n{text}");
             let error = Record::parse(&text.replacen(from, to, 1)).unwrap_err();
@@ -416,8 +479,12 @@ mod tests {
         let at: Vec<_> = (0..100_000).map(|node| DVec3::splat(node as f64)).collect();
         let places = Some(Places { quantum: 0.0, every: 1, nodes: at.len(), at });
         large.states.add("run", 0, State { digest: "0123456789abcdef".into(), places, ..State::default() });
+        large.pictures = record().pictures;
+        (large.size, large.samples) = ([320, 180], 4);
         let text = large.text();
         assert!(text.len() < 20_000, "{}", text.len());
         assert_eq!(Record::parse(&text).unwrap().text(), text);
+        let none = Record::parse(&text.replace("0 0123456789ab", "")).unwrap_err();
+        assert!(none.contains("`digests` is empty"), "{none}");
     }
 }

@@ -59,6 +59,8 @@ pub(crate) struct Side {
     pub(super) record: Option<Record>,
     /// Whether nothing could be drawn, so that states alone are compared.
     pub(super) is_undrawn: bool,
+    /// How it was drawn otherwise than usually, as options of the command line.
+    pub(crate) options: String,
 }
 
 impl Side {
@@ -69,21 +71,28 @@ impl Side {
             return Ok(Self::picture(path));
         }
         let pictures = pictures_in(path)?;
-        let record = match path.join(RECORD_FILE).exists() {
-            true => Some(Record::read(path).map_err(|what| ComparisonError::Record { path: path.into(), what })?),
-            false => None,
+        let file = path.join(RECORD_FILE);
+        let record = match file.symlink_metadata() {
+            Err(_) => None,
+            Ok(_) => Some(match Record::read(path) {
+                Err(source) => return Err(ComparisonError::Read { path: file, source }),
+                Ok(Err(what)) => return Err(ComparisonError::Record { path: path.into(), what }),
+                Ok(Ok(record)) => record,
+            }),
         };
         let kind = if record.is_some() { Kind::Golden } else { Kind::Folder };
-        Ok(Self { origin: path.into(), kind, pictures, record, is_undrawn: false })
+        Ok(Self { origin: path.into(), kind, pictures, record, is_undrawn: false, options: String::new() })
     }
 
     /// As [`Self::read`]; what is not there is a golden that is to be made.
     pub(crate) fn read_or_absent(path: &Path) -> Result<Self, ComparisonError> {
-        let is_empty = || std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
-        if path.symlink_metadata().is_err() || is_empty() {
-            return Ok(Self { kind: Kind::Absent, pictures: BTreeMap::new(), ..Self::picture(path) });
+        let absent = || Self { kind: Kind::Absent, pictures: BTreeMap::new(), ..Self::picture(path) };
+        if path.symlink_metadata().is_err() {
+            return Ok(absent());
         }
-        Self::read(path)
+        // A folder with nothing of ours in it is as good as none.
+        let side = Self::read(path)?;
+        Ok(if side.kind == Kind::Folder && side.pictures.is_empty() { absent() } else { side })
     }
 
     fn picture(path: &Path) -> Self {
@@ -94,6 +103,7 @@ impl Side {
             pictures: BTreeMap::from([(name, Source::File(path.into()))]),
             record: None,
             is_undrawn: false,
+            options: String::new(),
         }
     }
 
@@ -143,7 +153,9 @@ impl Side {
     /// The command line's word for it.
     pub(super) fn typed(&self) -> String {
         let path = self.origin.to_string_lossy();
-        let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%\\".contains(c);
+        // A name that begins like an option is none behind this.
+        let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
+        let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
         match !path.is_empty() && path.chars().all(is_plain) {
             true => path.into_owned(),
             false => format!("'{}'", path.replace('\'', "'\\''")),
@@ -151,11 +163,12 @@ impl Side {
     }
 }
 
-/// What pictures tell of states. Nothing if they are not of one scene: then frames of one number have nothing in common.
-pub(super) fn states_of(labels: &[&Label]) -> States {
+/// What pictures tell of states. Unless they stand `beside_golden`, nothing if they are not of one scene: then frames of one
+/// number have nothing in common.
+pub(super) fn states_of(labels: &[&Label], beside_golden: bool) -> States {
     let mut states = States::default();
     let scenes: BTreeSet<_> = labels.iter().flat_map(|label| label.scenes()).collect();
-    if scenes.len() > 1 {
+    if scenes.len() > 1 && !beside_golden {
         return states;
     }
     for label in labels {
@@ -182,8 +195,16 @@ fn pictures_in(folder: &Path) -> Result<BTreeMap<String, Source>, ComparisonErro
     let mut pictures = BTreeMap::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { continue };
-        if !name.starts_with('.') && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        let Some(name) = path.file_name() else { continue };
+        let is_picture = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+        let Some(name) = name.to_str().map(str::to_owned) else {
+            if is_picture {
+                let source = std::io::Error::new(std::io::ErrorKind::InvalidData, "its name is not UTF-8; rename it");
+                return Err(ComparisonError::Read { path, source });
+            }
+            continue;
+        };
+        if !name.starts_with('.') && is_picture {
             pictures.insert(name, Source::File(path));
         }
     }

@@ -96,6 +96,15 @@ impl States {
         self.runs.iter().all(|run| run.states.is_empty())
     }
 
+    /// Adds all that others know, which counts where both know something.
+    pub(super) fn extend(&mut self, others: Self) {
+        for run in others.runs {
+            for (frame, state) in run.states {
+                self.add(&run.name, frame, state);
+            }
+        }
+    }
+
     /// Adds what is known of a run at a frame.
     pub(super) fn add(&mut self, run: &str, frame: u64, state: State) {
         let at = self.runs.iter().position(|known| known.name == run).unwrap_or_else(|| {
@@ -290,7 +299,7 @@ impl fmt::Display for Moved {
         }
         match (self.first, self.last_equal) {
             (Some(first), Some(last)) if first > last + 1 => {
-                write!(f, ", first at frame {first} or a little before (frame {last} is as it was)")?;
+                write!(f, ", first between frames {} and {first}", last + 1)?;
             }
             (Some(first), _) => write!(f, ", first at frame {first}")?,
             (None, _) => {}

@@ -36,6 +36,7 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 /// there is. Without any graphics adapter the
 /// states alone are compared, unless `LOCALSHAPE_REQUIRE_GPU=1` asks to fail then.
 #[derive(Debug)]
+#[must_use = "`finish` tells what is wrong"]
 pub struct Suite {
     goldens: PathBuf,
     reports: PathBuf,
@@ -45,6 +46,7 @@ pub struct Suite {
     gpu: Option<Option<Gpu>>,
     used: BTreeSet<String>,
     complaints: Vec<String>,
+    is_finished: bool,
 }
 
 impl Suite {
@@ -59,6 +61,7 @@ impl Suite {
             gpu: None,
             used: BTreeSet::new(),
             complaints: Vec::new(),
+            is_finished: false,
         }
     }
 
@@ -103,18 +106,30 @@ impl Suite {
     fn check(&mut self, path: &Path, name: &str) -> Result<(), String> {
         let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
         let expected = Side::read_or_absent(&self.goldens.join(name)).map_err(|error| error.to_string())?;
+        if !expected.is_golden() {
+            let golden = expected.typed();
+            return Err(format!(
+                "{golden} is no golden: it has pictures but no {RECORD_FILE}; delete it and make it again"
+            ));
+        }
         let gpu = self.device(&expected)?.cloned();
         let told = |error: DrawError| error.to_string();
         let actual = draw(path, &subject, &self.wish, &expected, gpu.as_ref(), &mut || true).map_err(told)?;
         let actual = actual.expect("nobody stops it");
         let comparison = Comparison::between(expected, actual).map_err(|error| error.to_string())?;
+        let report = self.reports.join(format!("{name}.html"));
         if comparison.passes() {
+            // What is told there is over.
+            let _ = std::fs::remove_file(&report);
             return Ok(());
         }
         let update = std::env::var(UPDATE).unwrap_or_default();
         let is_renewed = matches!(update.as_str(), "1" | "state") && self.adapter.is_none();
         let refused = match is_renewed.then(|| comparison.bless(update == "state")) {
-            None => format!("\nor accept all with: {UPDATE}=1 cargo test, and states that moved with: {UPDATE}=state"),
+            None => format!(
+                "\nmake what is missing and accept what is drawn differently with: {UPDATE}=1 cargo test\n\
+                 and states that moved with: {UPDATE}=state cargo test"
+            ),
             Some(Ok(blessed)) => {
                 eprint!("{name}: {blessed}");
                 return Ok(());
@@ -122,16 +137,18 @@ impl Suite {
             Some(Err(BlessError::StateMoved { .. })) => {
                 format!("\nthe state moved, so nothing was accepted; if that is meant: {UPDATE}=state cargo test")
             }
+            Some(Err(BlessError::Damaged { .. })) => {
+                format!("\nwhat was expected is damaged; to replace it by what is there: {UPDATE}=state cargo test")
+            }
             Some(Err(error)) => format!("\n{error}"),
         };
-        let report = self.reports.join(format!("{name}.html"));
         let written =
             std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.report().page()));
         let seen = match written {
             Ok(()) => format!("look at it in {}", report.display()),
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
         };
-        Err(format!("{}\n{seen}{refused}", comparison.to_string().trim_end()))
+        Err(format!("{}\n{seen}{refused}", comparison.told(false).trim_end()))
     }
 
     /// The device to draw with, opened once; `None` without any adapter.
@@ -159,7 +176,8 @@ impl Suite {
     ///
     /// # Panics
     /// If anything is not as expected, with all of it in words; also if there is a golden that no scene stands for.
-    pub fn finish(self) {
+    pub fn finish(mut self) {
+        self.is_finished = true;
         let mut complaints = self.complaints.clone();
         complaints.extend(self.unused());
         if complaints.is_empty() {
@@ -174,14 +192,17 @@ impl Suite {
 
     /// What is said of goldens that no scene stands for.
     fn unused(&self) -> Vec<String> {
-        let Ok(entries) = std::fs::read_dir(&self.goldens) else { return Vec::new() };
+        let entries = match std::fs::read_dir(&self.goldens) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Vec::new(),
+            Err(error) => return vec![format!("{} cannot be read: {error}", self.goldens.display())],
+        };
         let mut names: Vec<String> = entries
             .filter_map(|entry| {
                 let path = entry.ok()?.path();
                 let name = path.file_name()?.to_string_lossy().into_owned();
-                let is_golden =
-                    path.join(RECORD_FILE).exists() || path.extension().is_some_and(|ending| ending == "png");
-                (is_golden && !self.used.contains(&name)).then_some(name)
+                let is_golden = path.is_dir() || path.extension().is_some_and(|ending| ending == "png");
+                (is_golden && !name.starts_with('.') && !self.used.contains(&name)).then_some(name)
             })
             .collect();
         names.sort();
@@ -192,5 +213,17 @@ impl Suite {
             )
         };
         names.iter().map(told).collect()
+    }
+}
+
+/// A suite that is forgotten would pass.
+impl Drop for Suite {
+    fn drop(&mut self) {
+        let is_forgotten = !self.is_finished && !std::thread::panicking();
+        let goldens = self.goldens.display();
+        assert!(
+            !is_forgotten,
+            "the goldens in {goldens} were compared, but nobody asked what came of it: call `finish`"
+        );
     }
 }

@@ -9,13 +9,16 @@ use std::fmt;
 
 /// Whether two pictures show the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "verdict", rename_all = "kebab-case")]
+#[serde(tag = "verdict")]
 pub enum Verdict {
     /// Every pixel is equal, and so are the states.
+    #[serde(rename = "identical")]
     Identical,
     /// The simulation gave the same; pixels differ no more than machines do.
+    #[serde(rename = "same state, pixels within tolerance")]
     WithinTolerance(Distance),
     /// The simulation gave the same, but the picture is another one.
+    #[serde(rename = "same state, drawn differently")]
     DrawnDifferently {
         /// How far apart they are; `None` if their sizes or channels are not alike.
         distance: Option<Distance>,
@@ -23,6 +26,7 @@ pub enum Verdict {
         sizes: [[u32; 2]; 2],
     },
     /// The simulation gave other positions or velocities.
+    #[serde(rename = "state moved")]
     StateMoved {
         /// The runs whose states differ.
         runs: Vec<MovedHere>,
@@ -30,10 +34,13 @@ pub enum Verdict {
         distance: Option<Distance>,
     },
     /// There is nothing to compare with what was expected.
+    #[serde(rename = "missing")]
     Missing,
     /// Nothing like it was expected.
+    #[serde(rename = "extra")]
     Extra,
     /// At least one of the pictures does not say what it shows, so that only pixels could be compared.
+    #[serde(rename = "no state recorded")]
     NoState {
         /// How far apart they are; `None` if their sizes or channels are not alike.
         distance: Option<Distance>,
@@ -41,6 +48,7 @@ pub enum Verdict {
         sizes: [[u32; 2]; 2],
     },
     /// One of the files is no picture that can be compared.
+    #[serde(rename = "unreadable")]
     Unreadable {
         /// Which one, and why.
         message: String,

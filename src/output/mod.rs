@@ -23,7 +23,7 @@ pub use error::OutputError;
 pub use folder::{FRAME_FILES, Folder, Look, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
 pub(crate) use png::encode_plain;
-pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_label, read_tags};
+pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
 pub use sheets::SheetFiles;
 pub use states::{STATES_FILE, StatesWriter};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};

@@ -202,14 +202,6 @@ pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> 
     Ok(header(path, described)?.flatten())
 }
 
-/// Reads what a frame or a figure says about itself, without its pixels; `None` if there is nothing, or nothing of sense.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn read_label(path: &Path) -> Result<Option<Label>, OutputError> {
-    Ok(header(path, |info| Label::of(info).ok().flatten())?.flatten())
-}
-
 /// What is before the pixels of a picture; `None` if the file is no PNG.
 fn header<T>(path: &Path, take: impl FnOnce(&png::Info<'_>) -> T) -> Result<Option<T>, OutputError> {
     let file = File::open(path).map_err(OutputError::reading(path))?;
@@ -247,9 +239,10 @@ impl Label {
         if NAMES.iter().all(|name| chunk(info, name).is_none()) {
             return Ok(None);
         }
-        let is_digest = |digest: &String| !digest.is_empty() && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
-        let states = states_of(&text("state")?).filter(|all| all.iter().all(|(digest, _)| is_digest(digest)));
-        let states = states.ok_or("state")?;
+        let is_digest = |digest: &String| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let are_states =
+            |all: &Vec<(String, String)>| !all.is_empty() && all.iter().all(|(digest, _)| is_digest(digest));
+        let states = states_of(&text("state")?).filter(are_states).ok_or("state")?;
         let (version, adapter) = (text("version")?, text("adapter")?);
         if let Some(figure) = chunk(info, "figure") {
             let scenes = text("scene")?.lines().map(str::to_owned).collect();
@@ -309,8 +302,10 @@ impl Label {
 fn chunk(info: &png::Info<'_>, name: &str) -> Option<String> {
     let keyword = format!("localshape:{name}");
     let plain = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
-    let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword);
-    plain.map(|chunk| chunk.text.clone()).or_else(|| wide()?.get_text().ok())
+    let wide = || info.utf8_text.iter().find(|chunk| chunk.keyword == keyword)?.get_text().ok();
+    // Other programs may have packed it.
+    let packed = || info.compressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword)?.get_text().ok();
+    plain.map(|chunk| chunk.text.clone()).or_else(wide).or_else(packed)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use localshape::sequence::Sequence;
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
     let tags = Tags {
         scene: "s".into(),
-        states: vec![(state.into(), "Local shape".into())],
+        states: vec![(digest(state), "Local shape".into())],
         frame,
         time: frame as f64 / 60.0,
         version: "0".into(),
@@ -17,11 +17,19 @@ fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
     encode([16, 8], bytes, &tags)
 }
 
+/// 64 digits.
+fn digest(end: &str) -> String {
+    format!("{end:0>64}")
+}
+
 fn put(place: &Place, name: &str, bytes: &[u8]) {
     let path = place.path(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(path, bytes).unwrap();
 }
+
+/// The state of a run, with a whole digest.
+const FULL: &str = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef run";
 
 const GREY: [u8; 16 * 8 * 3] = [120; 16 * 8 * 3];
 
@@ -46,7 +54,7 @@ fn two_pictures() {
     assert_eq!(moved.status, Some(1));
     let told: serde_json::Value = serde_json::from_str(&moved.out).unwrap();
     assert_eq!((told["passes"].as_bool(), told["first_moved"].as_str()), (Some(false), Some("c.png")));
-    assert_eq!(told["pictures"][0]["verdict"], "state-moved");
+    assert_eq!(told["pictures"][0]["verdict"], "state moved");
     assert_eq!(told["pictures"][0]["runs"][0]["run"], "Local shape");
     assert_eq!((told["verdict"].as_str(), told["moved"][0]["first"].as_u64()), (Some("state moved"), Some(0)));
     assert_eq!(told["accept"], "localshape compare --bless-state a.png c.png");
@@ -87,7 +95,7 @@ fn another_scene_file_is_mentioned_and_no_difference() {
     let place = Place::new();
     let tags = |scene: &str| Tags {
         scene: scene.into(),
-        states: vec![("1".into(), "run".into())],
+        states: vec![(digest("1"), "run".into())],
         frame: 0,
         time: 0.0,
         version: "0".into(),
@@ -116,13 +124,14 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     let written = |name: &str| std::fs::metadata(place.path(name)).unwrap().modified().unwrap();
     let kept = written("was/same.png");
     let accepted = place.run("compare --bless-state was is");
-    assert_eq!(accepted.status, Some(0), "{accepted:?}");
+    assert_eq!(accepted.status, Some(1), "one is missing: {accepted:?}");
     let told = "accepted was/drawn.png\naccepted was/moved.png\nwas/gone.png is missing in is and was left\n";
     assert!(accepted.out.ends_with(told), "{accepted:?}");
     assert_eq!(written("was/same.png"), kept);
     assert_eq!(place.names("was"), ["drawn.png", "gone.png", "moved.png", "same.png"]);
-    // What was missing is still missed.
+    // What was missing is still missed, and there is nothing that could be accepted.
     assert_eq!(place.run("compare was is").status, Some(1));
+    assert_eq!(place.run("compare --bless was is").status, Some(1));
     std::fs::remove_file(place.path("was/gone.png")).unwrap();
     place.run("compare was is").good();
     let nothing = place.run("compare --bless was is").good();
@@ -152,8 +161,15 @@ fn no_damaged_picture_is_ever_accepted() {
     put(&place, "was.png", &picture("one", "1", 0, &GREY));
     put(&place, "cut.png", &picture("one", "1", 0, &GREY)[..60]);
     place.run("compare --bless-state was.png cut.png").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
+    place.run("compare --bless new.png cut.png").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
+    put(&place, "some/cut.png", &picture("one", "1", 0, &GREY)[..60]);
+    put(&place, "none/whole.png", &picture("one", "1", 0, &GREY));
+    place.run("compare --bless-state none some").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
+    assert!(!place.path("new.png").exists() && place.names("none") == ["whole.png"]);
     // But a damaged golden can be renewed, if it is known that its state is lost.
-    place.run("compare --bless cut.png was.png").bad(1, &["--bless-state cut.png was.png"]);
+    place
+        .run("compare --bless cut.png was.png")
+        .bad(1, &["what was expected is damaged", "--bless-state cut.png was.png"]);
     place.run("compare --bless-state cut.png was.png").good();
     assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
 }
@@ -221,6 +237,13 @@ fn a_report_is_one_file() {
     let page = place.read("page.html");
     assert!(page.starts_with("<!doctype html>") && page.contains("--bless-state a.png c.png"), "{}", &page[..200]);
     place.run("compare a.png c.png --report none/page.html -q").bad(4, &["none/page.html"]);
+    // An earlier page is replaced, and nothing else.
+    assert_eq!(place.run("compare a.png c.png --report page.html -q").status, Some(1));
+    place.write("precious.toml", "body = 7");
+    for name in ["precious.toml", "a.png", "."] {
+        place.run(&format!("compare a.png c.png --report {name} -q")).bad(2, &["no page of a comparison"]);
+    }
+    assert_eq!(place.read("precious.toml"), "body = 7");
 }
 
 #[test]
@@ -269,7 +292,7 @@ fn what_is_no_picture_never_passes() {
             16 * 8 * 3,
         )
     };
-    let wrong: [(&str, Vec<u8>, &str); 15] = [
+    let wrong: [(&str, Vec<u8>, &str); 17] = [
         ("interlaced.png", interlaced, "is interlaced"),
         ("text.png", b"no picture".to_vec(), "this is no PNG picture"),
         ("empty.png", Vec::new(), "this is no PNG picture"),
@@ -293,8 +316,10 @@ fn what_is_no_picture_never_passes() {
         ),
         ("animated.png", with(&|encoder| encoder.set_animated(1, 0).unwrap(), 16 * 8 * 3), "is an animation"),
         ("untold.png", text("localshape:version", "1"), "`localshape:state` is missing or damaged"),
-        ("frame.png", states("-3", "ab run"), "`localshape:frame` is missing or damaged"),
+        ("frame.png", states("-3", FULL), "`localshape:frame` is missing or damaged"),
         ("digest.png", states("3", "no-digest run"), "`localshape:state` is missing or damaged"),
+        ("short.png", states("3", "ab run"), "`localshape:state` is missing or damaged"),
+        ("none.png", states("3", ""), "`localshape:state` is missing or damaged"),
     ];
     for (name, bytes, words) in wrong {
         put(&place, name, &bytes);
@@ -322,12 +347,17 @@ fn wrong_words() {
     place.run("compare a.png a.png --size 20x20").bad(2, &["--size is for scenes and figures"]);
     place.write("small.toml", SMALL);
     place.run("compare a.png small.toml").bad(2, &["a.png is no golden"]);
+    place
+        .run("compare small.toml none")
+        .bad(2, &["small.toml is a scene or figure and comes last: localshape compare none"]);
     std::fs::create_dir(place.path("broken")).unwrap();
     place.write("broken/golden.toml", "format = 7");
     place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "no record of a golden"]);
     place.write("wrong.toml", "body.lattice = { cells = [1, 1, 1], size = 0.1 }");
     place.run("compare none2 wrong.toml").bad(2, &["wrong.toml", "`size`"]);
     place.run("compare none a.png").bad(2, &["none is a folder and a.png is a file"]);
+    put(&place, "full/a.png", &picture("one", "1", 0, &GREY));
+    place.run("compare full a.png").bad(2, &["full is a folder and a.png is a file"]);
     place.run("compare none none").bad(2, &["holds a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
 }

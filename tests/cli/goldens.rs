@@ -41,6 +41,7 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     place.write("stiffer.toml", &stiffer.replace("T/50", "T/71"));
     let slower = place.run("compare golden stiffer.toml").out;
     assert!(slower.contains("the scene files are not the same"), "{slower}");
+    assert!(slower.contains("state moved: Mass-spring, first at frame"), "{slower}");
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     let moved = place.run("compare golden small.toml --json");
     assert_eq!(moved.status, Some(1));
@@ -117,10 +118,83 @@ fn only_what_failed_is_rewritten() {
     std::fs::write(place.path("golden/frame_00004.png"), broken).unwrap();
     let damaged = place.run("compare golden small.toml");
     assert!(damaged.out.contains("frame_00004.png: unreadable: golden/frame_00004.png: "), "{damaged:?}");
-    place.run("compare --bless golden small.toml").bad(1, &["--bless-state"]);
+    place.run("compare --bless golden small.toml").bad(1, &["what was expected is damaged", "--bless-state"]);
     place.run("compare --bless-state golden small.toml").good();
     assert_eq!(names.map(made), before);
     place.run("compare golden small.toml").good();
+    // What was asked for is in the command that accepts it.
+    let other = place.run("compare golden small.toml --size 90x64 --samples 1 --frames 3").out;
+    assert!(other.contains("--bless --frames 3 --size 90x64 --samples 1 golden small.toml\n"), "{other}");
+    // Nothing outside the golden is ever touched.
+    place.write("precious.png", "precious");
+    let record = place.read("golden/golden.toml").replace("\"frame_00002.png\"", "\"../precious.png\"");
+    place.write("golden/golden.toml", &record);
+    place.run("compare --bless-state golden small.toml").bad(2, &["golden.toml", "no plain name of a PNG picture"]);
+    assert_eq!(place.read("precious.png"), "precious");
+}
+
+#[test]
+fn whatever_is_lost_is_no_pass() {
+    let Some(place) = with_golden() else { return };
+    // Pictures that say nothing of themselves, on either side.
+    let stripped = |from: &str, to: &str| {
+        let pixels = Pixels::read(&place.path(from)).unwrap();
+        let image = image::RgbImage::from_raw(pixels.size[0], pixels.size[1], pixels.bytes).unwrap();
+        image.save(place.path(to)).unwrap();
+    };
+    place.run("render small.toml -o plain --frames 2,4,6 -q").good();
+    for frame in [2, 4, 6] {
+        let name = format!("plain/frame_0000{frame}.png");
+        stripped(&name, &name);
+    }
+    let untold = place.run("compare golden plain");
+    assert!(untold.status == Some(1) && untold.out.contains("of which none is known here"), "{untold:?}");
+    place.run("compare --bless golden plain").bad(1, &["nothing was accepted"]);
+    // States of some frames in an archive do not hide those of others.
+    place.run("render small.toml -o part --states -q").good();
+    place.run("simulate small.toml -o first --frames 0-3 --states -q").good();
+    for name in ["states.npz", "diagnostics.csv"] {
+        std::fs::copy(place.path(format!("first/{name}")), place.path(format!("part/{name}"))).unwrap();
+    }
+    assert!(place.run("compare golden part").good().out.contains("14 states are the same"));
+    let record = place.read("golden/golden.toml");
+    let line = record.lines().find(|line| line.starts_with("5 ")).unwrap().to_owned();
+    let digit = line.chars().last().unwrap();
+    let other = format!("{}{}", &line[..line.len() - 1], if digit == '0' { '1' } else { '0' });
+    place.write("golden/golden.toml", &record.replace(&line, &other));
+    let moved = place.run("compare golden part");
+    assert!(moved.out.contains("state moved: Mass-spring, first at frame 5"), "{moved:?}");
+    let moved = place.run("compare golden small.toml");
+    assert!(moved.out.contains("state moved: Mass-spring, first at frame 5"), "{moved:?}");
+    place.write("golden/golden.toml", &record);
+    // Frames of another scene, damaged ones and foreign ones among those that have no picture in the golden.
+    place.write("other.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
+    place.run("render small.toml -o mixed --frames 2,4,6 -q").good();
+    place.run("render other.toml -o other --frames 1,3,5 -q").good();
+    for frame in [1, 3] {
+        let name = format!("frame_0000{frame}.png");
+        std::fs::copy(place.path(format!("other/{name}")), place.path(format!("mixed/{name}"))).unwrap();
+    }
+    place.write("mixed/frame_00005.png", "no picture");
+    stripped("other/frame_00001.png", "mixed/frame_00000.png");
+    let mixed = place.run("compare golden mixed");
+    assert_eq!(mixed.status, Some(1));
+    for told in [
+        "frame_00001.png: state moved",
+        "frame_00003.png: state moved",
+        "frame_00005.png: unreadable",
+        "frame_00000.png: extra",
+    ] {
+        assert!(mixed.out.contains(told), "{told}: {mixed:?}");
+    }
+    // A golden whose picture was drawn by somebody else than it records.
+    let strange = record.replacen("adapter = \"", "adapter = \"another ", 1);
+    place.write("golden/golden.toml", &strange);
+    let ran = place.run("compare golden small.toml");
+    assert!(ran.status == Some(1) && ran.out.contains("another adapter drew this picture"), "{ran:?}");
+    // And one that lost its record.
+    std::fs::remove_file(place.path("golden/golden.toml")).unwrap();
+    place.run("compare golden small.toml").bad(2, &["golden is no golden"]);
 }
 
 #[test]
@@ -196,6 +270,14 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     assert_eq!(shorter.status, Some(1));
     assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");
     assert!(shorter.out.contains("frame_00006.png: missing"), "{shorter:?}");
+    // Fewer states are other states.
+    place.run("compare --bless golden small.toml").bad(1, &["the state moved", "--bless-state"]);
+    place.run("compare --bless-state golden small.toml").good();
+    place.run("compare golden small.toml").good();
+    place.write("small.toml", SMALL);
+    let longer = place.run("compare golden small.toml").good();
+    assert!(longer.out.contains("the golden ends with frame 3, the scene goes on to frame 6"), "{longer:?}");
+    place.write("small.toml", &SMALL.replace("duration = 0.1", "duration = 0.05"));
     place.run("compare golden small.toml --frames 9").bad(2, &["there is no frame 9, the last one is 3"]);
     place.run("compare golden absent.toml").bad(2, &["absent.toml: there is no such file"]);
     place.run("compare golden small.toml --adapter nonsense").bad(3, &["nonsense"]);
