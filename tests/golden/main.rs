@@ -100,7 +100,7 @@ fn other_adapters() {
 }
 
 #[test]
-fn goldens_are_small() {
+fn goldens_are_small_and_drawn_by_one_kind_of_adapter() {
     if std::env::var_os("UPDATE_GOLDENS").is_some() {
         return;
     }
@@ -114,6 +114,13 @@ fn goldens_are_small() {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 let size = size(&path);
+                let record = std::fs::read_to_string(path.join("golden.toml")).expect("a record");
+                let mut adapters = record.lines().filter_map(|line| line.strip_prefix("adapter = \""));
+                assert!(
+                    adapters.all(|adapter| adapter.starts_with(USUAL)),
+                    "{}: drawn by another adapter",
+                    path.display()
+                );
                 assert!(size <= LARGEST_GOLDEN, "{}: {size} bytes, make its pictures smaller", path.display());
                 all += size;
             }
