@@ -517,6 +517,8 @@
       }
       const image = make("img", { alt: `${TITLES[layer.side]}: ${sheet.name}`, draggable: false, decoding: "sync" });
       image.addEventListener("load", () => {
+        // Another picture may have been chosen meanwhile.
+        if (layer.image !== image) return;
         if (size) size.textContent = `${image.naturalWidth} × ${image.naturalHeight}`;
         layout();
       });
