@@ -361,7 +361,15 @@ impl Read {
         };
         let (expected, actual) = match (expected, actual) {
             (Some(expected), Some(actual)) => {
-                rayon::join(|| pixels(&expected, "expected"), || pixels(&actual, "actual"))
+                let [one, other] = [expected.bytes(), actual.bytes()];
+                if matches!((&one, &other), (Ok(one), Ok(other)) if one == other) {
+                    // The same file twice, as most that pass are: read once.
+                    let read = pixels(&expected, "expected");
+                    let again = if read.is_ok() { read.clone() } else { pixels(&actual, "actual") };
+                    (read, again)
+                } else {
+                    rayon::join(|| pixels(&expected, "expected"), || pixels(&actual, "actual"))
+                }
             }
             // What is damaged is told, also if it is alone.
             (Some(expected), None) => {

@@ -43,6 +43,8 @@ impl Source {
     /// The bytes of the file.
     pub(super) fn bytes(&self) -> std::io::Result<Vec<u8>> {
         match self {
+            // A pipe would keep everybody waiting.
+            Self::File(path) if !path.metadata()?.is_file() => Err(std::io::ErrorKind::InvalidInput.into()),
             Self::File(path) => std::fs::read(path),
             Self::Memory(bytes) => Ok(bytes.clone()),
         }
