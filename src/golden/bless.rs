@@ -1,10 +1,10 @@
 //! Accepting what is there as what is expected from now on.
 
 use super::record::{Drawn, RECORD_FILE, Record};
-use super::side::{Kind, Source, frame_of};
+use super::side::{Kind, Source};
 use super::states::States;
 use super::{Comparison, Verdict};
-use crate::output::{AtomicFile, Label, OutputError};
+use crate::output::{AtomicFile, OutputError};
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
@@ -215,7 +215,7 @@ impl Comparison {
             .filter_map(|name| {
                 let kept = old.pictures.iter().find(|drawn| drawn.file == name);
                 match label(name).filter(|_| !passes(name)) {
-                    Some(label) => Some(drawn(name, &label)),
+                    Some(label) => Some(Drawn::new(name, &label)),
                     None => kept.cloned(),
                 }
             })
@@ -242,12 +242,6 @@ impl Comparison {
         let (recorded, known) = (count(&old.states), count(&states));
         if known < recorded { Err(BlessError::StatesUnknown { recorded, known }) } else { Ok(states) }
     }
-}
-
-/// A picture and who drew it, as it says itself.
-fn drawn(name: &str, label: &Label) -> Drawn {
-    let (adapter, version) = (label.adapter().to_owned(), label.version().to_owned());
-    Drawn { file: name.to_owned(), frame: frame_of(label).unwrap_or(0), adapter, version }
 }
 
 /// The bytes of a picture, for a golden as few as can be had.

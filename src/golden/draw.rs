@@ -189,12 +189,7 @@ fn draw_scene(
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
             let (label, bytes) = artist.draw(&frame)?;
             let file = frame_file_name(index);
-            drawn.push(Drawn {
-                file: file.clone(),
-                frame: index,
-                adapter: label.adapter().to_owned(),
-                version: label.version().to_owned(),
-            });
+            drawn.push(Drawn::new(&file, &label));
             pictures.insert(file, bytes);
         }
         if !go_on() {
@@ -239,12 +234,7 @@ fn draw_figure(
         let image = Renderer::new(gpu, figure.size, samples)?.draw(&picture)?;
         let label = Label::Figure(FigureTags::new(&figure, &moments, &gpu.description().to_string()));
         let file = format!("{}.png", figure.name);
-        drawn.push(Drawn {
-            file: file.clone(),
-            frame: 0,
-            adapter: label.adapter().to_owned(),
-            version: label.version().to_owned(),
-        });
+        drawn.push(Drawn::new(&file, &label));
         pictures.insert(file, label.encode(figure.size, image.as_raw()));
     }
     let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();

@@ -170,6 +170,11 @@ impl Comparison {
         let scenes = [(&expected, &labels[0]), (&actual, &labels[1])].map(|(side, labels)| scenes(side, labels));
         let same_scene = scenes.iter().all(|scenes| !scenes.is_empty()).then(|| scenes[0] == scenes[1]);
         let ends_early = ends(&expected, &actual).filter(|[recorded, end]| end < recorded);
+        if let (Some(golden), Some(drawn)) = (&expected.record, &actual.record)
+            && golden.subject != drawn.subject
+        {
+            notes.push(format!("the golden is of {}, and this is {}", golden.subject, drawn.subject));
+        }
         match ends(&expected, &actual) {
             Some([recorded, end]) if end < recorded => {
                 notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));

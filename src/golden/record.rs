@@ -5,7 +5,9 @@
 //! kilobytes, however large the scene is: of long scenes every second frame is recorded or fewer, of large bodies every
 //! second node or fewer.
 
+use super::side::frame_of;
 use super::states::{Numbers, Places, Run, State, States};
+use crate::output::Label;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,6 +64,14 @@ pub(super) struct Drawn {
     pub(super) adapter: String,
     /// The version of this crate.
     pub(super) version: String,
+}
+
+impl Drawn {
+    /// A picture and who drew it, as it says itself.
+    pub(super) fn new(file: &str, label: &Label) -> Self {
+        let (adapter, version) = (label.adapter().to_owned(), label.version().to_owned());
+        Self { file: file.to_owned(), frame: frame_of(label).unwrap_or(0), adapter, version }
+    }
 }
 
 /// Which frames and nodes are recorded.

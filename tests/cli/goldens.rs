@@ -42,6 +42,7 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     let slower = place.run("compare golden stiffer.toml").out;
     assert!(slower.contains("the scene files are not the same"), "{slower}");
     assert!(slower.contains("state moved: Mass-spring, first at frame"), "{slower}");
+    assert!(slower.contains("the golden is of small.toml, and this is stiffer.toml"), "{slower}");
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     let moved = place.run("compare golden small.toml --json");
     assert_eq!(moved.status, Some(1));
