@@ -21,6 +21,7 @@ mod distance;
 #[cfg(feature = "render")]
 pub(crate) mod draw;
 mod page;
+mod pair;
 mod picture;
 #[cfg_attr(
     not(feature = "render"),
@@ -33,6 +34,7 @@ pub mod report;
     allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
 )]
 mod side;
+mod silhouettes;
 #[cfg_attr(
     not(feature = "render"),
     allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
@@ -53,6 +55,7 @@ pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
 
 use crate::output::Label;
+use pair::Pair;
 use rayon::prelude::*;
 use serde::Serialize;
 use side::{Kind, Source, frame_of, states_of};
@@ -156,7 +159,12 @@ impl Comparison {
     /// Compares two sides.
     pub(crate) fn between(expected: Side, actual: Side) -> Result<Self, ComparisonError> {
         let pairs = pairs(&expected, &actual)?;
-        let read: Vec<Read> = pairs.into_par_iter().map(|(name, sources)| Read::new(name, sources)).collect();
+        let read = |(name, sources)| Pair::read(name, sources);
+        let read: Vec<Pair> = match pairs.len() {
+            // Threads take time to start, a tenth of all that a pair takes.
+            1 => pairs.into_iter().map(read).collect(),
+            _ => pairs.into_par_iter().map(read).collect(),
+        };
         // Frames beside those of a golden tell of states, too.
         let beside = beside(&expected, &actual);
         let labels = [0, 1].map(|side| -> Vec<&Label> {
@@ -175,6 +183,7 @@ impl Comparison {
         {
             notes.push(format!("the golden is of {}, and this is {}", golden.subject, drawn.subject));
         }
+        notes.extend(other_moments(&read));
         match ends(&expected, &actual) {
             Some([recorded, end]) if end < recorded => {
                 notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));
@@ -345,72 +354,6 @@ fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
     Ok(pairs.into_iter().collect())
 }
 
-/// A pair of pictures as it was read.
-struct Read {
-    name: String,
-    labels: [Option<Label>; 2],
-    verdict: Verdict,
-}
-
-impl Read {
-    fn new(name: String, [expected, actual]: [Option<Source>; 2]) -> Self {
-        let pixels = |source: &Source, side: &str| {
-            source.pixels().map_err(|error| {
-                use std::error::Error;
-                let place = match source {
-                    Source::File(path) => path.display().to_string(),
-                    Source::Memory(_) => format!("the {side} picture"),
-                };
-                error.source().map_or_else(|| format!("{place}: {error}"), |cause| format!("{place}: {error}: {cause}"))
-            })
-        };
-        let (expected, actual) = match (expected, actual) {
-            (Some(expected), Some(actual)) => {
-                let [one, other] = [expected.bytes(), actual.bytes()];
-                if matches!((&one, &other), (Ok(one), Ok(other)) if one == other) {
-                    // The same file twice, as most that pass are: read once.
-                    let read = pixels(&expected, "expected");
-                    let again = if read.is_ok() { read.clone() } else { pixels(&actual, "actual") };
-                    (read, again)
-                } else {
-                    rayon::join(|| pixels(&expected, "expected"), || pixels(&actual, "actual"))
-                }
-            }
-            // What is damaged is told, also if it is alone.
-            (Some(expected), None) => {
-                return match pixels(&expected, "expected") {
-                    Ok(pixels) => Self { name, labels: [pixels.label, None], verdict: Verdict::Missing },
-                    Err(message) => Self { name, labels: [None, None], verdict: Verdict::Unreadable { message } },
-                };
-            }
-            (None, Some(actual)) => {
-                return match pixels(&actual, "actual") {
-                    Ok(pixels) => Self { name, labels: [None, pixels.label], verdict: Verdict::Extra },
-                    Err(message) => Self { name, labels: [None, None], verdict: Verdict::Unreadable { message } },
-                };
-            }
-            (None, None) => return Self { name, labels: [None, None], verdict: Verdict::Missing },
-        };
-        match (expected, actual) {
-            (Ok(expected), Ok(actual)) => {
-                let verdict = Verdict::new(&expected, &actual);
-                Self { name, labels: [expected.label, actual.label], verdict }
-            }
-            (expected, actual) => {
-                let errors: Vec<String> =
-                    [expected.as_ref().err(), actual.as_ref().err()].into_iter().flatten().cloned().collect();
-                let labels = [expected, actual].map(|side| side.ok().and_then(|pixels| pixels.label));
-                Self { name, labels, verdict: Verdict::Unreadable { message: errors.join("; ") } }
-            }
-        }
-    }
-
-    fn compared(self) -> Compared {
-        let frame = self.labels.iter().flatten().find_map(frame_of);
-        Compared { name: self.name, frame, verdict: self.verdict }
-    }
-}
-
 /// Frames of a folder that are not among the pictures of a golden, with what they say about themselves.
 fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Label>, PictureError>)> {
     if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
@@ -489,6 +432,23 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
         let message = format!("{}: the golden contradicts itself: {RECORD_FILE} {what}", path.display());
         picture.verdict = Verdict::Unreadable { message };
     }
+}
+
+/// That pictures of one name show different moments, in words.
+fn other_moments(pairs: &[Pair]) -> Option<String> {
+    let told = |pair: &Pair| {
+        let [Some(Label::Frame(expected)), Some(Label::Frame(actual))] = &pair.labels else { return None };
+        let name = &pair.name;
+        if actual.frame != expected.frame {
+            return Some(format!("{name} shows frame {} instead of frame {}", actual.frame, expected.frame));
+        }
+        let is_other = actual.time != expected.time;
+        is_other.then(|| format!("{name} shows {} s instead of {} s", actual.time, expected.time))
+    };
+    let mut all = pairs.iter().filter_map(told);
+    let first = all.next()?;
+    let more = all.count();
+    Some(if more > 0 { format!("{first}, and so for {more} more pictures") } else { first })
 }
 
 /// Digests of the scenes of a side.

@@ -1,9 +1,10 @@
 //! A comparison as the page that tells of it.
 
-use super::distance::{CHANNEL, Place, differences, silhouettes};
+use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
 use super::report::{self, Report, Sheet};
 use super::side::{Kind, frame_of};
+use super::silhouettes::{Place, silhouettes};
 use super::{Compared, Comparison, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -161,14 +162,14 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     let mut bytes: Vec<u8> = expected.bytes.chunks_exact(expected.channels).flat_map(faint).collect();
     if expected.bytes != actual.bytes {
         let mask = silhouettes([expected, actual]);
-        for (at, difference) in differences(expected, actual) {
+        differences(&expected.bytes, &actual.bytes, expected.channels, |at, difference| {
             let colour = match (difference > CHANNEL, mask[at]) {
                 (false, _) => FAINT,
                 (true, Place::Silhouette) => SILHOUETTE,
                 (true, _) => INTERIOR,
             };
             bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
-        }
+        });
     }
     Some(crate::output::encode_plain(expected.size, &bytes))
 }

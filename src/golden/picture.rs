@@ -1,22 +1,31 @@
 //! Pictures as they are read to be compared: 8-bit red, green and blue, with or without opacities, and nothing else.
 
 use crate::output::Label;
-use std::io::{BufRead, Cursor, Seek};
+use std::fs::File;
+use std::io::{self, BufRead, Cursor, Read, Seek};
 use std::path::Path;
 
 /// The longest side of a picture (px), and its most pixels: both sides of a pair are held in memory.
 const LONGEST_SIDE: u32 = 16_384;
 const MOST_PIXELS: u64 = 100_000_000;
+/// The largest file (bytes): more than those pixels take.
+const MOST_BYTES: u64 = 1 << 29;
+
+/// How every PNG file begins.
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Why a file is no picture that can be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// It cannot be opened.
     #[error("cannot be read")]
-    Read(#[from] std::io::Error),
+    Read(#[from] io::Error),
     /// It is no PNG file.
     #[error("this is no PNG picture")]
     Foreign,
+    /// It is larger than any picture that is compared.
+    #[error("this file has {} MiB, more than any picture that can be compared", .0 >> 20)]
+    Large(u64),
     /// It is a PNG file, but not a whole one.
     #[error("this PNG picture is damaged or cut short ({0})")]
     Broken(String),
@@ -50,14 +59,7 @@ impl Pixels {
     /// # Errors
     /// A file that cannot be read, is no PNG file or only a part of one, or is of another kind than frames are.
     pub fn read(path: &Path) -> Result<Self, PictureError> {
-        if path.is_dir() {
-            return Err(std::io::Error::from(std::io::ErrorKind::IsADirectory).into());
-        }
-        // In one piece: a pipe is no picture, and files are small.
-        if !path.metadata()?.is_file() {
-            return Err(PictureError::Foreign);
-        }
-        Self::decode(std::io::BufReader::new(std::fs::File::open(path)?))
+        Self::from_bytes(&file(path)?)
     }
 
     /// Reads a PNG file from memory.
@@ -65,7 +67,12 @@ impl Pixels {
     /// # Errors
     /// As [`Self::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PictureError> {
-        Self::decode(Cursor::new(bytes))
+        let mut rows = Rows::open(Cursor::new(bytes))?;
+        let mut bytes = vec![0; rows.header.row() * rows.header.rows()];
+        rows.read(&mut bytes)?;
+        rows.finish()?;
+        let Header { size, channels, label } = rows.header;
+        Ok(Self { size, channels, bytes, label })
     }
 
     /// What the header of a PNG file says about itself, without its pixels.
@@ -73,24 +80,85 @@ impl Pixels {
     /// # Errors
     /// As [`Self::read`], as far as that can be told from the header.
     pub(super) fn read_label(path: &Path) -> Result<Option<Label>, PictureError> {
-        if !path.metadata()?.is_file() {
-            return Err(PictureError::Foreign);
-        }
-        let file = std::io::BufReader::new(std::fs::File::open(path)?);
-        let reader = png::Decoder::new(file).read_info().map_err(|error| PictureError::Broken(error.to_string()))?;
+        let reader = png::Decoder::new(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
         Label::of(reader.info()).map_err(PictureError::Label)
     }
+}
 
-    fn decode(mut file: impl BufRead + Seek) -> Result<Self, PictureError> {
-        const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The bytes of what is to be read as a picture.
+pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
+    let mut file = open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    // Whatever else lies there under such a name may be large.
+    file.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut bytes)?;
+    if bytes != SIGNATURE {
+        return Err(PictureError::Foreign);
+    }
+    if length > MOST_BYTES {
+        return Err(PictureError::Large(length));
+    }
+    // One more than there should be, so that the end is seen at once.
+    bytes.reserve_exact(length as usize + 1);
+    file.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn open(path: &Path) -> Result<File, PictureError> {
+    let found = path.metadata()?;
+    if found.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
+    }
+    // A pipe is no picture, and would keep everybody waiting.
+    if !found.is_file() {
+        return Err(PictureError::Foreign);
+    }
+    Ok(File::open(path)?)
+}
+
+fn broken(error: png::DecodingError) -> PictureError {
+    match error {
+        png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error.into(),
+        error => PictureError::Broken(error.to_string()),
+    }
+}
+
+/// What a picture is, without its pixels.
+#[derive(Clone, Debug)]
+pub(super) struct Header {
+    /// Width and height (px).
+    pub(super) size: [u32; 2],
+    /// Bytes of each pixel.
+    pub(super) channels: usize,
+    /// What it shows, if it says so.
+    pub(super) label: Option<Label>,
+}
+
+impl Header {
+    /// Bytes of a row.
+    pub(super) fn row(&self) -> usize {
+        self.size[0] as usize * self.channels
+    }
+
+    /// How many rows there are.
+    pub(super) fn rows(&self) -> usize {
+        self.size[1] as usize
+    }
+}
+
+/// A picture whose rows are read one after another.
+pub(super) struct Rows<R: BufRead + Seek> {
+    reader: png::Reader<R>,
+    pub(super) header: Header,
+}
+
+impl<R: BufRead + Seek> Rows<R> {
+    /// Reads the header of a PNG file, and refuses what no frame is.
+    pub(super) fn open(mut file: R) -> Result<Self, PictureError> {
         if !file.fill_buf()?.starts_with(SIGNATURE) {
             return Err(PictureError::Foreign);
         }
-        let broken = |error: png::DecodingError| match error {
-            png::DecodingError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.into(),
-            error => PictureError::Broken(error.to_string()),
-        };
-        let mut reader = png::Decoder::new(file).read_info().map_err(broken)?;
+        let reader = png::Decoder::new(file).read_info().map_err(broken)?;
         let info = reader.info();
         let kind = |what: String| Err(PictureError::Kind(what));
         let all = u64::from(info.width) * u64::from(info.height);
@@ -113,12 +181,22 @@ impl Pixels {
             png::ColorType::Indexed => return kind("has a palette".to_owned()),
             png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => return kind("is grey".to_owned()),
         };
-        let size = [info.width, info.height];
         let label = Label::of(info).map_err(PictureError::Label)?;
-        let mut bytes = vec![0; size[0] as usize * size[1] as usize * channels];
-        reader.next_frame(&mut bytes).map_err(broken)?;
-        // The checksum of what follows the pixels is a part of the whole, too.
-        reader.finish().map_err(broken)?;
-        Ok(Self { size, channels, bytes, label })
+        let header = Header { size: [info.width, info.height], channels, label };
+        Ok(Self { reader, header })
+    }
+
+    /// Reads as many rows as there is room for; there must be so many.
+    pub(super) fn read(&mut self, rows: &mut [u8]) -> Result<(), PictureError> {
+        for row in rows.chunks_exact_mut(self.header.row()) {
+            let read = self.reader.read_row(row).map_err(broken)?;
+            read.ok_or_else(|| PictureError::Broken("rows are missing".to_owned()))?;
+        }
+        Ok(())
+    }
+
+    /// Reads what follows the pixels: its checksum is a part of the whole, too.
+    pub(super) fn finish(&mut self) -> Result<(), PictureError> {
+        self.reader.finish().map_err(broken)
     }
 }

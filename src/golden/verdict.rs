@@ -68,8 +68,12 @@ impl Verdict {
     /// The verdict on an actual picture beside the expected one.
     pub fn new(expected: &Pixels, actual: &Pixels) -> Self {
         let distance = Distance::new(expected, actual);
-        let sizes = [expected.size, actual.size];
-        let Some((before, after)) = expected.label.as_ref().zip(actual.label.as_ref()) else {
+        Self::of([&expected.label, &actual.label], [expected.size, actual.size], distance)
+    }
+
+    /// The verdict on two pictures by what they say of themselves, their widths and heights (px), and how far apart they are.
+    pub(super) fn of(labels: [&Option<Label>; 2], sizes: [[u32; 2]; 2], distance: Option<Distance>) -> Self {
+        let [Some(before), Some(after)] = labels else {
             return Self::NoState { distance, sizes };
         };
         let runs = moved(before, after);
@@ -251,6 +255,10 @@ mod tests {
         let faint = |count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[3 * at] = 204);
         assert!(hard(&faint(8)).passes() && !hard(&faint(9)).passes(), "{}", hard(&faint(8)));
         assert!(hard(&faint(9)).to_string().contains("between them 9 of 8 (by up to 4, 8 is allowed)"));
+        // Hardly anything may be there that the other picture does not have, be it so small that no other limit sees it.
+        let line = |count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[3 * (81 + at)] = 120);
+        assert!(!hard(&line(2)).passes(), "{}", hard(&line(2)));
+        assert!(hard(&line(2)).to_string().ends_with("; where only one picture has silhouettes 2 of 0 by more than 8"));
         // The whole square paler, its border as it was: nothing that a limit on all pixels would see at once.
         let paler = hard(&|bytes| (0..16).for_each(|at| bytes[3 * ((14 + at / 4) * 40 + 14 + at % 4)] = 56));
         assert!(!paler.passes(), "{paler}");

@@ -58,6 +58,10 @@ fn two_pictures() {
     assert_eq!(told["pictures"][0]["runs"][0]["run"], "Local shape");
     assert_eq!((told["verdict"].as_str(), told["moved"][0]["first"].as_u64()), (Some("state moved"), Some(0)));
     assert_eq!(told["accept"], "localshape compare --bless-state a.png c.png");
+    // What was expected is told of another moment, not only that it moved.
+    put(&place, "late.png", &picture("one", "2", 6, &GREY));
+    let late = place.run("compare a.png late.png");
+    assert!(late.out.contains("\nlate.png shows frame 6 instead of frame 0\n"), "{late:?}");
     let quiet = place.run("compare a.png c.png -q");
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
 }

@@ -1,0 +1,246 @@
+//! Two pictures of one name: decoded side by side and compared band by band, so that neither is ever held as a whole.
+
+use super::Compared;
+use super::distance::{Distance, Tally};
+use super::picture::{Header, PictureError, Rows, file};
+use super::side::{Source, frame_of};
+use super::verdict::Verdict;
+use crate::output::Label;
+use std::borrow::Cow;
+use std::error::Error;
+use std::io::Cursor;
+use std::ops::Range;
+
+/// Rows that are decoded before they are compared: few enough to stay in a processor's cache. Pictures of 1280×720 pixels as a
+/// whole cost 1400 page faults, which takes about as long as decoding both.
+const BAND: usize = 16;
+
+/// A pair of pictures as it was read.
+pub(super) struct Pair {
+    /// The name of the file, or of the actual one.
+    pub(super) name: String,
+    /// What both say of themselves.
+    pub(super) labels: [Option<Label>; 2],
+    verdict: Verdict,
+}
+
+impl Pair {
+    /// Reads what there is of a pair, and judges it.
+    pub(super) fn read(name: String, sources: [Option<Source>; 2]) -> Self {
+        let files = sources.each_ref().map(|source| source.as_ref().map(bytes));
+        let (read, distance) = match files {
+            [Some(Ok(expected)), Some(Ok(actual))] => {
+                let (read, distance) = both([&expected, &actual]);
+                (read.map(Some), distance)
+            }
+            // What is damaged is told, also if it is alone.
+            files => (files.map(|file| file.map(|file| whole(&file?))), None),
+        };
+        let told = |at: usize| {
+            let error = read[at].as_ref()?.as_ref().err()?;
+            Some(told(sources[at].as_ref()?, ["expected", "actual"][at], error))
+        };
+        let message: Vec<String> = [0, 1].into_iter().filter_map(told).collect();
+        let headers = read.map(|side| side.and_then(Result::ok));
+        let verdict = match &headers {
+            _ if !message.is_empty() => Verdict::Unreadable { message: message.join("; ") },
+            [Some(expected), Some(actual)] => {
+                Verdict::of([&expected.label, &actual.label], [expected.size, actual.size], distance)
+            }
+            [None, Some(_)] => Verdict::Extra,
+            [_, None] => Verdict::Missing,
+        };
+        Self { name, labels: headers.map(|header| header?.label), verdict }
+    }
+
+    /// What is said of it.
+    pub(super) fn compared(self) -> Compared {
+        let frame = self.labels.iter().flatten().find_map(frame_of);
+        Compared { name: self.name, frame, verdict: self.verdict }
+    }
+}
+
+fn bytes(source: &Source) -> Result<Cow<'_, [u8]>, PictureError> {
+    match source {
+        Source::File(path) => file(path).map(Cow::Owned),
+        Source::Memory(bytes) => Ok(Cow::Borrowed(bytes)),
+    }
+}
+
+fn told(source: &Source, side: &str, error: &PictureError) -> String {
+    let place = match source {
+        Source::File(path) => path.display().to_string(),
+        Source::Memory(_) => format!("the {side} picture"),
+    };
+    error.source().map_or_else(|| format!("{place}: {error}"), |cause| format!("{place}: {error}: {cause}"))
+}
+
+/// What a picture is that can be read to its end.
+fn whole(bytes: &[u8]) -> Result<Header, PictureError> {
+    let mut stream = Stream::open(bytes)?;
+    while stream.goes_on() {
+        stream.advance();
+    }
+    stream.end()
+}
+
+type Read = Result<Header, PictureError>;
+
+/// What two pictures are, and how far they are apart; nothing of that if their sizes or channels are not alike.
+fn both(files: [&[u8]; 2]) -> ([Read; 2], Option<Distance>) {
+    if files[0] == files[1] {
+        // The same file twice, as most that pass are: read once. If it is damaged, so are both.
+        return match whole(files[0]) {
+            Ok(header) => {
+                let distance = tally([&header, &header]).map(Tally::distance);
+                ([Ok(header.clone()), Ok(header)], distance)
+            }
+            Err(error) => ([Err(error), whole(files[1])], None),
+        };
+    }
+    let (mut one, mut other) = match files.map(Stream::open) {
+        [Ok(one), Ok(other)] => (one, other),
+        [Err(error), _] => return ([Err(error), whole(files[1])], None),
+        [Ok(_), Err(error)] => return ([whole(files[0]), Err(error)], None),
+    };
+    let mut tally = tally([&one.rows.header, &other.rows.header]);
+    while one.goes_on() || other.goes_on() {
+        one.advance();
+        other.advance();
+        if let Some(tally) = tally.as_mut().filter(|_| one.error.is_none() && other.error.is_none()) {
+            tally.count([one.band(), other.band()], one.lines());
+        }
+    }
+    let read = [one.end(), other.end()];
+    (read, tally.map(Tally::distance))
+}
+
+/// One for two pictures, if they can be compared.
+fn tally([expected, actual]: [&Header; 2]) -> Option<Tally> {
+    let are_alike = expected.size == actual.size && expected.channels == actual.channels;
+    are_alike.then(|| Tally::new(expected.size, expected.channels, [&expected.label, &actual.label]))
+}
+
+/// A picture of which a few rows are there at a time.
+struct Stream<'a> {
+    rows: Rows<Cursor<&'a [u8]>>,
+    /// Room for rows one after another: the last two that were there before, and those that came.
+    band: Vec<u8>,
+    /// How many there are, and how many of them were there before.
+    filled: usize,
+    kept: usize,
+    /// Rows that are still to come.
+    left: usize,
+    error: Option<PictureError>,
+}
+
+impl<'a> Stream<'a> {
+    fn open(bytes: &'a [u8]) -> Result<Self, PictureError> {
+        let rows = Rows::open(Cursor::new(bytes))?;
+        let (row, left) = (rows.header.row(), rows.header.rows());
+        Ok(Self { rows, band: vec![0; (left.min(BAND) + 2) * row], filled: 0, kept: 0, left, error: None })
+    }
+
+    fn goes_on(&self) -> bool {
+        self.left > 0
+    }
+
+    /// Reads the next rows.
+    fn advance(&mut self) {
+        if self.left == 0 {
+            return;
+        }
+        let row = self.rows.header.row();
+        self.kept = self.filled.min(2);
+        self.band.copy_within((self.filled - self.kept) * row..self.filled * row, 0);
+        let more = self.left.min(BAND);
+        self.filled = self.kept + more;
+        self.left -= more;
+        let read = self.rows.read(&mut self.band[self.kept * row..self.filled * row]);
+        let read = if self.left == 0 { read.and_then(|()| self.rows.finish()) } else { read };
+        if let Err(error) = read {
+            self.left = 0;
+            self.error = Some(error);
+        }
+    }
+
+    /// The rows that are there.
+    fn band(&self) -> &[u8] {
+        &self.band[..self.filled * self.rows.header.row()]
+    }
+
+    /// Those of them that are not compared yet and have both their neighbours there.
+    fn lines(&self) -> Range<usize> {
+        usize::from(self.kept > 0)..self.filled - usize::from(self.left > 0)
+    }
+
+    fn end(self) -> Read {
+        self.error.map_or(Ok(self.rows.header), Err)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::picture::Pixels;
+    use super::*;
+    use crate::output::Tags;
+
+    /// A picture of smooth ground with spots, as a PNG file of an adapter.
+    fn picture(size: [u32; 2], adapter: &str, seed: u32) -> Vec<u8> {
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state >> 24
+        };
+        let pixels = (0..size[0] * size[1]).flat_map(|at| {
+            let spot = if at % 7 == 0 && next() < 60 { 90 } else { 0 };
+            [0, 1, 2].map(|channel| (100 + spot + channel + u32::from(next() < 20)) as u8)
+        });
+        let tags = Tags {
+            scene: "1".repeat(64),
+            states: vec![("0".repeat(64), "run".to_owned())],
+            frame: 3,
+            time: 0.05,
+            version: "0".to_owned(),
+            adapter: adapter.to_owned(),
+        };
+        Label::Frame(tags).encode(size, &pixels.collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn bands_say_the_same_as_whole_pictures() {
+        for adapter in ["soft (1)", "soft (2)", "hard (1)"] {
+            for height in [1, 2, 3, 15, 16, 17, 18, 19, 33, 50] {
+                let size = [29, height];
+                let files = [picture(size, "soft (1)", 1), picture(size, adapter, 2)];
+                let [expected, actual] = [0, 1].map(|at: usize| Pixels::from_bytes(&files[at]).unwrap());
+                let whole = Distance::new(&expected, &actual).unwrap();
+                let (read, distance) = both([&files[0], &files[1]]);
+                assert_eq!((distance, whole.unequal > 0), (Some(whole), true), "{adapter} {height}");
+                assert_eq!(read.map(|header| header.unwrap().label), [expected.label, actual.label]);
+            }
+        }
+    }
+
+    #[test]
+    fn each_damage_is_found_wherever_it_is() {
+        let good = picture([29, 50], "soft (1)", 1);
+        for at in [60, good.len() / 2, good.len() - 20, good.len() - 1] {
+            let cut = &good[..at];
+            let other = picture([29, 50], "soft (1)", 2);
+            let sound = |files: [&[u8]; 2]| both(files).0.map(|read| read.is_ok());
+            assert_eq!(sound([cut, &other]), [false, true], "{at}");
+            assert_eq!(sound([&other, cut]), [true, false], "{at}");
+            assert_eq!(sound([cut, cut]), [false, false], "{at}");
+            assert_eq!(sound([cut, &other[..other.len() - 9]]), [false, false], "{at}");
+        }
+    }
+
+    #[test]
+    fn pictures_of_two_sizes_are_read_to_their_ends() {
+        let [tall, low] = [50, 20].map(|height| picture([29, height], "soft (1)", 1));
+        let (read, distance) = both([&tall, &low]);
+        assert!(read.iter().all(Result::is_ok) && distance.is_none());
+        assert!(both([&tall[..tall.len() - 1], &low]).0[0].is_err());
+    }
+}
