@@ -183,7 +183,7 @@ impl Comparison {
         {
             notes.push(format!("the golden is of {}, and this is {}", golden.subject, drawn.subject));
         }
-        notes.extend(other_moments(&read));
+        notes.extend(other_frames(&read));
         match ends(&expected, &actual) {
             Some([recorded, end]) if end < recorded => {
                 notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));
@@ -434,21 +434,19 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
     }
 }
 
-/// That pictures of one name show different moments, in words.
-fn other_moments(pairs: &[Pair]) -> Option<String> {
+/// That pictures of one name show different frames, in words.
+fn other_frames(pairs: &[Pair]) -> Option<String> {
     let told = |pair: &Pair| {
-        let [Some(Label::Frame(expected)), Some(Label::Frame(actual))] = &pair.labels else { return None };
-        let name = &pair.name;
-        if actual.frame != expected.frame {
-            return Some(format!("{name} shows frame {} instead of frame {}", actual.frame, expected.frame));
-        }
-        let is_other = actual.time != expected.time;
-        is_other.then(|| format!("{name} shows {} s instead of {} s", actual.time, expected.time))
+        let [expected, actual] = [pair.labels[0].as_ref()?, pair.labels[1].as_ref()?].map(frame_of);
+        let (expected, actual) = (expected?, actual?);
+        (expected != actual).then(|| format!("{} shows frame {actual} instead of frame {expected}", pair.name))
     };
     let mut all = pairs.iter().filter_map(told);
     let first = all.next()?;
-    let more = all.count();
-    Some(if more > 0 { format!("{first}, and so for {more} more pictures") } else { first })
+    Some(match all.count() {
+        0 => first,
+        more => format!("{first}, and {more} more pictures show other frames"),
+    })
 }
 
 /// Digests of the scenes of a side.

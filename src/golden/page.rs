@@ -2,7 +2,7 @@
 
 use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
-use super::report::{self, Report, Sheet};
+use super::report::{self, FAINT, INTERIOR, Report, SILHOUETTE, Sheet};
 use super::side::{Kind, frame_of};
 use super::silhouettes::{Place, silhouettes};
 use super::{Compared, Comparison, Verdict};
@@ -12,11 +12,6 @@ use std::collections::BTreeSet;
 /// Pictures of so many frames are put into a page, those that failed first.
 const MOST_FAILED: usize = 40;
 const MOST_PASSED: usize = 8;
-
-/// The colours of a picture of differences: too small to be seen, along silhouettes, and between them.
-const FAINT: [u8; 3] = [150, 196, 232];
-const SILHOUETTE: [u8; 3] = [230, 159, 0];
-const INTERIOR: [u8; 3] = [213, 60, 0];
 
 impl Comparison {
     /// What a page shows of it. Of long sequences it shows the pictures of some frames.

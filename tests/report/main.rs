@@ -229,6 +229,9 @@ fn it_works_by_keys() {
     {
         browser.press(key, PLAIN);
         assert_eq!(browser.text(MODE), mode, "after {key}");
+        // The colours of the difference are told where it is shown.
+        let room = browser.number("document.getElementById('difference-key').getBoundingClientRect().height");
+        assert_eq!(room > 0.0, mode == "side", "after {key}");
     }
     // Zoom, from what fits to one to one and back; a view larger than its pane is moved about in.
     let scale = "document.getElementById('scale').textContent";
@@ -416,6 +419,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     let captions = "[...document.querySelectorAll('figure')].map((figure) => figure.innerText.replace(/\\s+/g, ' '))";
     let seen = browser.value(captions);
     assert_eq!(seen, json!(["Expected 64 × 48", "Difference nothing to compare", "Actual missing"]));
+    assert_eq!(browser.value("document.getElementById('difference-key').hidden"), true);
     browser.press("ArrowRight", PLAIN);
     browser.until("the pictures", LOADED);
     let seen = browser.value(captions);

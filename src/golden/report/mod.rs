@@ -13,6 +13,11 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
+/// The colours of a picture of differences: along silhouettes, elsewhere, and what differs too little to be seen.
+pub(super) const SILHOUETTE: [u8; 3] = [230, 159, 0];
+pub(super) const INTERIOR: [u8; 3] = [213, 60, 0];
+pub(super) const FAINT: [u8; 3] = [150, 196, 232];
+
 /// Everything that a page shows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -132,10 +137,16 @@ impl Report {
                 ("verdict", &escaped(&self.verdict)),
                 (
                     "findings",
-                    &self.findings.iter().map(|text| format!("<p>{}</p>\n", escaped(text))).collect::<String>(),
+                    // A number and its sign stay on one line.
+                    &self
+                        .findings
+                        .iter()
+                        .map(|text| format!("<p>{}</p>\n", escaped(text).replace(" %", "\u{a0}%")))
+                        .collect::<String>(),
                 ),
                 ("sides", &self.sides()),
                 ("accept", &self.accept_box()),
+                ("difference key", &difference_key()),
                 ("pictures", &self.list()),
                 ("data", &inert(&serde_json::to_string(self).expect("numbers and words are JSON"))),
                 ("script", &script),
@@ -176,6 +187,23 @@ impl Report {
         }
         html
     }
+}
+
+/// What the colours of a picture of differences mean.
+fn difference_key() -> String {
+    let all = [
+        (SILHOUETTE, "along silhouettes, lines and letters"),
+        (INTERIOR, "on smooth ground, or in one picture only"),
+        (FAINT, "by 2 of 255 or less"),
+    ];
+    let swatch = |([red, green, blue], words): ([u8; 3], &str)| {
+        // A style of its own would be refused by the policy.
+        format!(
+            "<span><svg class=\"square\" aria-hidden=\"true\"><rect width=\"100%\" height=\"100%\" \
+             fill=\"rgb({red} {green} {blue})\" /></svg> {words}</span>\n"
+        )
+    };
+    all.map(swatch).concat()
 }
 
 /// A template with its `{{names}}` replaced. What is put in is not looked at again, so nothing in it is taken for a name.

@@ -250,7 +250,8 @@
         const joined = before && before.its === its && moment.frame - before.frame <= stride;
         line += `${joined ? "L" : "M"}${x.toFixed(2)} ${height.toFixed(2)}`;
         const next = course.frames[index + 1];
-        const alone = !joined && !(next && kind(next, course.precision) === its);
+        const goes = next && kind(next, course.precision) === its && next.frame - moment.frame <= stride;
+        const alone = !joined && !goes;
         if ((cell >= 9 && its !== "same") || alone) dots.push([x, height, its]);
         before = { its, frame: moment.frame };
       });
@@ -506,6 +507,8 @@
 
   function fillStage() {
     const sheet = sheets[state.at];
+    const differs = sheet.difference !== null && sheet.verdict !== "identical";
+    the("difference-key").hidden = state.mode !== "side" || !differs;
     for (const layer of layers) {
       const source = sheet[layer.side];
       const size = layer.caption.querySelector(".size");
