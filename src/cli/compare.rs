@@ -35,8 +35,9 @@ states.npz (render --states).
 
 Frames know which states they show: so a difference is either of the state (`state moved`) or of the drawing (`same \
 state, drawn differently`). Pictures drawn by one adapter must be equal in every byte; those of one kind of adapter may \
-differ by more than 2 of 255 in at most 0.01 % of their pixels, or in 8; those of another kind also along silhouettes, but \
-hardly between them. Pictures that were not drawn by this program have no state, and pixels alone are compared.";
+differ by more than 2 of 255 in at most 0.01 % of their pixels, or in 8; those of another kind also along silhouettes, \
+but hardly between them or in what stands in one picture only. Pictures that do not say which state they show, as those of \
+other programs, are compared by their pixels alone.";
 
 /// Compare pictures, folders of frames, or a scene with its golden
 #[derive(Args, Debug)]

@@ -1,10 +1,12 @@
 //! Accepting what is there as what is expected from now on.
 
+use super::picture::{PictureError, Pixels};
 use super::record::{Drawn, RECORD_FILE, Record};
 use super::side::{Kind, Source};
 use super::states::States;
 use super::{Comparison, Verdict};
 use crate::output::{AtomicFile, OutputError};
+use std::borrow::Cow;
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
@@ -245,14 +247,18 @@ impl Comparison {
 }
 
 /// The bytes of a picture, for a golden as few as can be had.
-fn bytes(source: &Source, is_golden: bool) -> io::Result<Vec<u8>> {
+fn bytes(source: &Source, is_golden: bool) -> io::Result<Cow<'_, [u8]>> {
+    let bytes = source.bytes().map_err(|error| match error {
+        PictureError::Read(error) => error,
+        error => io::Error::new(io::ErrorKind::InvalidData, error),
+    })?;
     let small = || {
-        let pixels = source.pixels().ok()?;
+        let pixels = Pixels::from_bytes(&bytes).ok()?;
         Some(pixels.label?.encode(pixels.size, &pixels.bytes))
     };
     match (is_golden, source) {
-        (true, Source::File(_)) => small().map_or_else(|| source.bytes(), Ok),
-        _ => source.bytes(),
+        (true, Source::File(_)) => Ok(small().map_or(bytes, Cow::Owned)),
+        _ => Ok(bytes),
     }
 }
 

@@ -22,11 +22,9 @@ const AT_LEAST: u64 = 8;
 /// median .008, at most .16 where a picture is hardly anything but lines. GPUs were not measured.
 const PART_OF_SILHOUETTES: f64 = 0.25;
 /// Of all others this part, measured as at most .05 %; and far from silhouettes never by more than the contrast that makes
-/// one, measured as 7.
+/// one, measured as 7. But what stands in one picture only, as a line or a mark that is drawn new, differs by more in
+/// [`AT_LEAST`] pixels at most, measured as none.
 const PART_OF_INTERIORS: f64 = 1e-3;
-/// And where only one picture has a silhouette, as along a line that is drawn new, so many as this part of the silhouettes
-/// may differ by more than that contrast: measured as at most .07 %, and as none in nearly all pictures.
-const PART_ONE_SIDED: f64 = 1e-3;
 
 /// What is known of the machines that drew two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -59,7 +57,7 @@ pub(super) fn kind(adapter: &str) -> &str {
 /// How many pixels differ visibly, and how many may.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Count {
-    /// Pixels of which a channel differs by more than 2 of 255, or by as much as is said where they are counted.
+    /// Pixels of which a channel differs by more than 2 of 255; for [`Distance::one_sided`] by more than 8.
     pub visible: u64,
     /// How many of them are allowed.
     pub allowed: u64,
@@ -74,14 +72,14 @@ pub struct Distance {
     pub machines: Machines,
     /// Pixels that are not equal.
     pub unequal: u64,
-    /// All pixels, or for adapters of different kinds those of silhouettes.
+    /// All pixels, or for adapters of different kinds those along silhouettes.
     #[serde(flatten)]
     pub counted: Count,
-    /// For adapters of different kinds, all other pixels, of which none may differ by more than 8 where neither picture has
-    /// a silhouette; `largest` is that of these.
+    /// For adapters of different kinds, pixels that differ where neither picture has a silhouette, none of them by more than
+    /// 8, and those that differ by no more than that where one of them has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interiors: Option<Count>,
-    /// For adapters of different kinds, those of them that differ by more than 8 where only one picture has a silhouette.
+    /// For adapters of different kinds, pixels that differ by more than 8 where one picture alone has a silhouette.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub one_sided: Option<Count>,
 }
@@ -92,40 +90,59 @@ impl Distance {
         if expected.size != actual.size || expected.channels != actual.channels {
             return None;
         }
-        let mut tally = Tally::new(expected.size, expected.channels, [&expected.label, &actual.label]);
+        let labels = [expected.label.as_ref(), actual.label.as_ref()];
+        let mut tally = Tally::new(expected.size, expected.channels, labels);
         tally.count([&expected.bytes, &actual.bytes], 0..expected.size[1] as usize);
         Some(tally.distance())
     }
 
     /// Whether it is no more than such machines differ.
     pub fn is_allowed(&self) -> bool {
-        let within = |count: Count| count.visible <= count.allowed;
-        match self.machines {
-            Machines::Same => self.unequal == 0,
-            _ => {
-                let is_smooth = self.interiors.iter().all(|count| count.largest <= CONTRAST);
-                is_smooth && self.counts().all(within)
-            }
-        }
+        self.limits().all(|limit| limit.is_kept())
     }
 
-    /// Pixels that differ visibly, wherever they are.
-    pub fn visible(&self) -> u64 {
-        self.counted.visible + self.interiors.map_or(0, |count| count.visible)
-    }
-
-    /// How much of what is allowed is used: 1 at the limit, and above it when there are too many.
+    /// How much of what is allowed is used: 1 at the limit, and more if there is too much.
     pub fn of_limit(&self) -> f64 {
-        let part = |count: Count| count.visible as f64 / count.allowed.max(1) as f64;
-        let strict = self.interiors.map_or(0.0, |count| f64::from(count.largest) / f64::from(CONTRAST));
-        match self.machines {
-            Machines::Same => self.unequal as f64,
-            _ => self.counts().map(part).fold(strict, f64::max),
-        }
+        self.limits().map(|limit| limit.used()).fold(0.0, f64::max)
     }
 
-    fn counts(&self) -> impl Iterator<Item = Count> {
-        [Some(self.counted), self.interiors, self.one_sided].into_iter().flatten()
+    /// Pixels that differ and how many may, of those of which most of what is allowed is used.
+    pub fn nearest_to_limit(&self) -> Count {
+        let nearest = self.limits().max_by(|one, other| one.used().total_cmp(&other.used()));
+        nearest.map_or(self.counted, |limit| limit.count)
+    }
+
+    fn limits(&self) -> impl Iterator<Item = Limit> {
+        let first = match self.machines {
+            // Not a byte may differ.
+            Machines::Same => Count { visible: self.unequal, ..self.counted },
+            _ => self.counted,
+        };
+        let limits = [Some(first), self.interiors, self.one_sided].into_iter().zip([u8::MAX, CONTRAST, u8::MAX]);
+        limits.filter_map(|(count, largest)| Some(Limit { count: count?, largest }))
+    }
+}
+
+/// How many pixels may differ, and by how much.
+struct Limit {
+    count: Count,
+    largest: u8,
+}
+
+impl Limit {
+    fn is_kept(&self) -> bool {
+        self.count.visible <= self.count.allowed && self.count.largest <= self.largest
+    }
+
+    fn used(&self) -> f64 {
+        let Count { visible, allowed, largest } = self.count;
+        let number = match allowed {
+            0 => visible as f64 * 2.0,
+            _ => visible as f64 / allowed as f64,
+        };
+        // What may differ by anything comes never nearer by how much it does.
+        let much = if self.largest == u8::MAX { 0.0 } else { f64::from(largest) / f64::from(self.largest) };
+        number.max(much)
     }
 }
 
@@ -134,63 +151,83 @@ pub(super) struct Tally {
     machines: Machines,
     size: [u32; 2],
     channels: usize,
-    unequal: u64,
-    counted: Count,
-    interiors: Count,
-    one_sided: Count,
+    /// Lines that were given.
+    given: u32,
+    counts: Counts,
     /// Pixels along silhouettes, which are looked for if the machines are of different kinds.
     of_silhouettes: u64,
     finder: Option<Finder>,
 }
 
+#[derive(Default)]
+struct Counts {
+    unequal: u64,
+    counted: Count,
+    interiors: Count,
+    one_sided: Count,
+}
+
 impl Tally {
     /// For pictures of one size, by what they say of themselves.
-    pub(super) fn new(size: [u32; 2], channels: usize, labels: [&Option<Label>; 2]) -> Self {
-        let [expected, actual] = labels.map(|label| label.as_ref().map(Label::adapter));
+    pub(super) fn new(size: [u32; 2], channels: usize, labels: [Option<&Label>; 2]) -> Self {
+        let [expected, actual] = labels.map(|label| label.map(Label::adapter));
         let machines = Machines::of(expected, actual);
         let finder = (machines == Machines::OtherKind).then(|| Finder::new(size[0] as usize, channels));
-        let [counted, interiors, one_sided] = [Count::default(); 3];
-        Self { machines, size, channels, unequal: 0, counted, interiors, one_sided, of_silhouettes: 0, finder }
+        Self { machines, size, channels, given: 0, counts: Counts::default(), of_silhouettes: 0, finder }
     }
 
     /// Adds some lines, given the same rows of both pictures: these lines, and those just above and below if there are any.
     pub(super) fn count(&mut self, rows: [&[u8]; 2], lines: Range<usize>) {
-        let width = self.size[0] as usize;
-        let row = width * self.channels;
+        let row = self.size[0] as usize * self.channels;
+        let part = |line: usize| rows.map(|rows| &rows[line * row..(line + 1) * row]);
         for line in lines {
-            let places = self.finder.as_mut().map(|finder| finder.places(rows, line));
-            if let Some(places) = places {
-                let count: u32 = places.iter().map(|&place| u32::from(place == Place::Silhouette)).sum();
-                self.of_silhouettes += u64::from(count);
+            self.given += 1;
+            let Some(finder) = &mut self.finder else {
+                self.counts.add(part(line), self.channels, |_| Place::Silhouette);
+                continue;
+            };
+            self.of_silhouettes += finder.advance(rows, line);
+            if self.given > 1 {
+                self.counts.add(part(line - 1), self.channels, |at| finder.place(at));
             }
-            let [expected, actual] = rows.map(|rows| &rows[line * row..(line + 1) * row]);
-            let Self { unequal, counted, interiors, one_sided, .. } = self;
-            differences(expected, actual, self.channels, |at, difference| {
-                let place = places.map_or(Place::Silhouette, |places| places[at]);
-                let count = if place == Place::Silhouette { &mut *counted } else { &mut *interiors };
-                count.visible += u64::from(difference > CHANNEL);
-                let largest = if place == Place::HalfSilhouette { &mut one_sided.largest } else { &mut count.largest };
-                *largest = difference.max(*largest);
-                one_sided.visible += u64::from(place == Place::HalfSilhouette && difference > CONTRAST);
-                *unequal += 1;
-            });
+            if self.given == self.size[1] {
+                finder.end();
+                self.counts.add(part(line), self.channels, |at| finder.place(at));
+            }
         }
     }
 
     /// How far apart they are.
     pub(super) fn distance(self) -> Distance {
-        let Self { machines, size, unequal, mut counted, mut interiors, mut one_sided, of_silhouettes, .. } = self;
+        let Self { machines, size, of_silhouettes, counts, .. } = self;
+        let Counts { unequal, mut counted, mut interiors, mut one_sided } = counts;
         let all = u64::from(size[0]) * u64::from(size[1]);
         // Of a few pixels none can be spared.
         let part = |part: f64, of: u64| AT_LEAST.min(of / 100).max((part * of as f64) as u64);
         if machines == Machines::OtherKind && unequal > 0 {
             counted.allowed = part(PART_OF_SILHOUETTES, of_silhouettes);
             interiors.allowed = part(PART_OF_INTERIORS, all - of_silhouettes);
-            one_sided.allowed = part(PART_ONE_SIDED, of_silhouettes);
+            one_sided.allowed = part(0.0, all);
             return Distance { machines, unequal, counted, interiors: Some(interiors), one_sided: Some(one_sided) };
         }
         counted.allowed = if machines == Machines::Same { 0 } else { part(PART, all) };
         Distance { machines, unequal, counted, interiors: None, one_sided: None }
+    }
+}
+
+impl Counts {
+    /// Adds a line of both pictures.
+    fn add(&mut self, [expected, actual]: [&[u8]; 2], channels: usize, place: impl Fn(usize) -> Place) {
+        differences(expected, actual, channels, |at, difference| {
+            let (count, least) = match place(at) {
+                Place::Silhouette => (&mut self.counted, CHANNEL),
+                Place::OneSided if difference > CONTRAST => (&mut self.one_sided, CONTRAST),
+                Place::OneSided | Place::Interior => (&mut self.interiors, CHANNEL),
+            };
+            count.visible += u64::from(difference > least);
+            count.largest = difference.max(count.largest);
+            self.unequal += 1;
+        });
     }
 }
 
@@ -232,22 +269,38 @@ fn seen(one: &[u8], other: &[u8]) -> u8 {
 
 impl fmt::Display for Distance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Count { visible, allowed, largest } = self.counted;
-        if let (Machines::Same, unequal) = (self.machines, self.unequal) {
-            let pixels = if unequal == 1 { "1 pixel differs".to_owned() } else { format!("{unequal} pixels differ") };
+        let differ =
+            |count: u64| if count == 1 { "1 pixel differs".to_owned() } else { format!("{count} pixels differ") };
+        let may = |count: Count| match count.allowed {
+            0 => "none may".to_owned(),
+            allowed => format!("{allowed} may"),
+        };
+        let Count { visible, largest, .. } = self.counted;
+        if self.machines == Machines::Same {
+            let pixels = differ(self.unequal);
             return write!(f, "{pixels}, by up to {largest} of 255; none may, for one machine drew both");
         }
         let by = if largest > 0 { format!(", by up to {largest}") } else { String::new() };
+        let pixels = format!("{} by more than {CHANNEL} of 255 ({}){by}", differ(visible), may(self.counted));
         let Some((inner, alone)) = self.interiors.zip(self.one_sided) else {
-            return write!(f, "{visible} of the {allowed} pixels that may differ by more than {CHANNEL} of 255 do{by}");
+            return f.write_str(&pixels);
         };
-        write!(
-            f,
-            "another kind of adapter drew it; along silhouettes {visible} of the {allowed} pixels that may differ by more than \
-             {CHANNEL} of 255 do{by}; between them {} of {} (by up to {}, {CONTRAST} is allowed); where only one picture has \
-             silhouettes {} of {} by more than {CONTRAST}",
-            inner.visible, inner.allowed, inner.largest, alone.visible, alone.allowed
-        )
+        let mut told = [
+            format!("along silhouettes {pixels}"),
+            format!(
+                "between them {} ({}), by up to {} ({CONTRAST} at most)",
+                differ(inner.visible),
+                may(inner),
+                inner.largest
+            ),
+            format!("of what stands in one picture only, {} ({})", differ(alone.visible), may(alone)),
+        ];
+        // What is wrong comes first.
+        let kept: Vec<bool> = self.limits().map(|limit| limit.is_kept()).collect();
+        if let Some(wrong) = kept.iter().position(|&kept| !kept) {
+            told[..=wrong].rotate_right(1);
+        }
+        write!(f, "another kind of adapter drew it; {}", told.join("; "))
     }
 }
 

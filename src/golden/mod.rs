@@ -445,6 +445,7 @@ fn other_frames(pairs: &[Pair]) -> Option<String> {
     let first = all.next()?;
     Some(match all.count() {
         0 => first,
+        1 => format!("{first}, and 1 more picture shows another frame"),
         more => format!("{first}, and {more} more pictures show other frames"),
     })
 }

@@ -88,7 +88,7 @@ impl Comparison {
         };
         // What is no picture is not shown as one.
         let pixels = [0, 1].map(|at| source(at).filter(|_| is_shown).and_then(|source| source.pixels().ok()));
-        let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| source(at)?.bytes().ok()));
+        let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| Some(source(at)?.bytes().ok()?.into_owned())));
         let label = |at: usize| pixels[at].as_ref().and_then(|pixels| pixels.label.as_ref());
         let frame = picture.frame.or_else(|| [1, 0].into_iter().find_map(|at| label(at).and_then(frame_of)));
         let time = frame.and_then(|frame| {
@@ -100,7 +100,7 @@ impl Comparison {
             _ => None,
         };
         let size = pixels.iter().rev().flatten().next().map(|pixels| pixels.size);
-        let distance = picture.verdict.distance();
+        let nearest = picture.verdict.distance().map(|distance| distance.nearest_to_limit());
         let [expected, actual] = bytes;
         let is_identical = picture.verdict == Verdict::Identical;
         Drawing {
@@ -112,8 +112,8 @@ impl Comparison {
                 verdict: picture.verdict.kind().to_owned(),
                 words: picture.verdict.to_string(),
                 passes: picture.verdict.passes(),
-                visible: distance.map(|distance| distance.visible()).or(is_identical.then_some(0)),
-                allowed: distance.map(|distance| distance.counted.allowed),
+                visible: nearest.map(|count| count.visible).or(is_identical.then_some(0)),
+                allowed: nearest.map(|count| count.allowed),
                 size,
                 expected,
                 actual,

@@ -1,14 +1,13 @@
-//! Two pictures of one name: decoded side by side and compared band by band, so that neither is ever held as a whole.
+//! Two pictures of one name: decoded side by side and compared band by band, so that the pixels of neither are ever held as a
+//! whole.
 
 use super::Compared;
 use super::distance::{Distance, Tally};
-use super::picture::{Header, PictureError, Rows, file};
+use super::picture::{Header, PictureError, Rows};
 use super::side::{Source, frame_of};
 use super::verdict::Verdict;
 use crate::output::Label;
-use std::borrow::Cow;
 use std::error::Error;
-use std::io::Cursor;
 use std::ops::Range;
 
 /// Rows that are decoded before they are compared: few enough to stay in a processor's cache. Pictures of 1280×720 pixels as a
@@ -27,7 +26,7 @@ pub(super) struct Pair {
 impl Pair {
     /// Reads what there is of a pair, and judges it.
     pub(super) fn read(name: String, sources: [Option<Source>; 2]) -> Self {
-        let files = sources.each_ref().map(|source| source.as_ref().map(bytes));
+        let files = sources.each_ref().map(|source| source.as_ref().map(Source::bytes));
         let (read, distance) = match files {
             [Some(Ok(expected)), Some(Ok(actual))] => {
                 let (read, distance) = both([&expected, &actual]);
@@ -45,7 +44,8 @@ impl Pair {
         let verdict = match &headers {
             _ if !message.is_empty() => Verdict::Unreadable { message: message.join("; ") },
             [Some(expected), Some(actual)] => {
-                Verdict::of([&expected.label, &actual.label], [expected.size, actual.size], distance)
+                let labels = [expected.label.as_ref(), actual.label.as_ref()];
+                Verdict::of(labels, [expected.size, actual.size], distance)
             }
             [None, Some(_)] => Verdict::Extra,
             [_, None] => Verdict::Missing,
@@ -60,13 +60,6 @@ impl Pair {
     }
 }
 
-fn bytes(source: &Source) -> Result<Cow<'_, [u8]>, PictureError> {
-    match source {
-        Source::File(path) => file(path).map(Cow::Owned),
-        Source::Memory(bytes) => Ok(Cow::Borrowed(bytes)),
-    }
-}
-
 fn told(source: &Source, side: &str, error: &PictureError) -> String {
     let place = match source {
         Source::File(path) => path.display().to_string(),
@@ -76,7 +69,7 @@ fn told(source: &Source, side: &str, error: &PictureError) -> String {
 }
 
 /// What a picture is that can be read to its end.
-fn whole(bytes: &[u8]) -> Result<Header, PictureError> {
+fn whole(bytes: &[u8]) -> Outcome {
     let mut stream = Stream::open(bytes)?;
     while stream.goes_on() {
         stream.advance();
@@ -84,10 +77,11 @@ fn whole(bytes: &[u8]) -> Result<Header, PictureError> {
     stream.end()
 }
 
-type Read = Result<Header, PictureError>;
+/// What became of reading a picture.
+type Outcome = Result<Header, PictureError>;
 
 /// What two pictures are, and how far they are apart; nothing of that if their sizes or channels are not alike.
-fn both(files: [&[u8]; 2]) -> ([Read; 2], Option<Distance>) {
+fn both(files: [&[u8]; 2]) -> ([Outcome; 2], Option<Distance>) {
     if files[0] == files[1] {
         // The same file twice, as most that pass are: read once. If it is damaged, so are both.
         return match whole(files[0]) {
@@ -118,12 +112,13 @@ fn both(files: [&[u8]; 2]) -> ([Read; 2], Option<Distance>) {
 /// One for two pictures, if they can be compared.
 fn tally([expected, actual]: [&Header; 2]) -> Option<Tally> {
     let are_alike = expected.size == actual.size && expected.channels == actual.channels;
-    are_alike.then(|| Tally::new(expected.size, expected.channels, [&expected.label, &actual.label]))
+    let labels = [expected.label.as_ref(), actual.label.as_ref()];
+    are_alike.then(|| Tally::new(expected.size, expected.channels, labels))
 }
 
 /// A picture of which a few rows are there at a time.
 struct Stream<'a> {
-    rows: Rows<Cursor<&'a [u8]>>,
+    rows: Rows<'a>,
     /// Room for rows one after another: the last two that were there before, and those that came.
     band: Vec<u8>,
     /// How many there are, and how many of them were there before.
@@ -136,7 +131,7 @@ struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     fn open(bytes: &'a [u8]) -> Result<Self, PictureError> {
-        let rows = Rows::open(Cursor::new(bytes))?;
+        let rows = Rows::open(bytes)?;
         let (row, left) = (rows.header.row(), rows.header.rows());
         Ok(Self { rows, band: vec![0; (left.min(BAND) + 2) * row], filled: 0, kept: 0, left, error: None })
     }
@@ -174,7 +169,8 @@ impl<'a> Stream<'a> {
         usize::from(self.kept > 0)..self.filled - usize::from(self.left > 0)
     }
 
-    fn end(self) -> Read {
+    fn end(self) -> Outcome {
+        debug_assert!(!self.goes_on(), "what is damaged may still come");
         self.error.map_or(Ok(self.rows.header), Err)
     }
 }
@@ -182,20 +178,21 @@ impl<'a> Stream<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::picture::Pixels;
+    use super::super::silhouettes::CONTRAST;
     use super::*;
     use crate::output::Tags;
 
-    /// A picture of smooth ground with spots, as a PNG file of an adapter.
-    fn picture(size: [u32; 2], adapter: &str, seed: u32) -> Vec<u8> {
-        let mut state = seed;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state >> 24
-        };
-        let pixels = (0..size[0] * size[1]).flat_map(|at| {
-            let spot = if at % 7 == 0 && next() < 60 { 90 } else { 0 };
-            [0, 1, 2].map(|channel| (100 + spot + channel + u32::from(next() < 20)) as u8)
-        });
+    /// Numbers below 256 that look random.
+    struct Numbers(u32);
+
+    impl Numbers {
+        fn next(&mut self) -> u32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            self.0 >> 24
+        }
+    }
+
+    fn file(size: [u32; 2], adapter: &str, pixels: &[u8]) -> Vec<u8> {
         let tags = Tags {
             scene: "1".repeat(64),
             states: vec![("0".repeat(64), "run".to_owned())],
@@ -204,43 +201,117 @@ mod tests {
             version: "0".to_owned(),
             adapter: adapter.to_owned(),
         };
-        Label::Frame(tags).encode(size, &pixels.collect::<Vec<_>>())
+        Label::Frame(tags).encode(size, pixels)
+    }
+
+    /// A picture of smooth ground with spots, as a PNG file of an adapter.
+    fn picture(size: [u32; 2], channels: u32, adapter: &str, seed: u32) -> Vec<u8> {
+        // Spots that all pictures have, and some of its own.
+        let [mut common, mut own] = [Numbers(7), Numbers(seed)];
+        let pixels = (0..size[0] * size[1]).flat_map(|_| {
+            let spot = if common.next() < 12 || own.next() < 3 { 90 } else { 0 };
+            let faint = u32::from(own.next() < 20) * (own.next() % 5);
+            (0..channels).map(move |channel| if channel == 3 { 255 } else { (100 + spot + channel + faint) as u8 })
+        });
+        file(size, adapter, &pixels.collect::<Vec<_>>())
+    }
+
+    /// How far pictures of different kinds of adapters are apart, pixel by pixel as it is written in the documentation:
+    /// unequal pixels, then those that count and the largest difference along silhouettes, between them, and in one picture
+    /// only; and how many pixels lie along silhouettes.
+    fn naive(pictures: [&Pixels; 2]) -> ([u64; 4], [u8; 3], u64) {
+        let [width, height] = pictures[0].size.map(i64::from);
+        let channels = pictures[0].channels;
+        let around = |x: i64, y: i64| {
+            let near = |at: i64, end: i64| (at - 1).max(0)..(at + 2).min(end);
+            near(y, height).flat_map(move |y| near(x, width).map(move |x| (x, y)))
+        };
+        let byte = |picture: &Pixels, (x, y): (i64, i64), channel: usize| {
+            picture.bytes[(y * width + x) as usize * channels + channel]
+        };
+        let has = |side: usize, x: i64, y: i64| {
+            (0..channels).any(|channel| {
+                let all = || around(x, y).map(|at| byte(pictures[side], at, channel));
+                all().max().unwrap() - all().min().unwrap() > CONTRAST
+            })
+        };
+        let both = |x: i64, y: i64| has(0, x, y) && has(1, x, y);
+        let (mut counts, mut largest, mut silhouettes) = ([0; 4], [0; 3], 0);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            silhouettes += u64::from(both(x, y));
+            let of = |channel| byte(pictures[0], (x, y), channel).abs_diff(byte(pictures[1], (x, y), channel));
+            let difference = (0..channels).map(of).max().unwrap();
+            if difference == 0 {
+                continue;
+            }
+            let alone = has(0, x, y) != has(1, x, y) && !around(x, y).any(|(x, y)| both(x, y));
+            let (class, least) = match (has(0, x, y) || has(1, x, y)) && !alone {
+                true => (0, 2),
+                false if alone && difference > 8 => (2, 8),
+                false => (1, 2),
+            };
+            counts[0] += 1;
+            counts[class + 1] += u64::from(difference > least);
+            largest[class] = difference.max(largest[class]);
+        }
+        (counts, largest, silhouettes)
     }
 
     #[test]
-    fn bands_say_the_same_as_whole_pictures() {
-        for adapter in ["soft (1)", "soft (2)", "hard (1)"] {
-            for height in [1, 2, 3, 15, 16, 17, 18, 19, 33, 50] {
-                let size = [29, height];
-                let files = [picture(size, "soft (1)", 1), picture(size, adapter, 2)];
-                let [expected, actual] = [0, 1].map(|at: usize| Pixels::from_bytes(&files[at]).unwrap());
-                let whole = Distance::new(&expected, &actual).unwrap();
-                let (read, distance) = both([&files[0], &files[1]]);
-                assert_eq!((distance, whole.unequal > 0), (Some(whole), true), "{adapter} {height}");
-                assert_eq!(read.map(|header| header.unwrap().label), [expected.label, actual.label]);
+    fn bands_say_what_single_pixels_say() {
+        let mut seen = [0; 4];
+        for channels in [3, 4] {
+            for width in [1, 2, 3, 31, 32, 33, 70] {
+                for height in [1, 2, 3, 15, 16, 17, 18, 19, 33, 50] {
+                    let size = [width, height];
+                    let files =
+                        [picture(size, channels, "soft (1)", 1), picture(size, channels, "hard (1)", 2 + width)];
+                    let [expected, actual] = [0, 1].map(|at: usize| Pixels::from_bytes(&files[at]).unwrap());
+                    let (read, distance) = both([&files[0], &files[1]]);
+                    let distance = distance.unwrap();
+                    assert_eq!(Some(distance), Distance::new(&expected, &actual), "{size:?} {channels}");
+                    let (counts, largest, silhouettes) = naive([&expected, &actual]);
+                    if distance.unequal > 0 {
+                        let three = [distance.counted, distance.interiors.unwrap(), distance.one_sided.unwrap()];
+                        let told = [distance.unequal, three[0].visible, three[1].visible, three[2].visible];
+                        assert_eq!(told, counts, "{size:?} {channels}");
+                        assert_eq!(three.map(|count| count.largest), largest, "{size:?} {channels}");
+                        assert_eq!(three[0].allowed, (silhouettes / 4).max(8.min(silhouettes / 100)));
+                    }
+                    (0..4).for_each(|at| seen[at] += counts[at]);
+                    assert_eq!(read.map(|header| header.unwrap().label), [expected.label, actual.label]);
+                }
             }
         }
+        assert!(seen.iter().all(|&count| count > 50), "each kind of pixel occurs: {seen:?}");
     }
 
     #[test]
     fn each_damage_is_found_wherever_it_is() {
-        let good = picture([29, 50], "soft (1)", 1);
+        let good = picture([29, 50], 3, "soft (1)", 1);
         for at in [60, good.len() / 2, good.len() - 20, good.len() - 1] {
             let cut = &good[..at];
-            let other = picture([29, 50], "soft (1)", 2);
+            let other = picture([29, 50], 3, "soft (1)", 2);
             let sound = |files: [&[u8]; 2]| both(files).0.map(|read| read.is_ok());
             assert_eq!(sound([cut, &other]), [false, true], "{at}");
             assert_eq!(sound([&other, cut]), [true, false], "{at}");
             assert_eq!(sound([cut, cut]), [false, false], "{at}");
             assert_eq!(sound([cut, &other[..other.len() - 9]]), [false, false], "{at}");
         }
+        let memory = |file: &[u8]| Some(Source::Memory(file.to_vec()));
+        let pair = Pair::read("two.png".to_owned(), [memory(&good[..60]), memory(&good[..70])]);
+        let Verdict::Unreadable { message } = &pair.verdict else { panic!("{}", pair.verdict) };
+        assert!(message.contains("the expected picture: ") && message.contains("; the actual picture: "), "{message}");
     }
 
     #[test]
-    fn pictures_of_two_sizes_are_read_to_their_ends() {
-        let [tall, low] = [50, 20].map(|height| picture([29, height], "soft (1)", 1));
-        let (read, distance) = both([&tall, &low]);
-        assert!(read.iter().all(Result::is_ok) && distance.is_none());
-        assert!(both([&tall[..tall.len() - 1], &low]).0[0].is_err());
+    fn pictures_of_two_kinds_are_read_to_their_ends() {
+        let [tall, low] = [50, 20].map(|height| picture([29, height], 3, "soft (1)", 1));
+        let clear = picture([29, 50], 4, "soft (1)", 1);
+        for other in [&low, &clear] {
+            let (read, distance) = both([&tall, other]);
+            assert!(read.iter().all(Result::is_ok) && distance.is_none());
+            assert!(both([&tall[..tall.len() - 1], other]).0[0].is_err());
+        }
     }
 }

@@ -5,11 +5,13 @@ use std::fs::File;
 use std::io::{self, BufRead, Cursor, Read, Seek};
 use std::path::Path;
 
-/// The longest side of a picture (px), and its most pixels: both sides of a pair are held in memory.
+/// The longest side of a picture (px), and its most pixels: for a report both sides of a pair are held in memory.
 const LONGEST_SIDE: u32 = 16_384;
 const MOST_PIXELS: u64 = 100_000_000;
-/// The largest file (bytes): more than those pixels take.
+/// The largest file (bytes): more than those pixels take. Both files of a pair are held in memory.
 const MOST_BYTES: u64 = 1 << 29;
+/// The most that a picture carries beside its pixels (bytes); what it says of itself is far less.
+const MOST_BESIDE: usize = 4 << 20;
 
 /// How every PNG file begins.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -24,7 +26,7 @@ pub enum PictureError {
     #[error("this is no PNG picture")]
     Foreign,
     /// It is larger than any picture that is compared.
-    #[error("this file has {} MiB, more than any picture that can be compared", .0 >> 20)]
+    #[error("this file has {0} bytes; a picture that can be compared has at most {MOST_BYTES}")]
     Large(u64),
     /// It is a PNG file, but not a whole one.
     #[error("this PNG picture is damaged or cut short ({0})")]
@@ -34,10 +36,13 @@ pub enum PictureError {
     Kind(String),
     /// It says of itself what cannot be.
     #[error(
-        "the picture was drawn by this program, but its text `localshape:{0}` is missing or damaged; \
+        "the picture was drawn by this program, but its text `localshape:{0}` is missing, damaged or there twice; \
          its pixels alone prove nothing"
     )]
     Label(&'static str),
+    /// It says behind its pixels what belongs before them.
+    #[error("the picture says behind its pixels what it shows; expected that before them, as this program writes it")]
+    Late,
 }
 
 /// A picture with what it says about itself.
@@ -67,7 +72,7 @@ impl Pixels {
     /// # Errors
     /// As [`Self::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PictureError> {
-        let mut rows = Rows::open(Cursor::new(bytes))?;
+        let mut rows = Rows::open(bytes)?;
         let mut bytes = vec![0; rows.header.row() * rows.header.rows()];
         rows.read(&mut bytes)?;
         rows.finish()?;
@@ -80,7 +85,7 @@ impl Pixels {
     /// # Errors
     /// As [`Self::read`], as far as that can be told from the header.
     pub(super) fn read_label(path: &Path) -> Result<Option<Label>, PictureError> {
-        let reader = png::Decoder::new(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
+        let reader = decoder(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
         Label::of(reader.info()).map_err(PictureError::Label)
     }
 }
@@ -89,17 +94,16 @@ impl Pixels {
 pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
     let mut file = open(path)?;
     let length = file.metadata()?.len();
-    let mut bytes = Vec::new();
+    if length > MOST_BYTES {
+        return Err(PictureError::Large(length));
+    }
+    // One more than there should be, so that the end is seen at once.
+    let mut bytes = Vec::with_capacity(length as usize + 1);
     // Whatever else lies there under such a name may be large.
     file.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut bytes)?;
     if bytes != SIGNATURE {
         return Err(PictureError::Foreign);
     }
-    if length > MOST_BYTES {
-        return Err(PictureError::Large(length));
-    }
-    // One more than there should be, so that the end is seen at once.
-    bytes.reserve_exact(length as usize + 1);
     file.take(MOST_BYTES).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
@@ -116,10 +120,27 @@ fn open(path: &Path) -> Result<File, PictureError> {
     Ok(File::open(path)?)
 }
 
+/// A decoder that looks at every checksum: a text that is damaged must not be one that was never there.
+fn decoder<R: BufRead + Seek>(file: R) -> png::Decoder<R> {
+    let mut options = png::DecodeOptions::default();
+    options.set_ignore_adler32(false);
+    options.set_skip_ancillary_crc_failures(false);
+    let mut decoder = png::Decoder::new_with_options(file, options);
+    decoder.set_limits(png::Limits { bytes: MOST_BESIDE });
+    decoder
+}
+
 fn broken(error: png::DecodingError) -> PictureError {
     match error {
         png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error.into(),
-        error => PictureError::Broken(error.to_string()),
+        png::DecodingError::LimitsExceeded => {
+            PictureError::Kind(format!("carries more than {} MiB beside its pixels", MOST_BESIDE >> 20))
+        }
+        error => {
+            let told = error.to_string();
+            let is_checksum = told.starts_with("CRC error");
+            PictureError::Broken(if is_checksum { "a checksum is wrong".to_owned() } else { told })
+        }
     }
 }
 
@@ -147,24 +168,25 @@ impl Header {
 }
 
 /// A picture whose rows are read one after another.
-pub(super) struct Rows<R: BufRead + Seek> {
-    reader: png::Reader<R>,
+pub(super) struct Rows<'a> {
+    reader: png::Reader<Cursor<&'a [u8]>>,
     pub(super) header: Header,
 }
 
-impl<R: BufRead + Seek> Rows<R> {
+impl<'a> Rows<'a> {
     /// Reads the header of a PNG file, and refuses what no frame is.
-    pub(super) fn open(mut file: R) -> Result<Self, PictureError> {
-        if !file.fill_buf()?.starts_with(SIGNATURE) {
+    pub(super) fn open(file: &'a [u8]) -> Result<Self, PictureError> {
+        if !file.starts_with(SIGNATURE) {
             return Err(PictureError::Foreign);
         }
-        let reader = png::Decoder::new(file).read_info().map_err(broken)?;
-        let info = reader.info();
+        let mut decoder = decoder(Cursor::new(file));
         let kind = |what: String| Err(PictureError::Kind(what));
-        let all = u64::from(info.width) * u64::from(info.height);
-        if info.width.max(info.height) > LONGEST_SIDE || all > MOST_PIXELS {
-            return kind(format!("says that it has {}×{} pixels", info.width, info.height));
+        let [width, height] = decoder.read_header_info().map(|info| [info.width, info.height]).map_err(broken)?;
+        if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
+            return kind(format!("says that it has {width}×{height} pixels"));
         }
+        let reader = decoder.read_info().map_err(broken)?;
+        let info = reader.info();
         if info.bit_depth != png::BitDepth::Eight {
             return kind(format!("has {} bits a channel", info.bit_depth as u8));
         }
@@ -182,8 +204,7 @@ impl<R: BufRead + Seek> Rows<R> {
             png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => return kind("is grey".to_owned()),
         };
         let label = Label::of(info).map_err(PictureError::Label)?;
-        let header = Header { size: [info.width, info.height], channels, label };
-        Ok(Self { reader, header })
+        Ok(Self { header: Header { size: [width, height], channels, label }, reader })
     }
 
     /// Reads as many rows as there is room for; there must be so many.
@@ -195,8 +216,10 @@ impl<R: BufRead + Seek> Rows<R> {
         Ok(())
     }
 
-    /// Reads what follows the pixels: its checksum is a part of the whole, too.
+    /// Reads what follows the pixels up to the end of the picture, with its checksums.
     pub(super) fn finish(&mut self) -> Result<(), PictureError> {
-        self.reader.finish().map_err(broken)
+        self.reader.finish().map_err(broken)?;
+        let label = Label::of(self.reader.info()).map_err(PictureError::Label)?;
+        if label == self.header.label { Ok(()) } else { Err(PictureError::Late) }
     }
 }

@@ -2,10 +2,11 @@
 
 use super::ComparisonError;
 use super::archive;
-use super::picture::{PictureError, Pixels};
+use super::picture::{self, PictureError, Pixels};
 use super::record::{RECORD_FILE, Record};
 use super::states::{State, States};
 use crate::output::Label;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -34,19 +35,14 @@ pub(super) enum Source {
 
 impl Source {
     pub(super) fn pixels(&self) -> Result<Pixels, PictureError> {
-        match self {
-            Self::File(path) => Pixels::read(path),
-            Self::Memory(bytes) => Pixels::from_bytes(bytes),
-        }
+        Pixels::from_bytes(&self.bytes()?)
     }
 
     /// The bytes of the file.
-    pub(super) fn bytes(&self) -> std::io::Result<Vec<u8>> {
+    pub(super) fn bytes(&self) -> Result<Cow<'_, [u8]>, PictureError> {
         match self {
-            // A pipe would keep everybody waiting.
-            Self::File(path) if !path.metadata()?.is_file() => Err(std::io::ErrorKind::InvalidInput.into()),
-            Self::File(path) => std::fs::read(path),
-            Self::Memory(bytes) => Ok(bytes.clone()),
+            Self::File(path) => picture::file(path).map(Cow::Owned),
+            Self::Memory(bytes) => Ok(Cow::Borrowed(bytes)),
         }
     }
 }

@@ -219,6 +219,9 @@ pub(crate) fn tags_of(info: &png::Info<'_>) -> Option<Tags> {
     Tags::parse(|name| chunk(info, name))
 }
 
+/// More states than any picture shows: each is looked for among those of another picture.
+const MOST_STATES: usize = 4096;
+
 /// What a picture says of itself, be it a frame or a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
@@ -239,9 +242,18 @@ impl Label {
         if NAMES.iter().all(|name| chunk(info, name).is_none()) {
             return Ok(None);
         }
+        // What is said twice is not known.
+        if let Some(&name) = NAMES.iter().find(|name| chunks_of(info, name) > 1) {
+            return Err(name);
+        }
+        if chunk(info, "figure").is_some() && chunk(info, "frame").is_some() {
+            return Err("figure");
+        }
         let is_digest = |digest: &String| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
+        // Names are told on terminals.
+        let is_state = |(digest, name): &(String, String)| is_digest(digest) && !name.contains(char::is_control);
         let are_states =
-            |all: &Vec<(String, String)>| !all.is_empty() && all.iter().all(|(digest, _)| is_digest(digest));
+            |all: &Vec<(String, String)>| (1..=MOST_STATES).contains(&all.len()) && all.iter().all(is_state);
         let states = states_of(&text("state")?).filter(are_states).ok_or("state")?;
         let (version, adapter) = (text("version")?, text("adapter")?);
         if let Some(figure) = chunk(info, "figure") {
@@ -296,6 +308,15 @@ impl Label {
             Self::Figure(tags) => encode_with(size, pixels, &tags.chunks(), compression),
         }
     }
+}
+
+/// How many of our chunks of one name there are.
+fn chunks_of(info: &png::Info<'_>, name: &str) -> usize {
+    let is = |keyword: &str| keyword.strip_prefix("localshape:") == Some(name);
+    let plain = info.uncompressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword));
+    let wide = info.utf8_text.iter().filter(|chunk| is(&chunk.keyword));
+    let packed = info.compressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword));
+    plain.count() + wide.count() + packed.count()
 }
 
 /// The text in one of our chunks.

@@ -44,11 +44,9 @@ fn two_pictures() {
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
-    assert!(
-        drawn
-            .out
-            .starts_with("b.png: same state, drawn differently: another kind of adapter drew it; along silhouettes")
-    );
+    let told = "b.png: same state, drawn differently: another kind of adapter drew it; of what stands in one picture only, \
+                10 pixels differ (1 may); along silhouettes 0 pixels differ by more than 2 of 255 (none may); between them";
+    assert!(drawn.out.starts_with(told), "{drawn:?}");
     assert!(drawn.out.contains("\naccept with: localshape compare --bless a.png b.png\n"), "{drawn:?}");
     let moved = place.run("compare a.png c.png --json");
     assert_eq!(moved.status, Some(1));
@@ -284,7 +282,7 @@ fn what_is_no_picture_never_passes() {
     let text = |keyword: &'static str, text: &'static str| {
         with(&|encoder| encoder.add_text_chunk(keyword.into(), text.into()).unwrap(), 16 * 8 * 3)
     };
-    let states = |frame: &'static str, states: &'static str| {
+    let states = |frame: &str, states: &str| {
         let chunks =
             [("scene", "5"), ("state", states), ("frame", frame), ("time", "0"), ("version", "1"), ("adapter", "one")];
         with(
@@ -296,14 +294,33 @@ fn what_is_no_picture_never_passes() {
             16 * 8 * 3,
         )
     };
-    let wrong: [(&str, Vec<u8>, &str); 17] = [
+    // The text chunks of `whole` after another, and one of them with another letter and its old checksum.
+    let at = |what: &[u8]| whole.windows(what.len()).position(|part| part == what).unwrap();
+    let (texts, data) = (at(b"tEXtlocalshape:scene") - 4, at(b"IDAT") - 4);
+    let mut damaged = whole.clone();
+    damaged[texts + 20] ^= 1;
+    let twice = [&whole[..data], &whole[texts..]].concat();
+    let late = [&whole[..texts], &whole[data..whole.len() - 12], &whole[texts..data], &whole[whole.len() - 12..]];
+    let mut sum_lies = whole.clone();
+    let end = whole.len() - 12;
+    sum_lies[end - 5] ^= 1;
+    let checksum = crc32(&sum_lies[data + 4..end - 4]);
+    sum_lies[end - 4..end].copy_from_slice(&checksum.to_be_bytes());
+    let long: &'static str = Box::leak("a".repeat(5 << 20).into_boxed_str());
+    let wrong: [(&str, Vec<u8>, &str); 23] = [
+        ("damaged-text.png", damaged, "damaged or cut short (a checksum is wrong)"),
+        ("twice.png", twice, "is missing, damaged or there twice"),
+        ("late.png", late.concat(), "says behind its pixels what it shows"),
+        ("sum.png", sum_lies, "damaged or cut short"),
+        ("long.png", text("comment", long), "carries more than 4 MiB beside its pixels"),
+        ("bell.png", states("3", &FULL.replace("run", "r\u{7}n")), "`localshape:state` is missing"),
         ("interlaced.png", interlaced, "is interlaced"),
         ("text.png", b"no picture".to_vec(), "this is no PNG picture"),
         ("empty.png", Vec::new(), "this is no PNG picture"),
         ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is no PNG picture"),
         ("cut.png", whole[..whole.len() - 20].to_vec(), "damaged or cut short"),
         ("flipped.png", flipped, "damaged or cut short"),
-        ("lies.png", header_lies, "damaged or cut short"),
+        ("lies.png", header_lies, "damaged or cut short (a checksum is wrong)"),
         ("huge.png", huge, "20000×20000 pixels"),
         ("deep.png", with(&|encoder| encoder.set_depth(png::BitDepth::Sixteen), 16 * 8 * 6), "16 bits a channel"),
         ("grey.png", with(&|encoder| encoder.set_color(png::ColorType::Grayscale), 16 * 8), "is grey"),
@@ -319,11 +336,11 @@ fn what_is_no_picture_never_passes() {
             "has a palette",
         ),
         ("animated.png", with(&|encoder| encoder.set_animated(1, 0).unwrap(), 16 * 8 * 3), "is an animation"),
-        ("untold.png", text("localshape:version", "1"), "`localshape:state` is missing or damaged"),
-        ("frame.png", states("-3", FULL), "`localshape:frame` is missing or damaged"),
-        ("digest.png", states("3", "no-digest run"), "`localshape:state` is missing or damaged"),
-        ("short.png", states("3", "ab run"), "`localshape:state` is missing or damaged"),
-        ("none.png", states("3", ""), "`localshape:state` is missing or damaged"),
+        ("untold.png", text("localshape:version", "1"), "`localshape:state` is missing"),
+        ("frame.png", states("-3", FULL), "`localshape:frame` is missing"),
+        ("digest.png", states("3", "no-digest run"), "`localshape:state` is missing"),
+        ("short.png", states("3", "ab run"), "`localshape:state` is missing"),
+        ("none.png", states("3", ""), "`localshape:state` is missing"),
     ];
     for (name, bytes, words) in wrong {
         put(&place, name, &bytes);
@@ -332,6 +349,27 @@ fn what_is_no_picture_never_passes() {
             assert_eq!((ran.status, ran.err.as_str()), (Some(1), ""), "{order}: {ran:?}");
             let told = format!("unreadable: {name}: ");
             assert!(ran.out.contains(&told) && ran.out.contains(words), "{order}: {ran:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_file_of_a_picture_is_told_at_once() {
+    let place = Place::new();
+    put(&place, "whole.png", &picture("one", "1", 0, &GREY));
+    let large = std::fs::File::create(place.path("large.png")).unwrap();
+    large.set_len((1 << 29) + 1).unwrap();
+    let mut wrong =
+        vec![("large.png", "this file has 536870913 bytes; a picture that can be compared has at most 536870912")];
+    if cfg!(unix)
+        && std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().is_ok_and(|ran| ran.success())
+    {
+        wrong.push(("pipe.png", "this is no PNG picture"));
+    }
+    for (name, words) in wrong {
+        for order in [format!("{name} whole.png"), format!("whole.png {name}")] {
+            let ran = place.run(&format!("compare {order}"));
+            assert!(ran.status == Some(1) && ran.out.contains(&format!("{name}: {words}")), "{order}: {ran:?}");
         }
     }
 }
