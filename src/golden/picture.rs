@@ -34,6 +34,15 @@ pub enum PictureError {
     /// It is a PNG file of another kind than those that are written here.
     #[error("the picture {0}; expected 8 bits of red, green and blue, not interlaced")]
     Kind(String),
+    /// It is larger than any that is compared, width and height (px).
+    #[error(
+        "the picture says that it has {0}×{1} pixels; expected at most {LONGEST_SIDE} a side and {million} million in all",
+        million = MOST_PIXELS / 1_000_000
+    )]
+    Size(u32, u32),
+    /// It carries more beside its pixels than any picture needs.
+    #[error("the picture carries more than {} MiB beside its pixels; save it without that", MOST_BESIDE >> 20)]
+    Laden,
     /// It says of itself what cannot be.
     #[error(
         "the picture was drawn by this program, but its text `localshape:{0}` is missing, damaged or there twice; \
@@ -133,9 +142,7 @@ fn decoder<R: BufRead + Seek>(file: R) -> png::Decoder<R> {
 fn broken(error: png::DecodingError) -> PictureError {
     match error {
         png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error.into(),
-        png::DecodingError::LimitsExceeded => {
-            PictureError::Kind(format!("carries more than {} MiB beside its pixels", MOST_BESIDE >> 20))
-        }
+        png::DecodingError::LimitsExceeded => PictureError::Laden,
         error => {
             let told = error.to_string();
             let is_checksum = told.starts_with("CRC error");
@@ -183,7 +190,7 @@ impl<'a> Rows<'a> {
         let kind = |what: String| Err(PictureError::Kind(what));
         let [width, height] = decoder.read_header_info().map(|info| [info.width, info.height]).map_err(broken)?;
         if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
-            return kind(format!("says that it has {width}×{height} pixels"));
+            return Err(PictureError::Size(width, height));
         }
         let reader = decoder.read_info().map_err(broken)?;
         let info = reader.info();
