@@ -106,9 +106,11 @@ impl Compare {
             replaceable(path)?;
         }
         let Some(comparison) = self.comparison()? else { return Ok(Status::Interrupted) };
-        if let Some(path) = &self.report {
-            write_whole(path, comparison.report().page().as_bytes())?;
-        }
+        // The verdict is told also if the page cannot be written.
+        let reported = match &self.report {
+            Some(path) => write_whole(path, comparison.report().page().as_bytes()),
+            None => Ok(()),
+        };
         let blesses = self.bless || self.bless_state;
         let blessed = blesses.then(|| comparison.bless(self.bless_state)).transpose();
         let is_changed = |blessed: &Blessed| !blessed.written.is_empty() || !blessed.removed.is_empty();
@@ -128,6 +130,7 @@ impl Compare {
                 console::print(&nothing.unwrap_or_else(|| blessed.to_string()))?;
             }
         }
+        reported?;
         match blessed {
             Ok(_) => Ok(if comparison.passes() || accepted { Status::Done } else { Status::Difference }),
             Err(BlessError::Write { blessed, source }) => {

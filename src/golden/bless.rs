@@ -5,11 +5,11 @@ use super::record::{Drawn, RECORD_FILE, Record};
 use super::side::{Kind, Source};
 use super::states::States;
 use super::{Comparison, Verdict};
-use crate::output::{AtomicFile, OutputError};
+use crate::output::{AtomicFile, DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE};
 use std::borrow::Cow;
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What was accepted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -78,6 +78,13 @@ impl Comparison {
         if actual.is_undrawn {
             return Some("without a graphics adapter there are no pictures to accept".to_owned());
         }
+        if expected.kind == Kind::Absent
+            && actual.kind != Kind::Picture
+            && let Some(other) = other_file(&expected.origin)
+        {
+            let folder = expected.origin.display();
+            return Some(format!("{folder} holds other files, such as {other}; name a folder that is not there"));
+        }
         if !self.unknown.is_empty() && actual.record.is_none() {
             return Some(format!("the states of {} are not known here", self.unknown.join(", ")));
         }
@@ -107,6 +114,26 @@ impl Comparison {
         wrong.next()
     }
 
+    /// Whether pictures of other states come into a folder that may also hold these states themselves.
+    fn brings_states(&self) -> bool {
+        let are_folders = self.sides.iter().all(|side| side.kind == Kind::Folder);
+        are_folders && self.needs_state()
+    }
+
+    /// Whether accepting would change anything.
+    pub(super) fn has_something_to_accept(&self) -> bool {
+        let [expected, _] = &self.sides;
+        let Ok(record) = self.record_to_write() else { return false };
+        let is_gone = |name: &String| {
+            let is_known = |record: &Record| record.pictures.iter().any(|drawn| drawn.file == *name);
+            expected.pictures.contains_key(name) && record.as_ref().is_some_and(|record| !is_known(record))
+        };
+        let mut failed = self.pictures.iter().filter(|picture| !picture.verdict.passes());
+        let mut pictures = failed.any(|picture| self.actual_source(&picture.name).is_some() || is_gone(&picture.name));
+        pictures |= record.is_some() && record != expected.record;
+        pictures
+    }
+
     fn actual_source(&self, name: &str) -> Option<&Source> {
         let actual = &self.sides[1];
         match actual.kind {
@@ -128,14 +155,14 @@ impl Comparison {
             return Err(BlessError::Unfit(message));
         }
         let [expected, actual] = &self.sides;
+        let record = self.record_to_write()?;
         if self.needs_state() && !with_states && expected.kind != Kind::Absent {
-            let command = self.command_to_accept().unwrap_or_default();
+            let command = self.command();
             return Err(match self.state_moved() {
                 true => BlessError::StateMoved { command },
                 false => BlessError::Damaged { command },
             });
         }
-        let record = self.record_to_write()?;
         let mut blessed = Blessed::default();
         let mut gone = Vec::new();
         let mut staged = Vec::new();
@@ -162,6 +189,22 @@ impl Comparison {
                         let (target, actual) = (target.display(), actual.origin.display());
                         blessed.left.push(format!("{target} is missing in {actual} and was left"));
                     }
+                }
+            }
+            for name in BESIDE.into_iter().filter(|_| self.brings_states()) {
+                let (target, source) = (expected.origin.join(name), actual.origin.join(name));
+                let (old, new) = (std::fs::read(&target).ok(), std::fs::read(&source).ok());
+                match (old, new) {
+                    (old, Some(new)) if old.as_ref() != Some(&new) => {
+                        let mut file = AtomicFile::create(&target)?;
+                        file.append(&new)?;
+                        staged.push(file);
+                    }
+                    (Some(_), None) => {
+                        let (target, actual) = (target.display(), actual.origin.display());
+                        blessed.left.push(format!("{target} is not of these pictures any more, but {actual} has none"));
+                    }
+                    _ => {}
                 }
             }
             if let Some(record) = &record {
@@ -244,6 +287,16 @@ impl Comparison {
         let (recorded, known) = (count(&old.states), count(&states));
         if known < recorded { Err(BlessError::StatesUnknown { recorded, known }) } else { Ok(states) }
     }
+}
+
+/// Files that stand beside the frames of a folder and are of the same states.
+const BESIDE: [&str; 3] = [STATES_FILE, DIAGNOSTICS_FILE, SUMMARY_FILE];
+
+/// A file or folder in a folder, but for hidden ones.
+fn other_file(folder: &Path) -> Option<String> {
+    let names = std::fs::read_dir(folder).ok()?.flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| !name.starts_with('.')).min()
 }
 
 /// The bytes of a picture, for a golden as few as can be had.

@@ -76,7 +76,7 @@ pub struct Distance {
     #[serde(flatten)]
     pub counted: Count,
     /// For adapters of different kinds, pixels that differ where neither picture has a silhouette, none of them by more than
-    /// 8, and those that differ by no more than that where one of them has.
+    /// 8, and, counted with them, those that differ by no more than that where one of them has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interiors: Option<Count>,
     /// For adapters of different kinds, pixels that differ by more than 8 where one picture alone has a silhouette.
@@ -219,14 +219,18 @@ impl Counts {
     /// Adds a line of both pictures.
     fn add(&mut self, [expected, actual]: [&[u8]; 2], channels: usize, place: impl Fn(usize) -> Place) {
         differences(expected, actual, channels, |at, difference| {
+            self.unequal += 1;
             let (count, least) = match place(at) {
                 Place::Silhouette => (&mut self.counted, CHANNEL),
                 Place::OneSided if difference > CONTRAST => (&mut self.one_sided, CONTRAST),
-                Place::OneSided | Place::Interior => (&mut self.interiors, CHANNEL),
+                Place::OneSided => {
+                    self.interiors.visible += u64::from(difference > CHANNEL);
+                    return;
+                }
+                Place::Interior => (&mut self.interiors, CHANNEL),
             };
             count.visible += u64::from(difference > least);
             count.largest = difference.max(count.largest);
-            self.unequal += 1;
         });
     }
 }

@@ -13,7 +13,7 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
 use crate::sequence::Sequence;
-use crate::sim::snapshot::Frame;
+use crate::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -117,7 +117,7 @@ pub(crate) fn draw(
         Subject::Scene(scene) => draw_scene(scene, wish, old.record.as_ref(), gpu, go_on)?,
         Subject::Figure(figure) => draw_figure(figure, wish, old.record.as_ref(), gpu, go_on)?,
     };
-    Ok(drawn.map(|(mut record, pictures)| {
+    Ok(drawn.map(|Made { mut record, pictures, notes }| {
         record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let pictures: BTreeMap<_, _> =
             pictures.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
@@ -128,12 +128,18 @@ pub(crate) fn draw(
             record: Some(record),
             is_undrawn: gpu.is_none(),
             options: wish.options(),
+            notes,
         }
     }))
 }
 
-/// A record and PNG files by name.
-type Made = (Record, BTreeMap<String, Vec<u8>>);
+/// What was drawn.
+struct Made {
+    record: Record,
+    /// PNG files by name.
+    pictures: BTreeMap<String, Vec<u8>>,
+    notes: Vec<String>,
+}
 
 fn draw_scene(
     scene: &Scene,
@@ -174,6 +180,7 @@ fn draw_scene(
     }
     let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples, history.as_ref())).transpose()?;
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
+    let mut stopped = BTreeMap::new();
     let mut sequence = Sequence::new(&scene, &runs);
     for index in plan.frames() {
         while !sequence.advance_towards(index, SLICE) {
@@ -184,7 +191,12 @@ fn draw_scene(
         let frame = sequence.frame(index);
         for run in &frame.runs {
             let state = State::of(&run.snapshot, plan.places.contains(&index));
-            states.add(&scene.runs[run.run].name, index, state);
+            let name = &scene.runs[run.run].name;
+            states.add(name, index, state);
+            if let Status::Diverged(Divergence { time, step, .. }) = run.snapshot.status {
+                let told = || format!("{name} diverged at {time:.3e} s (step {step}) and stands still from there on");
+                stopped.entry(run.run).or_insert_with(told);
+            }
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
             let (label, bytes) = artist.draw(&frame)?;
@@ -198,7 +210,7 @@ fn draw_scene(
     }
     let scenes = vec![scene.digest.clone()];
     let record = Record { subject: String::new(), scenes, size, samples, pictures: drawn, states };
-    Ok(Some((record, pictures)))
+    Ok(Some(Made { record, pictures, notes: stopped.into_values().collect() }))
 }
 
 fn draw_figure(
@@ -239,7 +251,7 @@ fn draw_figure(
     }
     let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
     let record = Record { subject: String::new(), scenes, size: figure.size, samples, pictures: drawn, states };
-    Ok(Some((record, pictures)))
+    Ok(Some(Made { record, pictures, notes: Vec::new() }))
 }
 
 /// The size to draw in (px).
@@ -327,7 +339,7 @@ mod tests {
     fn side(record: Record, kind: Kind) -> Side {
         let (origin, pictures) = ("golden".into(), BTreeMap::new());
         let is_undrawn = kind == Kind::Drawn;
-        Side { origin, kind, pictures, record: Some(record), is_undrawn, options: String::new() }
+        Side { origin, kind, pictures, record: Some(record), is_undrawn, options: String::new(), notes: Vec::new() }
     }
 
     /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.

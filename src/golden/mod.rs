@@ -183,7 +183,12 @@ impl Comparison {
         {
             notes.push(format!("the golden is of {}, and this is {}", golden.subject, drawn.subject));
         }
-        notes.extend(other_frames(&read));
+        notes.extend(other_moments(&read));
+        if actual.kind == Kind::Folder && actual.pictures.is_empty() {
+            let folder = actual.origin.display();
+            notes.push(format!("{folder} holds no PNG picture; to compare with a scene, name its file"));
+        }
+        notes.extend(actual.notes.iter().cloned());
         match ends(&expected, &actual) {
             Some([recorded, end]) if end < recorded => {
                 notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));
@@ -217,6 +222,7 @@ impl Comparison {
             })
             .chain(judged)
             .collect();
+        pictures.sort_by(|one, other| one.name.cmp(&other.name));
         if actual.is_undrawn {
             // What is wrong with the golden itself is wrong without pictures, too.
             pictures.retain(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
@@ -277,7 +283,7 @@ impl Comparison {
             "identical",
         ];
         let kinds = self.pictures.iter().map(|picture| picture.verdict.kind());
-        let kinds = kinds.chain(self.state_moved().then_some("state moved"));
+        let kinds = kinds.chain((!self.moved.is_empty()).then_some("state moved"));
         let kinds = kinds.chain((self.sides[0].kind == Kind::Absent || self.ends_early.is_some()).then_some("missing"));
         let kinds: BTreeSet<_> = kinds.chain((!self.unknown.is_empty()).then_some("no state recorded")).collect();
         ORDER.into_iter().find(|kind| kinds.contains(kind)).unwrap_or("identical")
@@ -295,13 +301,17 @@ impl Comparison {
 
     /// The command that accepts what is actually there; `None` if nothing is to be accepted, or nothing can be.
     pub fn command_to_accept(&self) -> Option<String> {
-        if self.passes() || self.unfit().is_some() {
+        if self.passes() || self.unfit().is_some() || !self.has_something_to_accept() {
             return None;
         }
+        Some(self.command())
+    }
+
+    fn command(&self) -> String {
         let [expected, actual] = &self.sides;
         let is_other = self.needs_state() && expected.kind != Kind::Absent;
         let option = if is_other { "--bless-state" } else { "--bless" };
-        Some(format!("localshape compare {option}{} {} {}", actual.options, expected.typed(), actual.typed()))
+        format!("localshape compare {option}{} {} {}", actual.options, expected.typed(), actual.typed())
     }
 
     /// The states that were compared.
@@ -434,19 +444,26 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
     }
 }
 
-/// That pictures of one name show different frames, in words.
-fn other_frames(pairs: &[Pair]) -> Option<String> {
+/// That pictures of one name show different frames or times, in words.
+fn other_moments(pairs: &[Pair]) -> Option<String> {
     let told = |pair: &Pair| {
-        let [expected, actual] = [pair.labels[0].as_ref()?, pair.labels[1].as_ref()?].map(frame_of);
-        let (expected, actual) = (expected?, actual?);
-        (expected != actual).then(|| format!("{} shows frame {actual} instead of frame {expected}", pair.name))
+        let [Some(Label::Frame(expected)), Some(Label::Frame(actual))] = &pair.labels else { return None };
+        let name = &pair.name;
+        if actual.frame != expected.frame {
+            return Some(format!("{name} shows frame {} instead of frame {}", actual.frame, expected.frame));
+        }
+        // Scenes whose steps are not alike have frames at slightly different times.
+        let is_other = (actual.time - expected.time).abs() > 0.01 * actual.time.abs().max(expected.time.abs());
+        is_other.then(|| {
+            format!("{name} shows frame {} at {:.3} s instead of {:.3} s", actual.frame, actual.time, expected.time)
+        })
     };
     let mut all = pairs.iter().filter_map(told);
     let first = all.next()?;
     Some(match all.count() {
         0 => first,
-        1 => format!("{first}, and 1 more picture shows another frame"),
-        more => format!("{first}, and {more} more pictures show other frames"),
+        1 => format!("{first}, and so does 1 more picture"),
+        more => format!("{first}, and so do {more} more pictures"),
     })
 }
 
@@ -484,16 +501,25 @@ impl Comparison {
         if let Some(command) = self.command_to_accept().filter(|_| with_command) {
             let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
             text += &format!("{what}: {command}\n");
+        } else if let (Kind::Absent, Some(why)) = (self.sides[0].kind, self.unfit().filter(|_| with_command)) {
+            text += &format!("it cannot be made: {why}\n");
         }
         text
     }
 
     fn tell(&self, f: &mut impl fmt::Write) -> fmt::Result {
         if self.sides[0].kind == Kind::Absent {
-            writeln!(f, "the golden {} is missing", self.sides[0].origin.display())?;
+            let what = match self.sides[1].kind {
+                Kind::Picture => "picture",
+                Kind::Folder => "folder",
+                Kind::Golden | Kind::Absent | Kind::Drawn => "golden",
+            };
+            writeln!(f, "the {what} {} is missing", self.sides[0].origin.display())?;
             return self.tell_end(f);
         }
-        for moved in &self.moved {
+        // Of two single pictures nobody knows which frame was first.
+        let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
+        for moved in self.moved.iter().filter(|_| !are_pictures) {
             writeln!(f, "state moved: {moved}")?;
         }
         let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
@@ -510,6 +536,7 @@ impl Comparison {
         if self.pictures.len() > 1 {
             match wrong.len() {
                 0 => writeln!(f, "{}", self.pass())?,
+                1 => writeln!(f, "{}: 1 of {} pictures is not as expected", self.verdict(), self.pictures.len())?,
                 count => {
                     writeln!(f, "{}: {count} of {} pictures are not as expected", self.verdict(), self.pictures.len())?;
                 }

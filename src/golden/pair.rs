@@ -252,7 +252,9 @@ mod tests {
             };
             counts[0] += 1;
             counts[class + 1] += u64::from(difference > least);
-            largest[class] = difference.max(largest[class]);
+            if !(alone && class == 1) {
+                largest[class] = difference.max(largest[class]);
+            }
         }
         (counts, largest, silhouettes)
     }

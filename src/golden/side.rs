@@ -59,6 +59,8 @@ pub(crate) struct Side {
     pub(super) is_undrawn: bool,
     /// How it was drawn otherwise than usually, as options of the command line.
     pub(crate) options: String,
+    /// What is worth knowing of it, in words.
+    pub(super) notes: Vec<String>,
 }
 
 impl Side {
@@ -79,7 +81,15 @@ impl Side {
             }),
         };
         let kind = if record.is_some() { Kind::Golden } else { Kind::Folder };
-        Ok(Self { origin: path.into(), kind, pictures, record, is_undrawn: false, options: String::new() })
+        Ok(Self {
+            origin: path.into(),
+            kind,
+            pictures,
+            record,
+            is_undrawn: false,
+            options: String::new(),
+            notes: Vec::new(),
+        })
     }
 
     /// As [`Self::read`]; what is not there is a golden that is to be made.
@@ -102,6 +112,7 @@ impl Side {
             record: None,
             is_undrawn: false,
             options: String::new(),
+            notes: Vec::new(),
         }
     }
 

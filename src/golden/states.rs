@@ -309,7 +309,7 @@ impl fmt::Display for Moved {
         }
         match (&self.displacement, &self.largest) {
             (Some(near), Some(far)) if near.frame != far.frame && far.distance > far.precision => {
-                write!(f, ": {near}; {far}")?;
+                write!(f, ": {near}; farthest {far}")?;
             }
             (Some(near), _) => write!(f, ": {near}")?,
             (None, _) => f.write_str("; by how much is not recorded")?,
@@ -352,7 +352,7 @@ mod tests {
         assert_eq!((found.first, found.last_equal), (Some(2), Some(1)));
         assert_eq!(
             found.to_string(),
-            "run, first at frame 2: node 1 by 1.00e-1 m at frame 2; node 1 by 2.00e-1 m at frame 3"
+            "run, first at frame 2: node 1 by 1.00e-1 m at frame 2; farthest node 1 by 2.00e-1 m at frame 3"
         );
         // Below what the record knows, nothing is made up.
         let hardly = states(|_| state("bb", 0.0, &[1e-5, 1.0]));

@@ -60,6 +60,9 @@ fn two_pictures() {
     put(&place, "late.png", &picture("one", "2", 6, &GREY));
     let late = place.run("compare a.png late.png");
     assert!(late.out.contains("\nlate.png shows frame 6 instead of frame 0\n"), "{late:?}");
+    // A page that cannot be written takes nobody's verdict away.
+    let unwritable = place.run("compare a.png a.png --report none/page.html");
+    assert_eq!((unwritable.status, unwritable.out.as_str()), (Some(4), "a.png: identical\n"), "{unwritable:?}");
     let quiet = place.run("compare a.png c.png -q");
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
 }
@@ -132,8 +135,12 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     assert_eq!(written("was/same.png"), kept);
     assert_eq!(place.names("was"), ["drawn.png", "gone.png", "moved.png", "same.png"]);
     // What was missing is still missed, and there is nothing that could be accepted.
-    assert_eq!(place.run("compare was is").status, Some(1));
+    let missed = place.run("compare was is");
+    assert!(missed.status == Some(1) && !missed.out.contains("accept with"), "{missed:?}");
     assert_eq!(place.run("compare --bless was is").status, Some(1));
+    std::fs::create_dir(place.path("empty")).unwrap();
+    let empty = place.run("compare was empty");
+    assert!(empty.out.ends_with("\nempty holds no PNG picture; to compare with a scene, name its file\n"), "{empty:?}");
     std::fs::remove_file(place.path("was/gone.png")).unwrap();
     place.run("compare was is").good();
     let nothing = place.run("compare --bless was is").good();
@@ -144,10 +151,10 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
 fn what_is_missing_fails_with_the_command_that_makes_it() {
     let place = Place::new();
     put(&place, "is/a.png", &picture("one", "1", 0, &GREY));
-    for (expected, actual) in [("was", "is"), ("was.png", "is/a.png")] {
+    for (what, expected, actual) in [("folder", "was", "is"), ("picture", "was.png", "is/a.png")] {
         let ran = place.run(&format!("compare {expected} {actual}"));
         let told =
-            format!("the golden {expected} is missing\nmake it with: localshape compare --bless {expected} {actual}\n");
+            format!("the {what} {expected} is missing\nmake it with: localshape compare --bless {expected} {actual}\n");
         assert_eq!((ran.status, ran.out), (Some(1), told));
         place.run(&format!("compare --bless {expected} {actual}")).good();
         place.run(&format!("compare {expected} {actual}")).good();
@@ -216,7 +223,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
     assert!(told.starts_with("state moved: Mass-spring, first at frame 1: node "), "{told}");
     // One picture of each, with the archives beside them.
     let pair = place.run("compare steady/frame_00006.png stiffer/frame_00006.png").out;
-    assert!(pair.starts_with("state moved: Mass-spring, first at frame 6: node "), "{pair}");
+    assert!(pair.starts_with("frame_00006.png: state moved: Mass-spring, node "), "{pair}");
     // States that are not those of the pictures beside them are not believed.
     std::fs::copy(place.path("stiffer/states.npz"), place.path("steady/states.npz")).unwrap();
     let told = place.run("compare steady stiffer").out;
@@ -227,6 +234,13 @@ fn exact_states_tell_node_distance_and_first_frame() {
         let told = place.run("compare steady stiffer").out;
         assert!(told.contains("steady: states.npz ") && told.contains(words), "{told}");
     }
+    // Frames that are accepted bring their states along.
+    place.run("compare --bless-state steady stiffer").good();
+    for name in ["states.npz", "run.json", "diagnostics.csv"] {
+        let [one, other] = ["steady", "stiffer"].map(|folder| std::fs::read(place.path(format!("{folder}/{name}"))));
+        assert!(one.unwrap() == other.unwrap(), "{name}");
+    }
+    place.run("compare steady stiffer").good();
 }
 
 #[test]

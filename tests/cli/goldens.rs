@@ -35,6 +35,14 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     assert_eq!(place.names("golden"), names);
     let same = place.run("compare golden small.toml").good();
     assert_eq!(same.out, "3 pictures: 3 identical\n14 states are the same\n");
+    // Not among other files.
+    place.write("other/notes.txt", "mine");
+    let other = place.run("compare other small.toml");
+    let told =
+        "the golden other is missing\nit cannot be made: other holds other files, such as notes.txt; name a folder";
+    assert!(other.status == Some(1) && other.out.starts_with(told), "{other:?}");
+    place.run("compare --bless other small.toml").bad(1, &["nothing was accepted", "other holds other files"]);
+    assert_eq!(place.names("other"), ["notes.txt"]);
 
     // Another stiffness of one run: which run, since when, which node, how far.
     let stiffer = SMALL.replace("1e4, damping_ratio = 0.1, springs", "2e4, damping_ratio = 0.1, springs");
@@ -271,6 +279,7 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     assert_eq!(shorter.status, Some(1));
     assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");
     assert!(shorter.out.contains("frame_00006.png: missing"), "{shorter:?}");
+    assert!(shorter.out.contains("missing: 2 of 3 pictures are not as expected"), "{shorter:?}");
     // Fewer states are other states.
     place.run("compare --bless golden small.toml").bad(1, &["the state moved", "--bless-state"]);
     place.run("compare --bless-state golden small.toml").good();

@@ -85,7 +85,7 @@ pub struct Sheet {
     pub words: String,
     /// Whether nothing is wrong with it.
     pub passes: bool,
-    /// How many of its pixels differ by more than 2 of 255; `None` if pixels could not be compared.
+    /// How many of its pixels differ, of those of which most of what is allowed is used; `None` if they could not be compared.
     pub visible: Option<u64>,
     /// How many may.
     pub allowed: Option<u64>,

@@ -272,7 +272,7 @@
   /** Pixels of each picture beside how many may differ, and a mark for each picture. Returns where the axis lies. */
   function drawPixels({ draw, hairline, tick, rowName, left, right, wide }, top) {
     if (!wide) top += 22;
-    rowName(top, "Pixels", "that differ visibly");
+    rowName(top, "Pixels", "that differ");
     const tall = 66;
     const most = sheets.reduce((most, sheet) => Math.max(most, sheet.visible ?? 0, sheet.allowed ?? 0), 1);
     const powers = Math.ceil(Math.log10(most + 1) - 1e-9);
@@ -471,11 +471,15 @@
     if (side === "difference") {
       if (sheet.verdict === "identical") return "no difference: every pixel is equal";
       if (["missing", "extra", "unreadable"].includes(sheet.verdict)) return "nothing to compare";
+      if (sheet.visible === null && sheet.expected !== null && sheet.actual !== null)
+        return "no difference can be drawn: sizes or opacities are not alike";
       return "not embedded in this report";
     }
     if (sheet.verdict === "missing") return side === "actual" ? "missing" : "not embedded in this report";
     if (sheet.verdict === "extra")
       return side === "expected" ? "missing: nothing like it was expected" : "not embedded in this report";
+    const other = sheet[side === "expected" ? "actual" : "expected"];
+    if (sheet.verdict === "unreadable" && other !== null) return "unreadable";
     return sheet.verdict === "unreadable"
       ? "unreadable, or not embedded in this report"
       : "not embedded in this report";
