@@ -153,8 +153,13 @@ impl Compare {
             let is_scene = self.expected.extension().is_some_and(|ending| ending == "toml") && !self.expected.is_dir();
             if is_scene {
                 let (scene, other) = (self.expected.display(), self.actual.display());
+                let option = match (self.bless_state, self.bless) {
+                    (true, _) => "--bless-state ",
+                    (_, true) => "--bless ",
+                    _ => "",
+                };
                 let message =
-                    format!("{scene} is a scene or figure and comes last: localshape compare {other} {scene}");
+                    format!("{scene} is a scene or figure and comes last: localshape compare {option}{other} {scene}");
                 return Err(Failure::usage(message));
             }
             self.no_drawing()?;

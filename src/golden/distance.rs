@@ -106,9 +106,9 @@ impl Distance {
         self.limits().map(|limit| limit.used()).fold(0.0, f64::max)
     }
 
-    /// Pixels that differ and how many may, of those of which most of what is allowed is used.
+    /// Pixels that differ and how many may, of those of which most that may differ do.
     pub fn nearest_to_limit(&self) -> Count {
-        let nearest = self.limits().max_by(|one, other| one.used().total_cmp(&other.used()));
+        let nearest = self.limits().max_by(|one, other| one.part().total_cmp(&other.part()));
         nearest.map_or(self.counted, |limit| limit.count)
     }
 
@@ -134,15 +134,20 @@ impl Limit {
         self.count.visible <= self.count.allowed && self.count.largest <= self.largest
     }
 
+    /// How many of the pixels that may differ do.
+    fn part(&self) -> f64 {
+        match (self.count.visible, self.count.allowed) {
+            (visible, 0) => visible as f64 * 2.0,
+            (visible, allowed) => visible as f64 / allowed as f64,
+        }
+    }
+
+    /// How much is used of what is allowed, be it their number or their largest difference.
     fn used(&self) -> f64 {
-        let Count { visible, allowed, largest } = self.count;
-        let number = match allowed {
-            0 => visible as f64 * 2.0,
-            _ => visible as f64 / allowed as f64,
-        };
         // What may differ by anything comes never nearer by how much it does.
-        let much = if self.largest == u8::MAX { 0.0 } else { f64::from(largest) / f64::from(self.largest) };
-        number.max(much)
+        let strength =
+            if self.largest == u8::MAX { 0.0 } else { f64::from(self.count.largest) / f64::from(self.largest) };
+        self.part().max(strength)
     }
 }
 

@@ -564,7 +564,10 @@ impl Comparison {
         let nearest = nearest.map_or_else(String::new, |(distance, name)| {
             format!("; nearest to its limit is {name} with {:.0} % of it", 100.0 * distance.of_limit())
         });
-        format!("{} pictures: {}{nearest}", self.pictures.len(), counts.join(", "))
+        match &self.pictures[..] {
+            [only] => format!("1 picture: {}", only.verdict),
+            all => format!("{} pictures: {}{nearest}", all.len(), counts.join(", ")),
+        }
     }
 
     fn tell_end(&self, f: &mut impl fmt::Write) -> fmt::Result {

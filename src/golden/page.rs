@@ -33,6 +33,8 @@ impl Comparison {
         match (failed, self.pictures.len()) {
             (_, 0) => {}
             (0, _) => findings.push(format!("{}.", self.pass())),
+            (1, 1) => findings.push("The picture is not as expected.".to_owned()),
+            (1, all) => findings.push(format!("1 of {all} pictures is not as expected.")),
             (failed, all) => findings.push(format!("{failed} of {all} pictures are not as expected.")),
         }
         if self.same_scene == Some(false) {

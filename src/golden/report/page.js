@@ -271,7 +271,7 @@
 
   /** Pixels of each picture beside how many may differ, and a mark for each picture. Returns where the axis lies. */
   function drawPixels({ draw, hairline, tick, rowName, left, right, wide }, top) {
-    if (!wide) top += 22;
+    if (!wide) top += 34;
     rowName(top, "Pixels", "that differ");
     const tall = 66;
     const most = sheets.reduce((most, sheet) => Math.max(most, sheet.visible ?? 0, sheet.allowed ?? 0), 1);
@@ -373,7 +373,7 @@
     const hairline = (y, kind = "hairline") => draw("line", { x1: left, x2: right, y1: y, y2: y, class: kind });
     const tick = (y, words) => draw("text", { x: left - 10, y: y + 5, class: "end" }, words);
     const rowName = (y, words, unit) => {
-      draw("text", { x: 0, y: wide ? y + 14 : y - 6, class: "row-name" }, words);
+      draw("text", { x: 0, y: wide ? y + 14 : y - 16, class: "row-name" }, words);
       if (wide) draw("text", { x: 0, y: y + 34 }, unit);
     };
     const chart = { draw, hairline, tick, rowName, place, left, right, cell, stride, wide, first, span };
@@ -876,6 +876,8 @@
   document.addEventListener("keydown", (event) => {
     const combined = (event.ctrlKey || event.altKey || event.metaKey) && !event.getModifierState("AltGraph");
     if (event.defaultPrevented || combined || the("keys").open || isTyped(event)) return;
+    // A command wider than its box is read by arrows.
+    if (event.target.id === "command" && event.key.startsWith("Arrow")) return;
     const key =
       event.shiftKey && event.key === "ArrowLeft"
         ? "["
