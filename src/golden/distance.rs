@@ -23,7 +23,7 @@ const AT_LEAST: u64 = 8;
 const PART_OF_SILHOUETTES: f64 = 0.25;
 /// Of all others this part, measured as at most .05 %; and far from silhouettes never by more than the contrast that makes
 /// one, measured as 7. But what stands in one picture only, as a line or a mark that is drawn new, differs by more in
-/// [`AT_LEAST`] pixels at most, measured as none.
+/// [`AT_LEAST`] pixels at most, measured as 2.
 const PART_OF_INTERIORS: f64 = 1e-3;
 
 /// What is known of the machines that drew two pictures.
@@ -118,20 +118,20 @@ impl Distance {
             Machines::Same => Count { visible: self.unequal, ..self.counted },
             _ => self.counted,
         };
-        let limits = [Some(first), self.interiors, self.one_sided].into_iter().zip([u8::MAX, CONTRAST, u8::MAX]);
+        let limits = [Some(first), self.interiors, self.one_sided].into_iter().zip([None, Some(CONTRAST), None]);
         limits.filter_map(|(count, largest)| Some(Limit { count: count?, largest }))
     }
 }
 
-/// How many pixels may differ, and by how much.
+/// How many pixels may differ, and by how much if not by anything.
 struct Limit {
     count: Count,
-    largest: u8,
+    largest: Option<u8>,
 }
 
 impl Limit {
     fn is_kept(&self) -> bool {
-        self.count.visible <= self.count.allowed && self.count.largest <= self.largest
+        self.count.visible <= self.count.allowed && self.largest.is_none_or(|largest| self.count.largest <= largest)
     }
 
     /// How many of the pixels that may differ do.
@@ -144,9 +144,7 @@ impl Limit {
 
     /// How much is used of what is allowed, be it their number or their largest difference.
     fn used(&self) -> f64 {
-        // What may differ by anything comes never nearer by how much it does.
-        let strength =
-            if self.largest == u8::MAX { 0.0 } else { f64::from(self.count.largest) / f64::from(self.largest) };
+        let strength = self.largest.map_or(0.0, |largest| f64::from(self.count.largest) / f64::from(largest));
         self.part().max(strength)
     }
 }
