@@ -70,6 +70,11 @@ impl Body {
         self.rest.is_empty()
     }
 
+    /// The mass of the lightest node (kg).
+    pub fn lightest(&self) -> f64 {
+        self.mass.iter().fold(f64::INFINITY, |least, &mass| least.min(mass))
+    }
+
     /// The largest side of the box around the body at rest (m).
     pub fn extent(&self) -> f64 {
         let (low, high) = bounds(&self.rest);

@@ -46,6 +46,8 @@ struct Held {
     middle: DVec3,
     /// Where they are (m).
     now: Vec<DVec3>,
+    /// How fast the last step has moved them (m/s).
+    velocity: Vec<DVec3>,
 }
 
 impl Hand {
@@ -76,24 +78,34 @@ impl Hand {
     fn take(&mut self, position: &[DVec3]) {
         let gripped: Vec<_> = self.grip.nodes.iter().map(|&node| position[node as usize]).collect();
         let middle = gripped.iter().sum::<DVec3>() / gripped.len().max(1) as f64;
-        self.held = Some(Held { now: gripped.clone(), gripped, middle });
+        let velocity = vec![DVec3::ZERO; gripped.len()];
+        self.held = Some(Held { now: gripped.clone(), velocity, gripped, middle });
     }
 
-    /// Moves what it holds at the end of a step (s) that ends at a time (s). Whether it holds anything.
+    /// Moves what it holds at the end of a step (s) that ends at a time (s).
     ///
     /// A node's velocity is the way it has gone in the step, over the step: with that it flies on when it is let go.
-    pub(super) fn drag(&mut self, time: f64, step: f64, state: &mut State) -> bool {
+    pub(super) fn drag(&mut self, time: f64, step: f64, state: &mut State) {
         if !self.moves(time) {
-            return false;
+            return;
         }
-        let Some(Held { gripped, middle, now }) = &mut self.held else { return false };
+        let Some(Held { gripped, middle, now, velocity }) = &mut self.held else { return };
         let way = self.grip.way(time);
-        for ((&node, &start), now) in self.grip.nodes.iter().zip(&*gripped).zip(now) {
+        for (((&node, &start), now), velocity) in self.grip.nodes.iter().zip(&*gripped).zip(now).zip(velocity) {
             let to = way.apply(*middle, start);
-            state.velocity[node as usize] = (to - *now) / step;
-            state.position[node as usize] = to;
+            *velocity = (to - *now) / step;
             *now = to;
+            state.position[node as usize] = to;
+            state.velocity[node as usize] = *velocity;
         }
-        true
+    }
+
+    /// Gives what it holds at the end of a step that ends at a time (s) the hand's velocity again.
+    pub(super) fn hold(&self, time: f64, state: &mut State) {
+        if let Some(Held { velocity, .. }) = self.held.as_ref().filter(|_| self.moves(time)) {
+            for (&node, &velocity) in self.grip.nodes.iter().zip(velocity) {
+                state.velocity[node as usize] = velocity;
+            }
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::contact::Obstacle;
 use super::diagnose::Diagnose;
 use super::field::Field;
 use super::grip::{Grip, Hand};
-use super::integrate::{Integrator, Step, Stepper};
+use super::integrate::{Acting, Integrator, Step, Stepper};
 use super::model::{ElasticModel, ForceModel, Measure};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use glam::DVec3;
@@ -102,31 +102,11 @@ impl World {
         let Self { body, surroundings, stepping: Stepping { step, .. }, stepper, hands, forces_of, state, .. } = self;
         let (time, step) = ((self.steps + 1) as f64 * *step, *step);
         hands.iter_mut().for_each(|hand| hand.reach(time, state));
-        // Forces: gravity, then the elastic model's Eq. (1) or Eq. (4).
-        let mut forces_at = |state: &State, forces: &mut [DVec3]| {
-            for (force, &mass) in forces.iter_mut().zip(&body.mass) {
-                *force = surroundings.gravity * mass;
-            }
-            forces_of.add_forces(state, forces);
-        };
-        // Motion.
         let bounds = Step { mass: &body.mass, step, speed_limit: self.bounds.at(time) };
-        if let Err(runaway) = stepper.advance(&bounds, state, &mut forces_at) {
+        let mut acting = StepOfWorld { body, surroundings, forces_of: &mut **forces_of, hands, time, step };
+        if let Err(runaway) = stepper.advance(&bounds, state, &mut acting) {
             let element = body.elements.iter().position(|nodes| nodes.contains(&(runaway.node as u32)));
             self.status = Status::Diverged(Divergence { time, step: self.steps + 1, element });
-            return;
-        }
-        // Collisions.
-        let mut disturbed = false;
-        for obstacle in surroundings.obstacles.iter().map(|obstacle| obstacle.at(time, step)) {
-            disturbed |= obstacle.rebound_all(state);
-        }
-        // Hands.
-        for hand in hands {
-            disturbed |= hand.drag(time, step, state);
-        }
-        if disturbed {
-            stepper.disturbed();
         }
     }
 
@@ -145,9 +125,9 @@ impl World {
         self.status
     }
 
-    /// What the model says of the present state: its energy, and the error α of Eq. (18) with the rotations that forces
-    /// evaluated here would have. With both Euler methods the next step evaluates its forces here, so asked before each
-    /// step this is α at every evaluation of the forces. Costs about one evaluation, and changes nothing.
+    /// What the model says of the present state: its energy, and the error α of Eq. (18) with the rotations of the forces
+    /// here. Every integrator evaluates its forces here, so asked before each step this is α at every evaluation, with
+    /// velocity Verlet as with both Euler methods. Costs about one evaluation, and changes nothing.
     pub fn measure(&self) -> Measure {
         self.forces_of.measure(&self.state)
     }
@@ -174,6 +154,51 @@ impl World {
             field,
             diagnostics,
             status: self.status,
+        }
+    }
+}
+
+/// All that acts on the nodes in one step.
+struct StepOfWorld<'a> {
+    body: &'a Body,
+    surroundings: &'a Surroundings,
+    forces_of: &'a mut dyn ForceModel,
+    hands: &'a mut [Hand],
+    /// When the step ends (s).
+    time: f64,
+    /// How long it takes (s).
+    step: f64,
+}
+
+impl Acting for StepOfWorld<'_> {
+    /// Gravity, then the elastic model's Eq. (1) or Eq. (4).
+    fn forces(&mut self, state: &State, forces: &mut [DVec3]) {
+        for (force, &mass) in forces.iter_mut().zip(&self.body.mass) {
+            *force = self.surroundings.gravity * mass;
+        }
+        self.forces_of.add_forces(state, forces);
+    }
+
+    fn commit(&mut self) {
+        self.forces_of.commit();
+    }
+
+    fn is_damped(&self) -> bool {
+        self.forces_of.is_damped()
+    }
+
+    fn constrain(&mut self, state: &mut State, acceleration: Option<&[DVec3]>) {
+        for obstacle in &self.surroundings.obstacles {
+            obstacle.at(self.time, self.step).rebound_all(state, acceleration);
+        }
+        for hand in &mut *self.hands {
+            hand.drag(self.time, self.step, state);
+        }
+    }
+
+    fn hold(&mut self, state: &mut State) {
+        for hand in &*self.hands {
+            hand.hold(self.time, state);
         }
     }
 }
@@ -229,6 +254,5 @@ impl SpeedBounds {
 
 /// The cycle `T = 2π√(m/k)` (s) of a body's lightest node with stiffness `k` (N/m).
 pub fn cycle(body: &Body, stiffness: f64) -> f64 {
-    let lightest = body.mass.iter().fold(f64::INFINITY, |least, &mass| least.min(mass));
-    std::f64::consts::TAU * (lightest / stiffness).sqrt()
+    std::f64::consts::TAU * (body.lightest() / stiffness).sqrt()
 }

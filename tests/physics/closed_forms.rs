@@ -78,13 +78,13 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
 fn friction_brakes_by_the_impulse_of_the_rebound_and_never_reverses() {
     for (friction, kept) in [(0.0, 3.0), (0.2, 3.0 - 0.2 * 1.5 * 2.0), (10.0, 0.0)] {
         let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(0.0, -2.0, 3.0));
-        floor(0.5, friction).at(0.0, 1.0).rebound(&mut position, &mut velocity);
+        floor(0.5, friction).at(0.0, 1.0).rebound(&mut position, &mut velocity, DVec3::ZERO);
         assert!((position - DVec3::new(0.0, 0.005, 0.0)).length() < 1e-16);
         assert!((velocity - DVec3::new(0.0, 1.0, kept)).length() < 1e-14, "{friction}: {velocity}");
     }
     // A node that is already leaving is put out and keeps its velocity.
     let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(1.0, 2.0, 3.0));
-    floor(0.5, 0.3).at(0.0, 1.0).rebound(&mut position, &mut velocity);
+    floor(0.5, 0.3).at(0.0, 1.0).rebound(&mut position, &mut velocity, DVec3::ZERO);
     assert!((position.y - 0.005).abs() < 1e-17);
     assert_eq!(velocity, DVec3::new(1.0, 2.0, 3.0));
 }

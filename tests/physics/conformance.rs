@@ -225,6 +225,7 @@ fn rotations_are_followed_all_the_way_round() {
             let turn = glam::DQuat::from_axis_angle(axis, 0.04 * f64::from(step));
             last = vec![DVec3::ZERO; body.len()];
             worker.add_forces(&State::at_rest(body.rest.iter().map(|&rest| turn * rest).collect()), &mut last);
+            worker.commit();
         }
         let force = largest(&last);
         match forgets_turns {

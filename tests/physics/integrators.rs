@@ -1,15 +1,18 @@
 //! What each integrator does, against closed forms.
 
 use crate::conformance::{bodies, cases};
-use crate::support::{Noise, floor, free, lattice, mass_spring, shape_based, stepped};
+use crate::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
-use localshape::sim::body::{Dimension, State};
+use localshape::sim::body::{Body, Dimension, Solids, State};
+use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::motion::{Ease, Key, Motion, Place};
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 const STIFFNESS: f64 = 1e4;
 const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
@@ -134,6 +137,217 @@ fn contact_changes_momentum_along_its_normal_alone() {
             let drift = after.momentum - before.momentum;
             assert!(drift.x.abs() + drift.z.abs() < 1e-10, "{integrator:?} {model:?}: {drift}");
             assert!(after.momentum.y > before.momentum.y + 10.0, "it has bounced: {drift}");
+        }
+    }
+}
+
+/// The force that velocity Verlet remembers is that of where an obstacle has put the nodes, so each step equals the
+/// first one of a world that starts from the same state, to the bit.
+#[test]
+fn velocity_verlet_goes_on_as_if_it_began() {
+    let body = lattice(2, 0.1);
+    let around = Surroundings {
+        gravity: DVec3::new(0.0, -9.8, 0.0),
+        obstacles: vec![floor(0.5, 0.3)],
+        ..Surroundings::default()
+    };
+    let mut noise = Noise(8);
+    let start = State {
+        position: body.rest.iter().map(|&rest| rest + noise.vector() * 0.005 + DVec3::Y * 0.006).collect(),
+        velocity: vec![DVec3::new(0.2, -2.0, 0.1); body.len()],
+    };
+    let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 1e-3 };
+    for damping in [0.0, 20.0] {
+        let model = mass_spring(&body, STIFFNESS, damping, Springs::EdgesOneDiagonal);
+        let begin = |state: State| World::new(&body, state, &model, around.clone(), stepping);
+        let mut world = begin(start.clone());
+        let mut rebounds = 0;
+        for step in 1..=100 {
+            let before = world.state().clone();
+            let mut other = begin(before.clone());
+            world.advance(1);
+            other.advance(1);
+            assert!(world.state() == other.state(), "damping {damping}, step {step}");
+            let turned = |(old, new): (&DVec3, &DVec3)| old.y < -0.5 && new.y > 0.0;
+            rebounds += usize::from(before.velocity.iter().zip(&world.state().velocity).any(turned));
+        }
+        assert!(rebounds > 3, "{rebounds}");
+    }
+}
+
+/// With `e = 1` the energy of a node that bounces stays within round-off of what it was for 100 000 rebounds.
+#[test]
+fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
+    let nodes = body(Dimension::Space, &[[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], &[&[0, 1]]);
+    let (height, g) = (0.05, 9.8);
+    let around = Surroundings {
+        gravity: DVec3::new(0.0, -g, 0.0),
+        obstacles: vec![floor(1.0, 0.0)],
+        ..Surroundings::default()
+    };
+    let start = State::at_rest(nodes.rest.iter().map(|&rest| rest + DVec3::Y * height).collect());
+    let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 0.01 };
+    let mut world = World::new(&nodes, start, &shape_based(1.0, 0.0), around, stepping);
+    let (mut rebounds, mut last) = (0, 0.0);
+    while rebounds < 100_000 {
+        world.advance(1);
+        let State { position, velocity } = world.state();
+        let energy = 0.5 * velocity[0].y * velocity[0].y + g * position[0].y;
+        assert!((energy / (g * height) - 1.0).abs() < 1e-9, "after {rebounds} rebounds: {energy}");
+        rebounds += usize::from(last < 0.0 && velocity[0].y > 0.0);
+        last = velocity[0].y;
+    }
+}
+
+/// A damped body that stands on a floor comes to rest, with every restitution: with velocity Verlet altogether.
+#[test]
+fn a_damped_body_on_a_floor_comes_to_rest() {
+    let body = lattice(2, 0.1);
+    for restitution in [0.0, 0.5, 1.0] {
+        let around = Surroundings {
+            gravity: DVec3::new(0.0, -9.8, 0.0),
+            obstacles: vec![floor(restitution, 0.3)],
+            ..Surroundings::default()
+        };
+        let model = shape_based(STIFFNESS, 20.0);
+        let start = State::at_rest(body.rest.clone());
+        let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 1e-3 };
+        let mut world = World::new(&body, start, &model, around, stepping);
+        let energy = |world: &World| {
+            let now = world.diagnostics();
+            now.kinetic + now.elastic + now.gravitational
+        };
+        let mut before = energy(&world);
+        for _ in 0..20 {
+            world.advance(1000);
+            let now = energy(&world);
+            assert!(now < before + 1e-9 * before.abs(), "restitution {restitution}: {before} {now}");
+            before = now;
+        }
+        let fastest = world.state().velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
+        assert!(fastest < 1e-12, "restitution {restitution}: {fastest:e}");
+    }
+}
+
+/// `dV/dt = −c V` alone: stable as far as `c ΔT = 2`, with velocity Verlet as with both Euler methods.
+#[test]
+fn the_damping_limit_is_the_same_for_every_method() {
+    let pair = body(Dimension::Space, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[&[0, 1]]);
+    let start = State { position: pair.rest.clone(), velocity: vec![DVec3::Y * 1e-3, DVec3::Y * -1e-3] };
+    let damping = 5.0;
+    for integrator in ALL {
+        let is_stable = |step: f64| {
+            // Soft enough that elasticity has no part in it.
+            let mut world = stepped(&pair, start.clone(), &shape_based(1e-9, damping), integrator, step);
+            world.advance(2000);
+            world.state().velocity[0].length() < 2e-3
+        };
+        let (mut stable, mut unstable) = (0.01, 1.0);
+        while unstable - stable > 1e-4 {
+            let middle = 0.5 * (stable + unstable);
+            *if is_stable(middle) { &mut stable } else { &mut unstable } = middle;
+        }
+        assert!((stable * damping / 2.0 - 1.0).abs() < 0.01, "{integrator:?}: {}", stable * damping);
+    }
+}
+
+/// Eq. (18) is about the rotations of the forces at a state, so where states are the same it is the same for every way of
+/// stepping: here every node of a cube is turned by a hand, further each step than one pass can follow exactly.
+#[test]
+fn the_residual_means_the_same_for_every_method() {
+    let body = lattice(1, 0.1);
+    let keys = vec![
+        Key { time: 0.0, place: Place::default() },
+        Key { time: 1.0, place: Place { shift: DVec3::ZERO, turn: DVec3::new(3.0, 10.0, -4.0) } },
+    ];
+    let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
+    let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
+    let mut noise = Noise(11);
+    let start = State::at_rest(body.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect());
+    for damping in [0.0, 20.0] {
+        let model = ShapeBased { passes: 1, ..shape_based(STIFFNESS, damping) };
+        let residuals = ALL.map(|integrator| {
+            let around = Surroundings { grips: vec![grip.clone()], ..Surroundings::default() };
+            let stepping = Stepping { integrator, step: 0.01 };
+            let mut world = World::new(&body, start.clone(), &model, around, stepping);
+            let mut residuals = vec![];
+            for _ in 0..50 {
+                world.advance(1);
+                residuals.push(world.measure().residual.expect("the shape model has one"));
+            }
+            residuals
+        });
+        assert!(residuals[0].iter().all(|&residual| residual > 1e-3), "{:?}", residuals[0]);
+        assert_eq!(residuals[0], residuals[1]);
+        assert_eq!(residuals[0], residuals[2]);
+    }
+}
+
+/// What a hand holds has the hand's velocity at the end of a step, whatever forces act on it.
+#[test]
+fn held_nodes_have_the_velocity_of_the_hand() {
+    let body = lattice(2, 0.1);
+    let keys = vec![
+        Key { time: 0.0, place: Place::default() },
+        Key { time: 1.0, place: Place { shift: DVec3::new(0.3, 0.1, 0.0), turn: DVec3::ZERO } },
+    ];
+    let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
+    let grip = Grip { nodes: vec![0, 5, 9], from: 0.0, until: 1.0, motion };
+    for integrator in ALL {
+        let around =
+            Surroundings { gravity: DVec3::new(0.0, -9.8, 0.0), grips: vec![grip.clone()], ..Surroundings::default() };
+        let start = State::at_rest(body.rest.clone());
+        let mut world =
+            World::new(&body, start, &shape_based(STIFFNESS, 5.0), around, Stepping { integrator, step: 1e-3 });
+        for _ in 0..100 {
+            world.advance(1);
+            for node in [0, 5, 9] {
+                let off = world.state().velocity[node] - DVec3::new(0.3, 0.1, 0.0);
+                assert!(off.length() < 1e-11, "{integrator:?}: {off}");
+            }
+        }
+    }
+}
+
+/// At rest a node goes on bouncing with semi-implicit Euler. Falling back it is faster by `A ΔT` at most than it left, with
+/// `A` the acceleration with which what rests on it presses it down: so it leaves with `e/(1 − e) A ΔT` at most. `A` is at
+/// most `g` times the mass of the body over that of the node. With velocity Verlet it comes to rest.
+#[test]
+fn the_jitter_at_rest_has_the_bound_of_the_load() {
+    let (g, step) = (9.8, 1e-3);
+    let cases = (1..4).flat_map(|seed| [0.0, 0.3, 0.5, 0.7, 0.9].map(|restitution| (seed, restitution)));
+    for (seed, restitution) in cases {
+        let cells = lattice(2, 0.1);
+        let mut noise = Noise(seed);
+        let turn = noise.rotation();
+        let rest: Vec<_> = cells.rest.iter().map(|&rest| turn * (rest + noise.vector() * 0.02)).collect();
+        let lowest = rest.iter().map(|rest| rest.y).fold(f64::INFINITY, f64::min);
+        let rest: Vec<_> = rest.into_iter().map(|rest| rest - DVec3::Y * lowest).collect();
+        let mass: Vec<_> = rest.iter().map(|_| 1.0 + 0.5 * noise.next()).collect();
+        let irregular =
+            Arc::new(Body::new(Dimension::Space, rest.clone(), mass, cells.elements.clone(), Solids::Ordered, None));
+        let whole: f64 = irregular.mass.iter().sum();
+        let around = Surroundings {
+            gravity: DVec3::new(0.0, -g, 0.0),
+            obstacles: vec![floor(restitution, 0.5)],
+            ..Surroundings::default()
+        };
+        for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet] {
+            let model = shape_based(STIFFNESS, 20.0);
+            let start = State::at_rest(rest.clone());
+            let mut world = World::new(&irregular, start, &model, around.clone(), Stepping { integrator, step });
+            world.advance(30_000);
+            for _ in 0..100 {
+                world.advance(1);
+                for (velocity, mass) in world.state().velocity.iter().zip(&irregular.mass) {
+                    let bound = match integrator {
+                        Integrator::VelocityVerlet => 0.0,
+                        _ => restitution / (1.0 - restitution) * g * whole / mass * step,
+                    };
+                    let speed = velocity.length();
+                    assert!(speed < bound + 1e-8, "{integrator:?}, e = {restitution}: {speed:e} of {bound:e} m/s");
+                }
+            }
         }
     }
 }

@@ -84,34 +84,46 @@ impl Placed<'_> {
     /// The velocity is the way that the obstacle's own point has gone in the last step, over the step: what the steps
     /// of the nodes call velocity, too.
     pub fn contact(&self, point: DVec3) -> Option<(Contact, DVec3)> {
-        let Some(moving) = &self.moving else { return Some((self.obstacle.shape.contact(point)?, DVec3::ZERO)) };
-        let own = moving.now.undo(moving.pivot, point);
-        let Contact { depth, normal } = self.obstacle.shape.contact(own)?;
+        self.within(point, |_| 0.0)
+    }
+
+    /// The same for points that are less than `margin` outside, of the obstacle's own place of the point (m).
+    fn within(&self, point: DVec3, margin: impl FnOnce(DVec3) -> f64) -> Option<(Contact, DVec3)> {
+        let shape = &self.obstacle.shape;
+        let own = self.moving.as_ref().map_or(point, |moving| moving.now.undo(moving.pivot, point));
+        let Contact { depth, normal } = shape.surface(own);
+        if depth <= -margin(own) {
+            return None;
+        }
+        let Some(moving) = &self.moving else { return Some((Contact { depth, normal }, DVec3::ZERO)) };
         let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
         Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
     }
 
-    /// The rebound of all nodes; see [`Self::rebound`]. Whether there was any.
-    pub fn rebound_all(&self, state: &mut State) -> bool {
-        let nodes = state.position.iter_mut().zip(&mut state.velocity);
+    /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is that of each node (m/s²); `None` for nodes that
+    /// have moved at constant velocity.
+    pub fn rebound_all(&self, state: &mut State, acceleration: Option<&[DVec3]>) {
+        let acceleration = |node: usize| acceleration.map_or(DVec3::ZERO, |all| all[node]);
+        let nodes = state.position.iter_mut().zip(&mut state.velocity).enumerate();
         match (&self.moving, &self.obstacle.shape) {
             // Nearly every scene stands on one, and most of its nodes are far above: its shape is asked for only once.
-            (None, &Shape::Floor { normal, height }) => nodes.fold(false, |any, (position, velocity)| {
+            (None, shape @ &Shape::Floor { normal, height }) => nodes.for_each(|(node, (position, velocity))| {
                 let depth = height - normal.dot(*position);
-                if depth > 0.0 {
-                    self.obstacle.push_out(Contact { depth, normal }, DVec3::ZERO, position, velocity);
+                if depth > -shape.round_off(*position) {
+                    let contact = Contact { depth, normal };
+                    self.obstacle.push_out(contact, DVec3::ZERO, acceleration(node), position, velocity);
                 }
-                any | (depth > 0.0)
             }),
-            _ => nodes.fold(false, |any, (position, velocity)| any | self.rebound(position, velocity)),
+            _ => nodes.for_each(|(node, (position, velocity))| self.rebound(position, velocity, acceleration(node))),
         }
     }
 
-    /// The rebound of one node: mirrored out with restitution, its slip braked by friction. Whether there was one.
-    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3) -> bool {
-        let Some((contact, own)) = self.contact(*position) else { return false };
-        self.obstacle.push_out(contact, own, position, velocity);
-        true
+    /// The rebound of one node that has moved in the step with an acceleration (m/s²): mirrored out with restitution, its
+    /// slip braked by friction. A node on the surface, to round-off, rebounds if it approaches.
+    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
+        if let Some((contact, own)) = self.within(*position, |place| self.obstacle.shape.round_off(place)) {
+            self.obstacle.push_out(contact, own, acceleration, position, velocity);
+        }
     }
 }
 
@@ -121,17 +133,59 @@ impl Obstacle {
     /// A node found at depth `d` is put at height `e d`; only if it is approaching, its normal velocity `v_n` becomes
     /// `−e v_n`. Friction comes from that change: it takes at most `μ |Δv_n|` from the velocity along the surface
     /// and never reverses it. All velocities are relative to the obstacle's own (m/s).
-    fn push_out(&self, Contact { depth, normal }: Contact, own: DVec3, position: &mut DVec3, velocity: &mut DVec3) {
+    fn push_out(
+        &self,
+        Contact { depth, normal }: Contact,
+        own: DVec3,
+        acceleration: DVec3,
+        position: &mut DVec3,
+        velocity: &mut DVec3,
+    ) {
         let Self { restitution, friction, .. } = *self;
-        *position += normal * (depth * (1.0 + restitution));
         let relative = *velocity - own;
         let approach = -normal.dot(relative);
         if approach > 0.0 {
-            let change = (1.0 + restitution) * approach;
+            let Bounce { height, speed } = Bounce::new(restitution, depth, approach, -normal.dot(acceleration));
+            *position += normal * (depth + height);
+            let change = approach + speed;
             let slip = relative + normal * approach;
-            let speed = slip.length();
-            let kept = if speed > 0.0 { (1.0 - friction * change / speed).max(0.0) } else { 0.0 };
-            *velocity = slip * kept + normal * (restitution * approach) + own;
+            let slip_speed = slip.length();
+            let kept = if slip_speed > 0.0 { (1.0 - friction * change / slip_speed).max(0.0) } else { 0.0 };
+            *velocity = slip * kept + normal * speed + own;
+        } else if depth > 0.0 {
+            *position += normal * (depth * (1.0 + restitution));
+        }
+    }
+}
+
+/// Where a node that approaches the surface is after its rebound.
+struct Bounce {
+    /// Above the surface (m).
+    height: f64,
+    /// Away from the surface (m/s).
+    speed: f64,
+}
+
+impl Bounce {
+    /// From the restitution coefficient `e`, the depth (m) and speed (m/s) with which the node was found, and the
+    /// acceleration into the surface (m/s²) with which it has moved in the step.
+    ///
+    /// At constant velocity: height `e d`, speed `e v`. An acceleration `a` has made the node faster on its way from the
+    /// surface to where it was found, and brakes it on its way up: it hit the surface with `v² − 2 a d`, left it with `e²`
+    /// of that, and at height `e d` has `2 a e d` less. A node that does not come so high is put where it turns round. So
+    /// with `e = 1` its energy under a constant force stays as it was, however long the step; the paper's `−e v` alone
+    /// would add `m a v ΔT` with every bounce.
+    fn new(e: f64, depth: f64, approach: f64, pressing: f64) -> Self {
+        if pressing == 0.0 {
+            return Self { height: e * depth, speed: e * approach };
+        }
+        let hit = (approach * approach - 2.0 * pressing * depth).max(0.0);
+        let left = e * e * hit;
+        let speed = left - 2.0 * pressing * (e * depth);
+        if speed >= 0.0 {
+            Self { height: e * depth, speed: speed.sqrt() }
+        } else {
+            Self { height: left / (2.0 * pressing), speed: 0.0 }
         }
     }
 }

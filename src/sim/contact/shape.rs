@@ -51,15 +51,20 @@ pub enum Shape {
 /// How a point lies in an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Distance to the nearest point of the surface (m), positive inside.
+    /// Distance to the surface (m), positive inside, negative outside.
     pub depth: f64,
-    /// Unit vector from the point to that point of the surface, out of the obstacle.
+    /// Unit vector out of the obstacle, at right angles to the surface.
     pub normal: DVec3,
 }
 
 impl Shape {
     /// The depth of a point below the surface; `None` outside and on it.
     pub fn contact(&self, point: DVec3) -> Option<Contact> {
+        Some(self.surface(point)).filter(|contact| contact.depth > 0.0)
+    }
+
+    /// The depth of a point below the surface, or how far above it is: near the surface of a box, else anywhere.
+    pub(super) fn surface(&self, point: DVec3) -> Contact {
         let (depth, normal) = match *self {
             Self::Floor { normal, height } => (height - normal.dot(point), normal),
             Self::Plate { point: surface, normal } => (normal.dot(surface - point), normal),
@@ -79,7 +84,18 @@ impl Shape {
                 (depths[axis], turn * (DVec3::AXES[axis] * sign))
             }
         };
-        (depth > 0.0).then_some(Contact { depth, normal })
+        Contact { depth, normal }
+    }
+
+    /// By how much round-off may put a point that lies on the surface to one side of it (m).
+    pub(super) fn round_off(&self, point: DVec3) -> f64 {
+        /// Roundings of a depth, and of the place of a node that was put on the surface, with a margin of two.
+        const ROUNDINGS: f64 = 16.0;
+        let size = match *self {
+            Self::Floor { height, .. } => height.abs(),
+            _ => self.middle().abs().max_element() + Some(self.reach()).filter(|reach| reach.is_finite()).unwrap_or(0.0),
+        };
+        ROUNDINGS * f64::EPSILON * (size + point.abs().max_element())
     }
 
     /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.

@@ -19,8 +19,8 @@ pub enum Integrator {
     /// Eqs. (2) and (3) as printed, the second with the old velocity. It gains energy without bound and is here for
     /// study: at ΔT = T/10 an oscillation grows by 18 % a step.
     ExplicitEuler,
-    /// Velocity Verlet: symplectic without damping, of second order. It evaluates the forces once a step, and twice after
-    /// a step in which an obstacle or a hand has moved nodes.
+    /// Velocity Verlet: symplectic without damping, of second order. It evaluates the forces once a step, and twice with
+    /// damping.
     VelocityVerlet,
 }
 
@@ -41,8 +41,24 @@ pub(super) struct Step<'a> {
     pub(super) speed_limit: f64,
 }
 
-/// Writes the forces (N) at a state.
-pub(super) type Evaluate<'a> = dyn FnMut(&State, &mut [DVec3]) + 'a;
+/// What acts on the nodes in a step.
+pub(super) trait Acting {
+    /// Writes the forces (N) at a state.
+    fn forces(&mut self, state: &State, forces: &mut [DVec3]);
+
+    /// Makes what the last evaluation of the forces found the memory from which the next one starts.
+    fn commit(&mut self);
+
+    /// Whether the forces depend on velocities.
+    fn is_damped(&self) -> bool;
+
+    /// Collisions and hands at the end of the step. `acceleration` (m/s²) is that with which each node has moved in the
+    /// step; `None` if it has moved at constant velocity.
+    fn constrain(&mut self, state: &mut State, acceleration: Option<&[DVec3]>);
+
+    /// Gives the nodes that hands hold the velocities of the hands again.
+    fn hold(&mut self, state: &mut State);
+}
 
 /// An integrator at work, with the memory it needs.
 pub(super) enum Stepper {
@@ -79,24 +95,20 @@ impl Stepper {
         &mut self,
         step: &Step<'_>,
         state: &mut State,
-        evaluate: &mut Evaluate<'_>,
+        acting: &mut dyn Acting,
     ) -> Result<(), Runaway> {
         match self {
             Self::Euler { order, scratch } => {
-                evaluate(state, scratch);
+                acting.forces(state, scratch);
+                acting.commit();
                 match order {
-                    Order::NewVelocity => semi_implicit_euler::advance(step, state, scratch),
-                    Order::OldVelocity => explicit_euler::advance(step, state, scratch),
+                    Order::NewVelocity => semi_implicit_euler::advance(step, state, scratch)?,
+                    Order::OldVelocity => explicit_euler::advance(step, state, scratch)?,
                 }
+                acting.constrain(state, None);
+                Ok(())
             }
-            Self::VelocityVerlet(memory) => velocity_verlet::advance(step, state, memory, evaluate),
-        }
-    }
-
-    /// Takes note that nodes were moved by something else than forces: what is remembered of them holds no longer.
-    pub(super) fn disturbed(&mut self) {
-        if let Self::VelocityVerlet(memory) = self {
-            memory.forget();
+            Self::VelocityVerlet(memory) => velocity_verlet::advance(step, state, memory, acting),
         }
     }
 }

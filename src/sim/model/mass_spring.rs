@@ -26,7 +26,7 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mean mass of a node.
+    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
@@ -180,6 +180,10 @@ impl ForceModel for Lattice {
             );
         });
         gather.add(spring_forces, forces);
+    }
+
+    fn is_damped(&self) -> bool {
+        self.model.damping > 0.0
     }
 
     fn measure(&self, state: &State) -> Measure {

@@ -109,11 +109,17 @@ pub trait ElasticModel: Debug + Send + Sync {
 
 /// The internal forces of a body. It may keep a memory, such as the last rotation of each element.
 pub trait ForceModel: Send {
-    /// Adds elastic and damping forces (N) to `forces`, one per node. This is the one call that may change the
-    /// memory of the model.
+    /// Adds elastic and damping forces (N) to `forces`, one per node. The same state gives the same forces however often
+    /// it is asked about: what an evaluation finds becomes the model's memory only with [`Self::commit`].
     fn add_forces(&mut self, state: &State, forces: &mut [DVec3]);
 
-    /// Energy and errors at a state, without changing the memory.
+    /// Makes what the last evaluation of the forces found the memory from which the next one starts.
+    fn commit(&mut self) {}
+
+    /// Whether the forces depend on velocities.
+    fn is_damped(&self) -> bool;
+
+    /// Energy and errors at a state, with the rotations that an evaluation of the forces there finds.
     fn measure(&self, state: &State) -> Measure;
 
     /// Adds to each node its part of the elastic energy (J); see [`Field::ElasticEnergy`](super::field::Field).
@@ -129,7 +135,9 @@ pub struct Measure {
     pub residual: Option<f64>,
 }
 
-/// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0.
+/// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0. `m` is the
+/// mass of the lightest node, as in the cycle of which a step is a fraction: so a ratio and a fraction that are stable
+/// together stay so whatever the other masses are.
 fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
     match (constant, ratio) {
         (Some(_), Some(_)) => {
@@ -138,8 +146,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
         }
         (Some(constant), None) => Ok(constant),
         (None, Some(ratio)) => {
-            let mean_mass = body.mass.iter().sum::<f64>() / body.len() as f64;
-            Ok(2.0 * ratio * (stiffness * mean_mass).sqrt())
+            Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt())
         }
         (None, None) => Ok(0.0),
     }
@@ -149,8 +156,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
     let mut text = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
     if damping > 0.0 {
-        let mean_mass = body.mass.iter().sum::<f64>() / body.len() as f64;
-        let ratio = damping / (2.0 * (stiffness * mean_mass).sqrt());
+        let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
         text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
     }
     text

@@ -30,7 +30,7 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mean mass of a node.
+    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
@@ -167,11 +167,31 @@ impl ShapeBased {
 #[derive(Clone, Debug)]
 enum Rotations {
     /// `(cos θ, sin θ)` of each element in the plane.
-    Plane(Vec<DVec2>),
+    Plane(Memory<DVec2>),
     /// The unit quaternion of each element in space.
-    Space(Vec<DQuat>),
+    Space(Memory<DQuat>),
     /// The matrix of each element under Eq. (16), which is no rotation for long.
-    Linear(Vec<DMat3>),
+    Linear(Memory<DMat3>),
+}
+
+/// One entry per element.
+#[derive(Clone, Debug)]
+struct Memory<T> {
+    /// From what an evaluation of the forces starts.
+    last: Vec<T>,
+    /// What the last evaluation found.
+    found: Vec<T>,
+}
+
+impl<T: Clone> Memory<T> {
+    fn new(start: impl Iterator<Item = T>) -> Self {
+        let last: Vec<_> = start.collect();
+        Self { found: last.clone(), last }
+    }
+
+    fn commit(&mut self) {
+        std::mem::swap(&mut self.last, &mut self.found);
+    }
 }
 
 /// A body's elements at work.
@@ -206,12 +226,12 @@ impl Elements {
         };
         let all = 0..elements.len();
         let rotations = match body.dimension {
-            Dimension::Plane => Rotations::Plane(all.map(|e| planar::solve(at_rest(e), DVec2::X)).collect()),
+            Dimension::Plane => Rotations::Plane(Memory::new(all.map(|e| planar::solve(at_rest(e), DVec2::X)))),
             Dimension::Space => {
                 let turns = all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY));
                 match model.rotation {
-                    RotationReading::LinearUpdate => Rotations::Linear(turns.map(DMat3::from_quat).collect()),
-                    _ => Rotations::Space(turns.collect()),
+                    RotationReading::LinearUpdate => Rotations::Linear(Memory::new(turns.map(DMat3::from_quat))),
+                    _ => Rotations::Space(Memory::new(turns)),
                 }
             }
         };
@@ -220,12 +240,12 @@ impl Elements {
         Self { model, body: Arc::clone(body), rest, inertia, rotations, corner_forces, gather }
     }
 
-    /// The rotation of one element at `state`, and what the next evaluation will start from.
+    /// The rotation that an evaluation of the forces finds for one element.
     fn rotation(&self, element: usize, at_rest: DMat3) -> DMat3 {
         match &self.rotations {
-            Rotations::Plane(last) => planar::matrix(planar::solve(at_rest, last[element])),
-            Rotations::Space(last) => DMat3::from_quat(self.model.follow(at_rest, last[element])),
-            Rotations::Linear(last) => linear_update::follow(at_rest, last[element], self.model.passes),
+            Rotations::Plane(memory) => planar::matrix(planar::solve(at_rest, memory.last[element])),
+            Rotations::Space(memory) => DMat3::from_quat(self.model.follow(at_rest, memory.last[element])),
+            Rotations::Linear(memory) => linear_update::follow(at_rest, memory.last[element], self.model.passes),
         }
     }
 
@@ -249,26 +269,44 @@ impl ForceModel for Elements {
         let Self { model, body, rest, rotations, corner_forces, gather, .. } = self;
         let evaluate = Evaluate { model, body, rest, state };
         match rotations {
-            Rotations::Plane(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
-                evaluate.element(element, out, |at_rest| {
-                    *last = planar::solve(at_rest, *last);
-                    planar::matrix(*last)
+            Rotations::Plane(Memory { last, found }) => {
+                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
+                    evaluate.element(element, out, |at_rest| {
+                        *found = planar::solve(at_rest, last[element]);
+                        planar::matrix(*found)
+                    });
                 });
-            }),
-            Rotations::Space(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
-                evaluate.element(element, out, |at_rest| {
-                    *last = model.follow(at_rest, *last);
-                    DMat3::from_quat(*last)
+            }
+            Rotations::Space(Memory { last, found }) => {
+                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
+                    evaluate.element(element, out, |at_rest| {
+                        *found = model.follow(at_rest, last[element]);
+                        DMat3::from_quat(*found)
+                    });
                 });
-            }),
-            Rotations::Linear(last) => blocks::for_each(&body.elements, last, corner_forces, &|element, last, out| {
-                evaluate.element(element, out, |at_rest| {
-                    *last = linear_update::follow(at_rest, *last, model.passes);
-                    *last
+            }
+            Rotations::Linear(Memory { last, found }) => {
+                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
+                    evaluate.element(element, out, |at_rest| {
+                        *found = linear_update::follow(at_rest, last[element], model.passes);
+                        *found
+                    });
                 });
-            }),
+            }
         }
         gather.add(corner_forces, forces);
+    }
+
+    fn commit(&mut self) {
+        match &mut self.rotations {
+            Rotations::Plane(memory) => memory.commit(),
+            Rotations::Space(memory) => memory.commit(),
+            Rotations::Linear(memory) => memory.commit(),
+        }
+    }
+
+    fn is_damped(&self) -> bool {
+        self.model.damping > 0.0
     }
 
     fn measure(&self, state: &State) -> Measure {
