@@ -30,7 +30,7 @@ const PART_OF_INTERIORS: f64 = 1e-3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Machines {
-    /// The same adapter with the same driver: not a byte may differ.
+    /// The same adapter with the same driver, for software on the same type of processor: not a byte may differ.
     Same,
     /// Adapters of one kind, or nobody knows.
     OneKind,

@@ -1,6 +1,7 @@
 //! The graphics device: one handle, typed buffers and the way back of pixels. It knows nothing about what is drawn.
 
 mod buffer;
+mod processor;
 mod read_back;
 
 pub use buffer::GrowingBuffer;
@@ -60,6 +61,8 @@ pub struct AdapterDescription {
     pub driver_info: String,
     /// `cpu`, `integrated gpu`, `discrete gpu`, `virtual gpu` or `other`.
     pub device_type: String,
+    /// For `cpu` the processor, which decides about the last bit of a pixel; empty if the system does not say.
+    pub processor: String,
 }
 
 impl AdapterDescription {
@@ -77,6 +80,7 @@ impl AdapterDescription {
             driver: info.driver.clone(),
             driver_info: info.driver_info.clone(),
             device_type: device_type.to_owned(),
+            processor: if info.device_type == wgpu::DeviceType::Cpu { processor::processor() } else { String::new() },
         }
     }
 }
@@ -84,7 +88,7 @@ impl AdapterDescription {
 impl fmt::Display for AdapterDescription {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{} ({}, {}", self.name, self.device_type, self.backend)?;
-        for more in [&self.driver, &self.driver_info].into_iter().filter(|more| !more.is_empty()) {
+        for more in [&self.driver, &self.driver_info, &self.processor].into_iter().filter(|more| !more.is_empty()) {
             write!(out, ", {more}")?;
         }
         out.write_str(")")
@@ -285,6 +289,7 @@ mod tests {
             driver: "driver".into(),
             driver_info: String::new(),
             device_type: device_type.into(),
+            processor: String::new(),
         }
     }
 

@@ -180,11 +180,8 @@ fn velocity_verlet_goes_on_as_if_it_began() {
 fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
     let nodes = body(Dimension::Space, &[[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], &[&[0, 1]]);
     let (height, g) = (0.05, 9.8);
-    let around = Surroundings {
-        gravity: DVec3::new(0.0, -g, 0.0),
-        obstacles: vec![floor(1.0, 0.0)],
-        ..Surroundings::default()
-    };
+    let around =
+        Surroundings { gravity: DVec3::new(0.0, -g, 0.0), obstacles: vec![floor(1.0, 0.0)], ..Surroundings::default() };
     let start = State::at_rest(nodes.rest.iter().map(|&rest| rest + DVec3::Y * height).collect());
     let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 0.01 };
     let mut world = World::new(&nodes, start, &shape_based(1.0, 0.0), around, stepping);

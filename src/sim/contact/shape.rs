@@ -93,7 +93,9 @@ impl Shape {
         const ROUNDINGS: f64 = 16.0;
         let size = match *self {
             Self::Floor { height, .. } => height.abs(),
-            _ => self.middle().abs().max_element() + Some(self.reach()).filter(|reach| reach.is_finite()).unwrap_or(0.0),
+            _ => {
+                self.middle().abs().max_element() + Some(self.reach()).filter(|reach| reach.is_finite()).unwrap_or(0.0)
+            }
         };
         ROUNDINGS * f64::EPSILON * (size + point.abs().max_element())
     }

@@ -145,9 +145,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
             Err(Misfit { key: "damping_ratio", message: message.into() })
         }
         (Some(constant), None) => Ok(constant),
-        (None, Some(ratio)) => {
-            Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt())
-        }
+        (None, Some(ratio)) => Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt()),
         (None, None) => Ok(0.0),
     }
 }

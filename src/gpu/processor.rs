@@ -1,0 +1,39 @@
+//! Which processor draws where there is no GPU. Software drivers compile their shaders for it, and square roots and
+//! quotients that they approximate come out otherwise on another one: some pixels differ by 1 of 255.
+
+/// The processor in a few words, such as `GenuineIntel 6 167 avx512f`; empty where the system does not say.
+pub(super) fn processor() -> String {
+    std::fs::read_to_string("/proc/cpuinfo").map(|text| described(&text)).unwrap_or_default()
+}
+
+/// The same from the text of `/proc/cpuinfo`, whose first paragraph is about the first processor.
+fn described(text: &str) -> String {
+    /// Maker and type on x86, and on Arm.
+    const KEYS: [&str; 6] = ["vendor_id", "cpu family", "model", "CPU implementer", "CPU architecture", "CPU part"];
+    /// Of these the widest set counts: a virtual machine may hide what the processor has.
+    const VECTORS: [&str; 4] = ["avx512f", "avx2", "avx", "sve"];
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let value = |wanted: &str| {
+        let mut pairs = first.lines().filter_map(|line| line.split_once(':'));
+        pairs.find(|(key, _)| key.trim() == wanted).map(|(_, value)| value.trim())
+    };
+    let flags = value("flags").or(value("Features")).unwrap_or_default();
+    let vectors = VECTORS.into_iter().find(|vectors| flags.split(' ').any(|flag| flag == *vectors));
+    KEYS.into_iter().filter_map(value).chain(vectors).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn processors_are_described_by_maker_type_and_vectors() {
+        let intel = "processor\t: 0\nvendor_id\t: GenuineIntel\ncpu family\t: 6\nmodel\t\t: 167\nmodel name\t: Xeon\n\
+                     flags\t\t: fpu avx avx2 avx512f\n\nprocessor\t: 1\nvendor_id\t: Other\n";
+        assert_eq!(described(intel), "GenuineIntel 6 167 avx512f");
+        assert_eq!(described(&intel.replace(" avx512f", "")), "GenuineIntel 6 167 avx2");
+        let arm = "processor\t: 0\nFeatures\t: fp asimd sve\nCPU implementer\t: 0x41\nCPU architecture: 8\nCPU part\t: 0xd40\n";
+        assert_eq!(described(arm), "0x41 8 0xd40 sve");
+        assert_eq!(described(""), "");
+    }
+}
