@@ -246,6 +246,15 @@ mod tests {
     }
 
     #[test]
+    fn an_element_turns_over_a_billionth_below_zero() {
+        for at_rest in [1.0, 2e-6, -3.0] {
+            assert!(!is_turned_over(-0.99e-9 * at_rest, at_rest));
+            assert!(is_turned_over(-1.01e-9 * at_rest, at_rest));
+        }
+        assert!(!is_turned_over(-1.0, 0.0), "what has no volume cannot turn over");
+    }
+
+    #[test]
     fn hulls_count_with_their_own_volume() {
         // An octahedron of volume 4/3, squashed to a half, above a cube of volume 1 that keeps its shape.
         let octahedron = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];

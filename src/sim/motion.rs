@@ -214,6 +214,21 @@ mod tests {
     }
 
     #[test]
+    fn a_swing_starts_at_its_phase() {
+        let amplitude = Place { shift: DVec3::X, turn: DVec3::Z * 0.4 };
+        for (phase, share) in [(0.0, 0.0), (0.5 * PI, 1.0), (PI / 6.0, 0.5), (-0.5 * PI, -1.0)] {
+            let swing = Motion::Swing { period: 0.8, phase, amplitude };
+            for time in [0.0, 0.8, 8.0] {
+                let pose = swing.pose(time);
+                assert!((pose.shift - DVec3::X * share).length() < 1e-13, "{phase} {time}: {}", pose.shift);
+                assert!(pose.turn.angle_between(DQuat::from_rotation_z(0.4 * share)) < 1e-7, "{phase} {time}");
+            }
+            let quarter = (phase + 0.5 * PI).sin();
+            assert!((swing.pose(0.2).shift.x - quarter).abs() < 1e-13);
+        }
+    }
+
+    #[test]
     fn a_smooth_stroke_follows_a_cosine() {
         let keys = vec![key(0.0, 0.0, 0.0), key(0.2, 0.22, 0.0), key(0.4, 0.0, 0.0)];
         let path = Motion::Keys { keys, ease: Ease::Smooth, repeat: true };

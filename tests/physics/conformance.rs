@@ -249,6 +249,62 @@ fn the_energy_of_the_nodes_is_that_of_the_body() {
     });
 }
 
+/// Each node sums what acts on it in the order of the elements or springs, to the bit: so states do not depend on how the
+/// work is shared out, and goldens are the same for every version that keeps this order.
+#[test]
+fn a_node_sums_its_forces_in_the_order_of_the_elements() {
+    let whole = lattice(2, 0.1);
+    let mut noise = Noise(21);
+    let state = State {
+        position: whole.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect(),
+        velocity: whole.rest.iter().map(|_| noise.vector()).collect(),
+    };
+    let shape = shape_based(STIFFNESS, 7.0);
+    let spring = mass_spring(&whole, STIFFNESS, 7.0, Springs::EdgesOneDiagonal);
+    let elements: Vec<Vec<u32>> = whole.elements.iter().map(<[u32]>::to_vec).collect();
+    let springs: Vec<Vec<u32>> = spring.springs.iter().map(|ends| ends.to_vec()).collect();
+    let pair = localshape::sim::model::mass_spring::MassSpring { springs: vec![[0, 1]], ..spring.clone() };
+    for (model, parts, alone) in
+        [(&shape as &dyn ElasticModel, elements, &shape as &dyn ElasticModel), (&spring, springs, &pair)]
+    {
+        let mut expected = vec![DVec3::ZERO; whole.len()];
+        for nodes in &parts {
+            let of = |all: &[DVec3]| -> Vec<DVec3> { nodes.iter().map(|&node| all[node as usize]).collect() };
+            let own: IndexLists = [(0..nodes.len() as u32).collect::<Vec<_>>().as_slice()].into_iter().collect();
+            let mass = vec![1.0; nodes.len()];
+            let part = Body::new(Dimension::Space, of(&whole.rest), mass, own, Solids::Ordered, None);
+            let now = State { position: of(&state.position), velocity: of(&state.velocity) };
+            for (&node, force) in nodes.iter().zip(forces(&Arc::new(part), alone, &now)) {
+                expected[node as usize] += force;
+            }
+        }
+        assert!(forces(&whole, model, &state) == expected, "{model:?}");
+    }
+}
+
+/// With all its nodes at one point an element keeps the rotation that it had.
+#[test]
+fn an_element_at_a_point_keeps_its_rotation() {
+    for body in bodies().into_iter().filter(|body| body.elements.len() == 1) {
+        let turn = match body.dimension {
+            Dimension::Plane => glam::DQuat::from_rotation_z(0.7),
+            Dimension::Space => glam::DQuat::from_rotation_y(0.7) * glam::DQuat::from_rotation_x(-0.4),
+        };
+        let turned: Vec<_> = body.rest.iter().map(|&rest| turn * rest).collect();
+        let centre = turned.iter().sum::<DVec3>() / turned.len() as f64;
+        let mut worker = shape_based(STIFFNESS, 0.0).prepare(&body, &State::at_rest(turned.clone()));
+        for _ in 0..3 {
+            let mut forces = vec![DVec3::ZERO; body.len()];
+            worker.add_forces(&State::at_rest(vec![DVec3::ONE; body.len()]), &mut forces);
+            worker.commit();
+            for (force, corner) in forces.iter().zip(&turned) {
+                let off = *force - (*corner - centre) * STIFFNESS;
+                assert!(off.length() < 1e-11 * STIFFNESS, "{:?}: {off}", body.kinds);
+            }
+        }
+    }
+}
+
 #[test]
 fn forces_push_back_towards_rest() {
     each(|body, Case { model, .. }| {

@@ -186,6 +186,18 @@ mod tests {
     }
 
     #[test]
+    fn corners_nearly_on_a_line_are_where_the_exact_optimum_takes_over() {
+        // The least minor of the Hessian is 2δ, of rows whose absolute entries sum to 2 + 4δ: δ = 4e-9 is the bound.
+        let moments = |delta: f64| DMat3::from_diagonal(DVec3::new(1.0, delta, delta));
+        for size in [1e-6, 1.0, 1e6] {
+            assert!(is_well_posed(moments(4.01e-9) * size), "{size}");
+            assert!(!is_well_posed(moments(3.99e-9) * size), "{size}");
+        }
+        let quarter = |degrees: f64| DMat3::from_rotation_z(degrees.to_radians()) * moments(1.0);
+        assert!(is_well_posed(quarter(89.999)) && !is_well_posed(quarter(90.001)));
+    }
+
+    #[test]
     fn beyond_a_quarter_turn_the_exact_optimum_takes_over() {
         let rest = corners(1.0, 0.7, 0.4);
         for degrees in [91.0f64, 120.0, 179.0, 180.0] {

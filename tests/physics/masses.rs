@@ -1,0 +1,119 @@
+//! Bodies whose nodes have different masses.
+
+use crate::support::{Noise, lattice, shape_based};
+use glam::{DQuat, DVec3};
+use localshape::scene::{Limits, Scene};
+use localshape::sim::body::{Body, Dimension, Solids, State};
+use localshape::sim::grip::Grip;
+use localshape::sim::integrate::Integrator;
+use localshape::sim::model::ModelParameters;
+use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::rotation::{linearised, moment, torque};
+use localshape::sim::snapshot::Status;
+use localshape::sim::world::{Stepping, Surroundings, World};
+use std::sync::Arc;
+
+/// A cube with its nodes moved a little and masses from 1 to 8 kg.
+fn uneven() -> Arc<Body> {
+    let cube = lattice(1, 0.1);
+    let mut noise = Noise(5);
+    let rest = cube.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
+    let mass = (1..=8).map(f64::from).collect();
+    Arc::new(Body::new(Dimension::Space, rest, mass, cube.elements.clone(), Solids::Ordered, None))
+}
+
+#[test]
+fn momenta_and_energy_weigh_each_node_with_its_mass() {
+    let body = uneven();
+    let mut noise = Noise(6);
+    let state = State { position: body.rest.clone(), velocity: body.rest.iter().map(|_| noise.vector()).collect() };
+    let gravity = DVec3::new(1.0, -9.8, 2.0);
+    let around = Surroundings { gravity, ..Surroundings::default() };
+    let stepping = Stepping { integrator: Integrator::default(), step: 1e-3 };
+    let found = World::new(&body, state.clone(), &shape_based(1e4, 0.0), around, stepping).diagnostics();
+    let nodes = || body.mass.iter().zip(&state.position).zip(&state.velocity).map(|((&m, &p), &v)| (m, p, v));
+    let momentum: DVec3 = nodes().map(|(m, _, v)| v * m).sum();
+    let angular_momentum: DVec3 = nodes().map(|(m, p, v)| p.cross(v * m)).sum();
+    let kinetic: f64 = nodes().map(|(m, _, v)| 0.5 * m * v.dot(v)).sum();
+    let gravitational: f64 = nodes().map(|(m, p, _)| -m * gravity.dot(p)).sum();
+    assert!((found.momentum - momentum).length() < 1e-13 * momentum.length());
+    assert!((found.angular_momentum - angular_momentum).length() < 1e-13 * angular_momentum.length());
+    assert!((found.kinetic - kinetic).abs() < 1e-13 * kinetic);
+    assert!((found.gravitational - gravitational).abs() < 1e-13 * gravitational.abs());
+}
+
+/// Eqs. (17) and (18): `α = k |Σ r × R| / Σ m |R0|²`, here with every node turned by a hand in one step.
+#[test]
+fn the_residual_is_the_torque_over_the_moment_of_inertia() {
+    let (body, stiffness, step) = (uneven(), 1e4, 0.01);
+    let axis = DVec3::new(3.0, 10.0, -4.0);
+    let keys = vec![
+        Key { time: 0.0, place: Place::default() },
+        Key { time: 1.0, place: Place { shift: DVec3::ZERO, turn: axis } },
+    ];
+    let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
+    let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
+    let around = Surroundings { grips: vec![grip], ..Surroundings::default() };
+    let model = ShapeBased { passes: 1, ..shape_based(stiffness, 0.0) };
+    let stepping = Stepping { integrator: Integrator::default(), step };
+    let start = State::at_rest(body.rest.iter().map(|&rest| rest * DVec3::new(1.2, 0.9, 1.0)).collect());
+    let mut world = World::new(&body, start, &model, around, stepping);
+    let centred = |points: &[DVec3]| -> Vec<DVec3> {
+        let centre = points.iter().sum::<DVec3>() / points.len() as f64;
+        points.iter().map(|&point| point - centre).collect()
+    };
+    let rest = centred(&body.rest);
+    // The rotation of the forces in the first step, from the exact one at the start.
+    let solve = |a| linearised::turn(linearised::solve(a));
+    let at_rest = |world: &World| moment(&rest, centred(&world.state().position));
+    let exact = localshape::sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);
+    let first = linearised::follow(at_rest(&world), exact, 1, solve);
+    world.advance(1);
+    let second = linearised::follow(at_rest(&world), first, 1, solve);
+    let inertia: f64 = body.mass.iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
+    let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
+    let found = world.measure().residual.expect("the shape model has one");
+    assert!(expected > 1e-3 && (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+}
+
+/// `ζ = D / 2√(km)` with the mass of the lightest node, as in the cycle of which a step is a fraction.
+#[test]
+fn a_damping_ratio_is_about_the_lightest_node() {
+    let body = Body { mass: vec![4.0, 2.0, 9.0, 4.0, 4.0, 4.0, 4.0, 4.0], ..Body::clone(&uneven()) };
+    let damping = 2.0 * 0.3 * (50.0f64 * 2.0).sqrt();
+    let json = |kind: &str| serde_json::json!({ "kind": kind, "stiffness": 50.0, "damping_ratio": 0.3 });
+    for kind in ["shape-based", "mass-spring"] {
+        let parameters: ModelParameters = serde_json::from_value(json(kind)).expect("a model");
+        let model = parameters.resolve(&body, None).expect("it fits");
+        let text = format!("{model:?}");
+        assert!(text.contains(&format!("damping: {damping:?}")), "{text}");
+        assert!(model.describe(&body).ends_with("ζ = 0.3"), "{}", model.describe(&body));
+    }
+}
+
+/// A step and a damping ratio that are stable together stay so if a node is ten thousand times lighter than the others.
+#[test]
+fn the_default_step_serves_any_contrast_of_masses() {
+    for lightest in ["1", "0.01", "0.0001"] {
+        let text = format!(
+            "[time]
+            duration = 1
+            frames_per_second = 100
+            [body]
+            nodes = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],[1,1,1]]
+            elements = [[0,1,2,3,4,5,6,7]]
+            masses = [{lightest},1,1,1,1,1,1,1]
+            spin = {{ axis = [1, 2, 3], rate = 0.001 }}
+            [[run]]
+            name = 'a'
+            model = {{ kind = 'shape-based', stiffness = 100.0, damping_ratio = 0.1 }}"
+        );
+        let scene = Scene::parse(&text, "contrast.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.world(0);
+        world.advance((1.0 / scene.runs[0].step) as u64);
+        assert_eq!(world.status(), Status::Ok);
+        let fastest = world.state().velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
+        assert!(fastest < 2e-3, "{lightest} kg: {fastest}");
+    }
+}
