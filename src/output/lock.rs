@@ -104,3 +104,38 @@ fn holder(path: &Path) -> Option<u32> {
         None
     }
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_alone_or_several_beside_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let alone = FolderLock::alone(path).unwrap();
+        assert!(matches!(FolderLock::alone(path), Err(OutputError::InUse { .. })));
+        assert!(FolderLock::look(path).is_err());
+        drop(alone);
+        let several = [FolderLock::beside_others(path), FolderLock::beside_others(path)];
+        assert!(FolderLock::alone(path).is_err());
+        FolderLock::look(path).unwrap();
+        drop(several);
+        FolderLock::alone(path).unwrap();
+        FolderLock::look(&path.join("absent")).unwrap();
+    }
+
+    #[test]
+    fn work_of_others_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let leftover = folder.path().join(".localshape-abc123.partial");
+        for at_work in [FolderLock::alone(folder.path()).unwrap(), FolderLock::beside_others(folder.path())] {
+            fs::write(&leftover, "").unwrap();
+            let _other = FolderLock::beside_others(folder.path());
+            assert!(leftover.exists());
+            drop(at_work);
+        }
+        FolderLock::beside_others(folder.path());
+        assert!(!leftover.exists());
+    }
+}
