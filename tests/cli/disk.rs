@@ -36,7 +36,8 @@ fn simulate_on_a_full_disk() {
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!(lines[..2], ["diagnostics.csv", "run.json"], "{ran:?}");
     assert!(lines[2].starts_with("Mass-spring,") && lines[2].ends_with(",ok"), "whole rows of whole frames: {ran:?}");
-    assert_eq!(lines[3].trim(), "\"outcome\": \"failed\",");
+    // There may be no room to say more than that it has not ended well.
+    assert!(["\"outcome\": \"failed\",", "\"outcome\": \"unfinished\","].contains(&lines[3].trim()), "{ran:?}");
 }
 
 #[test]
