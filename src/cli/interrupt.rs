@@ -10,9 +10,9 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Listens from now on.
 ///
-/// A second Ctrl-C ends the program at once, with nothing half-written under its own name. But one that follows the first
-/// request within a moment is the same request twice, as `timeout` sends it, and those to terminate are of programs, which
-/// have SIGKILL for that: they only ever ask.
+/// A second Ctrl-C ends the program at once, with nothing half-written under its own name. But what follows the first
+/// request within a moment is the same request twice, as `timeout` sends it. Other signals only ever ask, for they come
+/// from programs, which have SIGKILL when they are in a hurry.
 pub(super) fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -28,11 +28,11 @@ pub(super) fn listen() {
 /// Requests within this time are one.
 const MOMENT: Duration = Duration::from_secs(1);
 
-/// The program is about to be ended with this by a second Ctrl-C.
+/// What a second Ctrl-C ends the program with.
 const ENDED: i32 = Status::Interrupted as i32;
 
-/// Calls `request` for each signal that asks to end the program, saying whether it is Ctrl-C, until it says that the program is to
-/// end at once.
+/// Calls `request` for each signal that asks to end the program, saying whether it is Ctrl-C, until it says that the
+/// program is to end at once.
 ///
 /// Each signal is for itself, and only those are listened for that would end the program now: what is ignored, as by
 /// `nohup`, stays ignored, and a program that has its own handler keeps it.
