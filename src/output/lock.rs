@@ -129,11 +129,12 @@ mod tests {
     fn work_of_others_is_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let leftover = folder.path().join(".localshape-abc123.partial");
-        for at_work in [FolderLock::alone(folder.path()).unwrap(), FolderLock::beside_others(folder.path())] {
+        for is_alone in [true, false] {
+            let path = folder.path();
+            let _lock = if is_alone { FolderLock::alone(path).unwrap() } else { FolderLock::beside_others(path) };
             fs::write(&leftover, "").unwrap();
-            let _other = FolderLock::beside_others(folder.path());
+            FolderLock::beside_others(path);
             assert!(leftover.exists());
-            drop(at_work);
         }
         FolderLock::beside_others(folder.path());
         assert!(!leftover.exists());

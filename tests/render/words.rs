@@ -42,18 +42,19 @@ fn load(text: &str) -> Scene {
     Scene::parse(text, "words.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Scenes with all kinds of words, at many sizes.
+/// Scenes with all kinds of words, at many sizes and in several arrangements.
 fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
-    for show in ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"] {
-        for size in
-            [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]]
-        {
-            for more in ["", "panels = 'column'", "theme = 'dark'\npanels = 'row'"] {
-                let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
-                let text = ALL.replace("spring_colour = {}", colours);
-                scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
-            }
+    let sizes = [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]];
+    let arrangements = ["", "panels = 'column'", "theme = 'dark'\npanels = 'row'"];
+    let shows = ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"];
+    for (number, show) in shows.into_iter().enumerate() {
+        for (at, size) in sizes.into_iter().enumerate() {
+            // Any two of them once at least.
+            let more = arrangements[(number + at) % 3];
+            let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
+            let text = ALL.replace("spring_colour = {}", colours);
+            scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
         }
     }
     scenes
