@@ -29,7 +29,7 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
         /// Who does what there.
-        what: String,
+        what: Box<str>,
     },
     /// What was named as a folder is none.
     #[error("{} is {what}, not a folder; choose another folder with -o", path.display())]

@@ -65,7 +65,8 @@ impl FolderLock {
 
     /// Folders cannot be locked there.
     #[cfg(not(unix))]
-    fn take(&self, _alone: bool) -> bool {
+    fn take(&self, alone: bool) -> bool {
+        let _ = (&self.folder, alone);
         true
     }
 }
@@ -78,10 +79,8 @@ fn in_use(path: &Path) -> OutputError {
         let title = summary["scene"]["title"].as_str()?;
         (summary["outcome"] == "unfinished").then(|| format!(" “{title}”"))
     });
-    OutputError::InUse {
-        path: path.to_owned(),
-        what: format!("{process} is writing{} there", title.unwrap_or_default()),
-    }
+    let what = format!("{process} is writing{} there", title.unwrap_or_default());
+    OutputError::InUse { path: path.to_owned(), what: what.into() }
 }
 
 /// The process that has locked a folder, where the system tells.
