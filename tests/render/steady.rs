@@ -10,8 +10,8 @@ use localshape::sequence::Sequence;
 use localshape::sim::body::Dimension;
 use localshape::sim::snapshot::Frame;
 
-/// Frames of a film.
-const FRAMES: u64 = 24;
+/// Frames of a film, in which what is fastest goes as far as a pixel is wide, and so past all its samples.
+const FRAMES: u64 = 21;
 /// How far anything moves from one to the next (px).
 const SLOW: f64 = 0.05;
 
