@@ -15,7 +15,7 @@ use crate::golden::draw::{DrawError, Subject, Wish, draw, usual_gpu};
 use crate::golden::{BlessError, Blessed, Comparison, ComparisonError, Side};
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
-use crate::output::write_whole;
+use crate::output::{FolderLock, folder_of, write_whole};
 #[cfg(feature = "render")]
 use crate::scene::Limits;
 use clap::{Args, ValueHint};
@@ -108,7 +108,11 @@ impl Compare {
         let Some(comparison) = self.comparison()? else { return Ok(Status::Interrupted) };
         // The verdict is told also if the page cannot be written.
         let reported = match &self.report {
-            Some(path) => write_whole(path, comparison.report().page().as_bytes()),
+            Some(path) => {
+                let page = comparison.report().page();
+                let _lock = FolderLock::beside_others(folder_of(path));
+                write_whole(path, page.as_bytes())
+            }
             None => Ok(()),
         };
         let blesses = self.bless || self.bless_state;

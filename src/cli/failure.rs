@@ -71,8 +71,9 @@ impl Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         let status = match &error {
-            OutputError::Occupied { .. } => Status::Usage,
-            OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
+            // Another folder is to be chosen, and nothing was touched.
+            OutputError::Occupied { .. } | OutputError::InUse { .. } => Status::Usage,
+            OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
         Self { status, message: Some(with_causes(&error)) }
     }

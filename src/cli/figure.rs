@@ -9,7 +9,7 @@ use super::record;
 use super::render::{failed, samples, size};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::moments::{Moments, Taking};
-use crate::output::{self, AtomicFile, OutputError};
+use crate::output::{self, AtomicFile, FolderLock, OutputError};
 use crate::picture::compose_figure;
 use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
@@ -115,7 +115,7 @@ impl FigureCommand {
         interrupt::listen();
         let pool = record::pool(self.threads.map_or_else(processors, usize::from))?;
         std::fs::create_dir_all(&self.out).map_err(OutputError::writing(&self.out))?;
-        output::remove_leftovers(&self.out)?;
+        let _lock = FolderLock::beside_others(&self.out);
         let mut made = Vec::new();
         let mut result = Ok(Status::Done);
         for (figure, path) in figures.iter().zip(&paths) {
@@ -215,6 +215,7 @@ impl FigureCommand {
 
     /// Where each figure goes; nothing of others is replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
+        output::is_folder(&self.out)?;
         let path = |figure: &Figure| {
             let name = format!("{}.png", figure.name);
             let path = self.out.join(&name);

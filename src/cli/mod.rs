@@ -41,7 +41,8 @@ Exit status:
     2  wrong usage, or a wrong scene file
     3  no usable graphics adapter
     4  reading or writing failed
-  130  interrupted; what was made until then is whole";
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was made until then is whole
+       (Ctrl-C again, a second later, ends at once)";
 
 #[cfg(not(feature = "render"))]
 const EXAMPLES: &str = "\

@@ -18,7 +18,7 @@ use crate::sim::snapshot::Frame;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// What turns frames into pictures, for one scene.
@@ -93,12 +93,13 @@ fn record(
     let Job { scene, runs, frames, folder } = job;
     let begin = || -> Result<_, Failure> {
         let folder = folder.prepare(options.states)?;
-        let pictures = studio.map(|studio| studio.begin(&scene, &folder)).transpose()?;
+        let pictures = studio.map(|studio| studio.begin(&scene, folder.path())).transpose()?;
         Ok((folder, pictures))
     };
     let result = begin().and_then(|(folder, pictures)| {
         let times = Timings::default();
-        Recording { scene: &scene, runs, frames, folder, summary, last: None, times }.run(pool, options, pictures)
+        let path = folder.path();
+        Recording { scene: &scene, runs, frames, folder: path, summary, last: None, times }.run(pool, options, pictures)
     });
     if result.is_err() {
         summary.outcome = Outcome::Failed;
@@ -124,7 +125,7 @@ struct Recording<'a> {
     scene: &'a Scene,
     runs: Vec<usize>,
     frames: Vec<u64>,
-    folder: PathBuf,
+    folder: &'a Path,
     summary: &'a mut Summary,
     last: Option<Frame>,
     times: Timings,
@@ -143,10 +144,10 @@ impl Recording<'_> {
             pictures.describe(self.summary);
         }
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
-        self.summary.write(&self.folder)?;
-        let mut diagnostics = DiagnosticsWriter::create(&self.folder, self.scene)?;
+        self.summary.write(self.folder)?;
+        let mut diagnostics = DiagnosticsWriter::create(self.folder, self.scene)?;
         let mut states =
-            options.states.then(|| StatesWriter::create(&self.folder, self.scene, &self.runs)).transpose()?;
+            options.states.then(|| StatesWriter::create(self.folder, self.scene, &self.runs)).transpose()?;
 
         if let Some(pictures) = pictures.as_mut().filter(|pictures| pictures.need_history())
             && let Some(history) = self.rehearse(pool, options.quiet)
@@ -195,7 +196,7 @@ impl Recording<'_> {
             draw.cpu = drawing;
         }
         summary.times = Some(self.times);
-        let written = summary.write(&self.folder).map_err(Failure::from);
+        let written = summary.write(self.folder).map_err(Failure::from);
         result.and(written)
     }
 

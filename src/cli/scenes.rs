@@ -78,7 +78,7 @@ impl RunOptions {
             let frames = self.frames(&scene)?;
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
             let look = pictures.then_some(Look { size: scene.view.size, runs: names });
-            let folder = Folder::inspect(&path, &scene, look.as_ref(), self.overwrite)?;
+            let folder = Folder::inspect(&path, &scene, look, self.overwrite)?;
             jobs.push(Job { runs, frames, folder, scene });
         }
         Ok(jobs)

@@ -89,7 +89,7 @@ impl Table {
         let (mut documents, mut status) = (Vec::new(), Status::Done);
         for (number, &name) in names.iter().enumerate() {
             let folder = folder(name);
-            let files = SheetFiles::begin(&folder, name.files())?;
+            let files = SheetFiles::begin(&folder, name.files(), &self.mark(name), self.overwrite)?;
             let Some(made) = self.measure(name)? else {
                 status = Status::Interrupted;
                 if !self.quiet && !self.json {

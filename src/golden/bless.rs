@@ -5,7 +5,9 @@ use super::record::{Drawn, RECORD_FILE, Record};
 use super::side::{Kind, Source};
 use super::states::States;
 use super::{Comparison, Verdict};
-use crate::output::{AtomicFile, DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE};
+use crate::output::{
+    AtomicFile, DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, folder_of, read_file,
+};
 use std::borrow::Cow;
 use std::fmt;
 use std::io;
@@ -167,10 +169,12 @@ impl Comparison {
         let mut gone = Vec::new();
         let mut staged = Vec::new();
         let is_picture = expected.kind == Kind::Picture || actual.kind == Kind::Picture;
-        let mut stage = || -> Result<(), OutputError> {
+        let mut stage = || -> Result<FolderLock, OutputError> {
             if !is_picture {
                 std::fs::create_dir_all(&expected.origin).map_err(OutputError::writing(&expected.origin))?;
             }
+            let folder = if is_picture { folder_of(&expected.origin) } else { &expected.origin };
+            let lock = FolderLock::beside_others(folder);
             for picture in self.pictures.iter().filter(|picture| !picture.verdict.passes()) {
                 let target = if is_picture { expected.origin.clone() } else { expected.origin.join(&picture.name) };
                 let is_drawn = |record: &Record| record.pictures.iter().any(|drawn| drawn.file == picture.name);
@@ -193,7 +197,7 @@ impl Comparison {
             }
             for name in BESIDE.into_iter().filter(|_| self.brings_states()) {
                 let (target, source) = (expected.origin.join(name), actual.origin.join(name));
-                let (old, new) = (std::fs::read(&target).ok(), std::fs::read(&source).ok());
+                let (old, new) = (read_file(&target).ok().flatten(), read_file(&source).ok().flatten());
                 match (old, new) {
                     (old, Some(new)) if old.as_ref() != Some(&new) => {
                         let mut file = AtomicFile::create(&target)?;
@@ -210,17 +214,16 @@ impl Comparison {
             if let Some(record) = &record {
                 let target = expected.origin.join(RECORD_FILE);
                 let text = record.text();
-                if std::fs::read(&target).ok().as_deref() != Some(text.as_bytes()) {
+                if read_file(&target).ok().flatten().as_deref() != Some(text.as_bytes()) {
                     let mut file = AtomicFile::create(&target)?;
                     file.append(text.as_bytes())?;
                     staged.push(file);
                 }
             }
-            Ok(())
+            Ok(lock)
         };
-        if let Err(source) = stage() {
-            return Err(BlessError::Write { blessed: Blessed::default(), source });
-        }
+        // Kept until the files have their names.
+        let _lock = stage().map_err(|source| BlessError::Write { blessed: Blessed::default(), source })?;
         for file in staged {
             let path = file.path().to_owned();
             match file.commit() {

@@ -17,7 +17,8 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins the file `path`, whose folder exists.
+    /// Begins the file `path`, whose folder exists. Where the folder is not locked ([`super::FolderLock`]), others may take
+    /// it for a leftover.
     ///
     /// # Errors
     /// If the folder cannot be written to.
@@ -25,14 +26,8 @@ impl AtomicFile {
         let folder = folder_of(path);
         // Made by the standard library, results are as open to others as any file; tempfile's own are their owner's.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
-        loop {
-            let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
-            let temporary = made.map_err(OutputError::writing(path))?;
-            // Between the two, another program may have taken it for a leftover.
-            if claim(temporary.as_file()) && temporary.path().try_exists().unwrap_or(true) {
-                return Ok(Self { path: path.to_owned(), temporary });
-            }
-        }
+        let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
+        Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
     }
 
     /// The name that the file will have.
@@ -79,39 +74,17 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     file.commit()
 }
 
-/// Locks a file until it is closed, also by a crash: so that others see that somebody is at work on it. `false` if
-/// somebody else is. Where files cannot be locked, nobody ever is.
-fn claim(file: &File) -> bool {
-    #[cfg(unix)]
-    {
-        use rustix::fs::{FlockOperation, flock};
-        flock(file, FlockOperation::NonBlockingLockExclusive) != Err(rustix::io::Errno::WOULDBLOCK)
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = file;
-        true
-    }
-}
-
-/// Removes what killed programs have left unfinished in a folder; nothing else, and nothing that a program still
-/// works on.
+/// Removes what programs have left unfinished in a folder; nothing else. Nobody else may be writing in it.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
-pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
+pub(super) fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
         let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
-        if !entry.file_name().to_str().is_some_and(hidden) {
-            continue;
-        }
-        let Ok(file) = File::open(entry.path()) else { continue };
-        if claim(&file) {
-            // Still locked: whoever is just beginning this file must not get it before it is gone.
+        if entry.file_name().to_str().is_some_and(hidden) && entry.file_type().is_ok_and(|found| found.is_file()) {
             remove(&entry.path())?;
         }
-        drop(file);
     }
     Ok(())
 }
@@ -125,7 +98,7 @@ pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
 }
 
 /// The folder that a file is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -160,41 +133,6 @@ mod tests {
         fs::write(&other, "").unwrap();
         remove_leftovers(folder.path()).unwrap();
         assert!(!leftover.exists() && other.exists());
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn work_of_others_is_left_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let at_work = AtomicFile::create(&folder.path().join("whole.txt")).unwrap();
-        remove_leftovers(folder.path()).unwrap();
-        at_work.commit().expect("nobody has removed it");
-    }
-
-    /// Also when it looks at a file in the moment between its making and its locking.
-    #[cfg(unix)]
-    #[test]
-    fn one_who_cleans_up_never_takes_a_file_from_one_who_begins_it() {
-        use std::sync::atomic::{AtomicBool, Ordering};
-        let folder = tempfile::tempdir().unwrap();
-        let done = AtomicBool::new(false);
-        std::thread::scope(|threads| {
-            for _ in 0..2 {
-                threads.spawn(|| {
-                    while !done.load(Ordering::Relaxed) {
-                        // Two of them may find the same leftover, and then one finds it gone.
-                        let _ = remove_leftovers(folder.path());
-                    }
-                });
-            }
-            let lost = (0..3000).filter(|_| {
-                let file = AtomicFile::create(&folder.path().join("whole.txt")).unwrap();
-                !file.temporary.path().exists()
-            });
-            let lost = lost.count();
-            done.store(true, Ordering::Relaxed);
-            assert_eq!(lost, 0);
-        });
     }
 
     #[cfg(unix)]

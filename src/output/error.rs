@@ -1,5 +1,6 @@
 //! What can go wrong with files.
 
+use std::fs::{self, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +23,22 @@ pub enum OutputError {
         /// Why.
         source: io::Error,
     },
+    /// Somebody else writes in the folder.
+    #[error("{} is in use: {what}; wait until that has ended, or choose another folder with -o", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+        /// Who does what there.
+        what: Box<str>,
+    },
+    /// What was named as a folder is none.
+    #[error("{} is {what}, not a folder; choose another folder with -o", path.display())]
+    NoFolder {
+        /// Where it is.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+    },
     /// The folder holds files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
     Occupied {
@@ -39,6 +56,50 @@ fn hint(source: &io::Error) -> &'static str {
             ": the disk is full; what was finished before is kept"
         }
         _ => "",
+    }
+}
+
+/// What is at a path, in words.
+pub(super) fn kind_of(found: &Metadata) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if found.file_type().is_fifo() {
+            return "a pipe";
+        }
+    }
+    match (found.is_file(), found.is_dir()) {
+        (true, _) => "a file",
+        (_, true) => "a folder",
+        _ => "a device or socket",
+    }
+}
+
+/// Whether a folder is there. If not, it can be made as far as names go.
+///
+/// # Errors
+/// If it, or a folder above it, is something else.
+pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
+    let nearest = path.ancestors().find_map(|above| Some((above, fs::metadata(above).ok()?)));
+    match nearest {
+        Some((above, found)) if !found.is_dir() => {
+            Err(OutputError::NoFolder { path: above.to_owned(), what: kind_of(&found) })
+        }
+        Some((above, _)) => Ok(above == path),
+        None => Ok(false),
+    }
+}
+
+/// Reads a whole file; `None` if there is none, or something else: to open a pipe would be to wait for ever.
+///
+/// # Errors
+/// If it cannot be read.
+pub(crate) fn read_file(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() => fs::read(path).map(Some).map_err(OutputError::reading(path)),
+        Ok(_) => Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(OutputError::reading(path)(error)),
     }
 }
 

@@ -1,10 +1,10 @@
 //! Whose folder it is: frames of different scenes never mix, and files of others are never removed.
 
-use super::atomic::{remove, remove_leftovers};
-use super::{DIAGNOSTICS_FILE, OutputError, STATES_FILE, SUMMARY_FILE, read_frame};
+use super::atomic::remove;
+use super::error::kind_of;
+use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_frame};
 use crate::scene::Scene;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// The file name of frame `index`: `frame_00000.png`.
@@ -34,10 +34,9 @@ pub struct Look {
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// Files of ours that belong to another scene or another sequence.
-    stale: Vec<PathBuf>,
-    /// States of this scene.
-    states: Option<PathBuf>,
+    digest: String,
+    look: Option<Look>,
+    overwrite: bool,
 }
 
 impl Folder {
@@ -46,19 +45,25 @@ impl Folder {
     /// A folder with files of another scene, or with files of others under the names of ours, is refused unless
     /// `overwrite`. Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
     /// a scene can be drawn in parts. But if frames are to be drawn, those that are there must have the same `look`,
-    /// or the folder would hold no sequence.
+    /// or the folder would hold no sequence. A folder that another program writes in is refused in any case.
     ///
     /// # Errors
-    /// If the folder cannot be read or is refused.
-    pub fn inspect(path: &Path, scene: &Scene, look: Option<&Look>, overwrite: bool) -> Result<Self, OutputError> {
-        let found = Found::in_folder(path, &scene.digest, look)?;
+    /// If the folder cannot be read, is refused or is none.
+    pub fn inspect(path: &Path, scene: &Scene, look: Option<Look>, overwrite: bool) -> Result<Self, OutputError> {
+        let folder = Self { path: path.to_owned(), digest: scene.digest.clone(), look, overwrite };
+        if is_folder(path)? {
+            FolderLock::look(path)?;
+            folder.find()?;
+        }
+        Ok(folder)
+    }
+
+    /// What is in the folder, unless it is in the way.
+    fn find(&self) -> Result<Found, OutputError> {
+        let found = Found::in_folder(&self.path, &self.digest, self.look.as_ref())?;
         match found.describe() {
-            Some(what) if !overwrite => Err(OutputError::Occupied { path: path.to_owned(), what }),
-            _ => Ok(Self {
-                path: path.to_owned(),
-                stale: [found.frames, found.unlike, found.records].concat(),
-                states: found.states,
-            }),
+            Some(what) if !self.overwrite => Err(OutputError::Occupied { path: self.path.clone(), what }),
+            _ => Ok(found),
         }
     }
 
@@ -67,18 +72,35 @@ impl Folder {
         &self.path
     }
 
-    /// Makes the folder if there is none, and removes leftovers of killed programs and the files of another scene.
-    /// Unless `states` are written anew, earlier ones go, too: they would not be those of the diagnostics beside them.
+    /// Makes the folder if there is none, locks it, and removes leftovers of killed programs and the files of another
+    /// scene. Unless `states` are written anew, earlier ones go, too: they would not be those of the diagnostics
+    /// beside them.
     ///
     /// # Errors
-    /// If the folder cannot be made or written to.
-    pub fn prepare(self, states: bool) -> Result<PathBuf, OutputError> {
+    /// If the folder cannot be made or written to; or as [`Self::inspect`], for only now nobody else can change what is
+    /// there.
+    pub fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
-        remove_leftovers(&self.path)?;
-        for path in self.stale.iter().chain(self.states.iter().filter(|_| !states)) {
+        let lock = FolderLock::alone(&self.path)?;
+        let Found { frames, unlike, records, states: earlier, .. } = self.find()?;
+        for path in [frames, unlike, records].iter().flatten().chain(earlier.iter().filter(|_| !states)) {
             remove(path)?;
         }
-        Ok(self.path)
+        Ok(Claimed { path: self.path, _lock: lock })
+    }
+}
+
+/// A folder in which nobody else writes until this is dropped.
+#[derive(Debug)]
+pub struct Claimed {
+    path: PathBuf,
+    _lock: FolderLock,
+}
+
+impl Claimed {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 }
 
@@ -105,23 +127,26 @@ struct Found {
     states: Option<PathBuf>,
     /// Title of that scene, if its summary is there.
     title: Option<String>,
-    /// Files of others under the names of ours.
-    foreign: Vec<String>,
+    /// Names of ours that others have; and what has them, if it is no file.
+    foreign: Vec<(String, Option<&'static str>)>,
 }
 
 impl Found {
     fn in_folder(path: &Path, digest: &str, look: Option<&Look>) -> Result<Self, OutputError> {
         let mut found = Self::default();
-        let entries = match fs::read_dir(path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(found),
-            entries => entries.map_err(OutputError::reading(path))?,
-        };
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
-        for entry in entries {
+        for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
             let entry = entry.map_err(OutputError::reading(path))?;
             let name = entry.file_name();
             let Some(name) = name.to_str() else { continue };
-            if names_frame(name) {
+            let is_record = [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name);
+            if !is_record && !names_frame(name) {
+                continue;
+            }
+            let kind = fs::metadata(entry.path()).map_err(OutputError::reading(&entry.path()))?;
+            if !kind.is_file() {
+                found.foreign.push((name.to_owned(), Some(kind_of(&kind))));
+            } else if !is_record {
                 match read_frame(&entry.path())? {
                     Some((size, tags)) if tags.scene == digest => {
                         let runs = tags.states.into_iter().map(|(_, run)| run).collect();
@@ -132,9 +157,9 @@ impl Found {
                         }
                     }
                     Some(_) => found.frames.push(entry.path()),
-                    None => found.foreign.push(name.to_owned()),
+                    None => found.foreign.push((name.to_owned(), None)),
                 }
-            } else if [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name) {
+            } else {
                 match &owner {
                     Some(owner) if owner.digest == digest => {
                         if name == STATES_FILE {
@@ -142,7 +167,7 @@ impl Found {
                         }
                     }
                     Some(_) => found.records.push(entry.path()),
-                    None => found.foreign.push(name.to_owned()),
+                    None => found.foreign.push((name.to_owned(), None)),
                 }
             }
         }
@@ -161,8 +186,9 @@ impl Found {
         };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
             (0, true, []) => unlike,
-            (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
-            (0, true, [name, others @ ..]) => {
+            (0, true, [(name, None)]) => Some(format!("{name}, which was not written by localshape")),
+            (0, true, [(name, Some(kind))]) => Some(format!("{name}, which is {kind}")),
+            (0, true, [(name, _), others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))
             }
             (0, false, _) => Some(format!("the results of another scene{title}")),
@@ -181,10 +207,7 @@ struct Owner {
 impl Owner {
     /// Reads it from `run.json`; `None` if there is none or it is not one of ours.
     fn read(path: &Path) -> Result<Option<Self>, OutputError> {
-        let bytes = match fs::read(path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            bytes => bytes.map_err(OutputError::reading(path))?,
-        };
+        let Some(bytes) = read_file(path)? else { return Ok(None) };
         let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
         let text = |key: &str| summary["scene"][key].as_str().map(str::to_owned);
         let ours = summary.get("localshape").is_some();

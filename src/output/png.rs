@@ -202,8 +202,12 @@ pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> 
     Ok(header(path, described)?.flatten())
 }
 
-/// What is before the pixels of a picture; `None` if the file is no PNG.
+/// What is before the pixels of a picture; `None` if it is no PNG file.
 fn header<T>(path: &Path, take: impl FnOnce(&png::Info<'_>) -> T) -> Result<Option<T>, OutputError> {
+    // To open a pipe would be to wait for ever.
+    if !path.metadata().map_err(OutputError::reading(path))?.is_file() {
+        return Ok(None);
+    }
     let file = File::open(path).map_err(OutputError::reading(path))?;
     match png::Decoder::new(BufReader::new(file)).read_info() {
         Ok(reader) => Ok(Some(take(reader.info()))),

@@ -1,9 +1,7 @@
 //! The files of a table: all in one folder, each whole or not at all.
 
-use super::atomic::remove_leftovers;
-use super::{AtomicFile, OutputError};
+use super::{AtomicFile, FolderLock, OutputError, is_folder, read_file};
 use std::fs;
-use std::io;
 use std::path::Path;
 
 /// How the Markdown file of every table begins.
@@ -11,7 +9,10 @@ const BEGINNING: &str = "<!-- localshape table ";
 
 /// Files begun in a folder under hidden names. Dropped unfinished, they leave nothing.
 #[derive(Debug)]
-pub struct SheetFiles(Vec<AtomicFile>);
+pub struct SheetFiles {
+    files: Vec<AtomicFile>,
+    _lock: FolderLock,
+}
 
 impl SheetFiles {
     /// Looks at a folder, which need not exist, before the files `names` are written into it, the first of them
@@ -21,18 +22,19 @@ impl SheetFiles {
     /// with files of others under these names, is refused unless `overwrite`.
     ///
     /// # Errors
-    /// If the folder cannot be read or is refused.
+    /// If the folder cannot be read, is refused or is none, or somebody else writes in it.
     pub fn inspect(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
-        match fs::read_dir(folder) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            found => found.map_err(OutputError::reading(folder))?,
-        };
+        if !is_folder(folder)? {
+            return Ok(());
+        }
+        FolderLock::look(folder)?;
+        Self::look(folder, names, mark, overwrite)
+    }
+
+    fn look(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
         let there: Vec<_> = names.iter().filter(|name| folder.join(name).symlink_metadata().is_ok()).collect();
         let (Some(first), false) = (there.first(), overwrite) else { return Ok(()) };
-        let text = match fs::read(folder.join(names[0])) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-            bytes => bytes.map_err(OutputError::reading(&folder.join(names[0])))?,
-        };
+        let text = read_file(&folder.join(names[0]))?.unwrap_or_default();
         let line = String::from_utf8_lossy(text.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
         let made_by = line.strip_prefix(BEGINNING).and_then(|rest| rest.strip_suffix(" -->"));
         let what = match made_by {
@@ -43,15 +45,18 @@ impl SheetFiles {
         Err(OutputError::Occupied { path: folder.to_owned(), what })
     }
 
-    /// Makes the folder if there is none, removes leftovers of killed programs and begins the files `names`: so
-    /// whatever keeps them from being written is told before the work.
+    /// Makes the folder if there is none, locks it, removes leftovers of killed programs and begins the files `names`:
+    /// so whatever keeps them from being written is told before the work. The rest is as in [`Self::inspect`], for only
+    /// now nobody else can change what is there.
     ///
     /// # Errors
-    /// If the folder cannot be made or written to.
-    pub fn begin(folder: &Path, names: &[&str]) -> Result<Self, OutputError> {
+    /// If the folder cannot be made or written to, is refused, or somebody else writes in it.
+    pub fn begin(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<Self, OutputError> {
         fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
-        remove_leftovers(folder)?;
-        names.iter().map(|name| AtomicFile::create(&folder.join(name))).collect::<Result<_, _>>().map(Self)
+        let lock = FolderLock::alone(folder)?;
+        Self::look(folder, names, mark, overwrite)?;
+        let files = names.iter().map(|name| AtomicFile::create(&folder.join(name))).collect::<Result<_, _>>()?;
+        Ok(Self { files, _lock: lock })
     }
 
     /// Writes the files, one text for each, in their order.
@@ -59,8 +64,8 @@ impl SheetFiles {
     /// # Errors
     /// If one cannot be written; those before it are there.
     pub fn finish(self, texts: &[String]) -> Result<(), OutputError> {
-        assert_eq!(self.0.len(), texts.len(), "a text for each file");
-        self.0.into_iter().zip(texts).try_for_each(|(mut file, text)| {
+        assert_eq!(self.files.len(), texts.len(), "a text for each file");
+        self.files.into_iter().zip(texts).try_for_each(|(mut file, text)| {
             file.append(text.as_bytes())?;
             file.commit()
         })

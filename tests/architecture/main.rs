@@ -115,10 +115,10 @@ fn every_dependency_has_its_reason() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
     let (manifest, page) = (read("Cargo.toml"), read("CONTRIBUTING.md"));
     let manifest: toml::Table = manifest.parse().expect("the manifest");
-    let unix = &manifest["target"]["cfg(unix)"];
-    let tables = [&manifest["dependencies"], &manifest["dev-dependencies"], &unix["dependencies"]];
+    let targets = manifest["target"].as_table().expect("a table").values().map(|target| &target["dependencies"]);
+    let tables = [&manifest["dependencies"], &manifest["dev-dependencies"]].into_iter().chain(targets);
     let names: BTreeSet<&str> =
-        tables.iter().flat_map(|table| table.as_table().expect("a table").keys()).map(String::as_str).collect();
+        tables.flat_map(|table| table.as_table().expect("a table").keys()).map(String::as_str).collect();
     let table = page.split("## Dependencies").nth(1).expect("the section");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
     let listed: BTreeSet<&str> = rows.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`')).collect();

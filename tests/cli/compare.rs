@@ -1,6 +1,6 @@
 //! `compare`: verdicts on pictures and folders of them.
 
-use crate::support::{Place, Ran, SMALL};
+use crate::support::{Place, SMALL, run};
 use localshape::output::{Tags, encode};
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
@@ -160,7 +160,7 @@ fn what_is_missing_fails_with_the_command_that_makes_it() {
         place.run(&format!("compare {expected} {actual}")).good();
     }
     // A path with spaces can be pasted as it is told.
-    let ran = Ran::from(place.command(["compare", "my golden", "is"]).output().unwrap());
+    let ran = run(&mut place.command(["compare", "my golden", "is"]));
     assert!(ran.out.contains("--bless 'my golden' is\n"), "{ran:?}");
 }
 

@@ -1,7 +1,7 @@
 //! A full disk: one message, nothing half-written, what was finished stays.
 #![cfg(target_os = "linux")]
 
-use crate::support::{Place, Ran, lasting, skip};
+use crate::support::{Place, Ran, lasting, run, skip};
 use std::process::Command;
 
 /// Runs the program with its output in `out`, on a disk of `size` that goes when it ends, and then `after` in a shell.
@@ -14,11 +14,11 @@ fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Opt
     );
     let mut command = Command::new("unshare");
     command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).current_dir(place.path("."));
-    let Ok(output) = command.output() else {
+    if Command::new("unshare").arg("--version").output().is_err() {
         skip("there is no unshare");
         return None;
-    };
-    let ran = Ran::from(output);
+    }
+    let ran = run(&mut command);
     if ran.status == Some(99) || ran.err.starts_with("unshare:") {
         skip(&format!("no disk could be made for the test: {}", ran.err));
         return None;
@@ -36,6 +36,8 @@ fn simulate_on_a_full_disk() {
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!(lines[..2], ["diagnostics.csv", "run.json"], "{ran:?}");
     assert!(lines[2].starts_with("Mass-spring,") && lines[2].ends_with(",ok"), "whole rows of whole frames: {ran:?}");
+    // There may be no room to say more than that it has not ended well.
+    assert!(["\"outcome\": \"failed\",", "\"outcome\": \"unfinished\","].contains(&lines[3].trim()), "{ran:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Whose folder it is.
 
-use crate::support::{Place, lasting};
+use crate::support::{Place, Running, lasting, run};
+use std::process::Command;
 
 #[test]
 fn the_same_scene_replaces_its_files() {
@@ -62,9 +63,95 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
 fn a_file_in_the_way() {
     let place = Place::with_small();
     place.write("taken", "a file");
-    place.run("simulate small.toml -o taken").bad(4, &["taken"]);
-    place.run("simulate small.toml -o taken/below").bad(4, &["taken"]);
+    let commands = ["simulate small.toml", "table table1", "render small.toml", "figure fig1"];
+    for command in commands.iter().take(if cfg!(feature = "render") { 4 } else { 2 }) {
+        for folder in ["taken", "taken/below"] {
+            let ran = place.run(&format!("{command} -o {folder}"));
+            ran.bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
+        }
+    }
     assert_eq!(place.read("taken"), "a file");
+}
+
+/// To open a pipe is to wait for ever.
+#[cfg(unix)]
+#[test]
+fn pipes_under_our_names_are_told_at_once() {
+    let place = Place::with_small();
+    let fifo = |name: &str| {
+        let path = place.path("out").join(name);
+        let _ = std::fs::remove_dir_all(place.path("out"));
+        std::fs::create_dir(place.path("out")).unwrap();
+        assert_eq!(run(Command::new("mkfifo").arg(&path)).status, Some(0));
+    };
+    for name in ["frame_00000.png", "run.json", "diagnostics.csv", "states.npz"] {
+        fifo(name);
+        let words = [&format!("out holds {name}, which is a pipe"), "--overwrite", "-o"];
+        place.run("simulate small.toml -o out --states").bad(2, &words);
+        assert_eq!(place.names("out"), [name]);
+        place.run("simulate small.toml -o out --states --overwrite").good();
+    }
+    fifo("table1.md");
+    place.run("table table1 -o out").bad(2, &["out holds table1.md"]);
+    if cfg!(feature = "render") {
+        fifo("fig1.png");
+        place.run("figure fig1 -o out").bad(2, &["out holds fig1.png"]);
+    }
+}
+
+/// One that is a scene is read, as of `localshape check <(./make-scene)`.
+#[cfg(unix)]
+#[test]
+fn a_scene_from_a_pipe() {
+    let place = Place::with_small();
+    let scene = std::fs::File::open(place.path("small.toml")).unwrap();
+    run(Command::new("sh")
+        .args(["-c", "cat | \"$0\" check /dev/stdin", env!("CARGO_BIN_EXE_localshape")])
+        .stdin(scene))
+    .good();
+}
+
+/// The lock goes with its holder, however that ends.
+#[cfg(unix)]
+#[test]
+fn one_program_at_a_time() {
+    let place = Place::with_small();
+    place.write("long.toml", &lasting("100000"));
+    place.write("other.toml", &lasting("0.05").replace("Two cubes", "Others"));
+    let mut first = crate::interrupt::start(&place, "simulate long.toml -o out", "out/run.json");
+    let mut refused = vec!["out is in use: ".to_owned(), " is writing “Two cubes” there".into(), "-o".into()];
+    if cfg!(target_os = "linux") {
+        refused.push(format!("process {} ", first.id()));
+    }
+    let words: Vec<_> = refused.iter().map(String::as_str).collect();
+    for command in ["simulate long.toml", "simulate other.toml", "simulate other.toml --overwrite", "table table1"] {
+        place.run(&format!("{command} -o out")).bad(2, &words);
+    }
+    assert!(first.is_running());
+    first.kill();
+    assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
+    place.run("simulate other.toml -o out --overwrite").good();
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
+}
+
+/// Nobody comes between the look and the lock.
+#[cfg(unix)]
+#[test]
+fn of_two_that_begin_together_one_is_refused() {
+    let place = Place::new();
+    place.write("a.toml", &lasting("1").replace("Two cubes", "a"));
+    place.write("b.toml", &lasting("2").replace("Two cubes", "b"));
+    for number in 0..20 {
+        let folder = format!("out-{number}");
+        let start = |name| Running::start(&mut place.command(["simulate", name, "-o", &folder]));
+        let both = [start("a.toml"), start("b.toml")].map(Running::wait);
+        let won = both.iter().position(|ran| ran.status == Some(0)).expect("one of them runs");
+        assert_eq!(both[1 - won].status, Some(2), "{both:?}");
+        let summary = place.json(&format!("{folder}/run.json"));
+        assert_eq!((summary["scene"]["title"].as_str(), &summary["outcome"]), (Some(["a", "b"][won]), &"done".into()));
+        let rows = place.read(&format!("{folder}/diagnostics.csv")).lines().count();
+        assert_eq!(rows, 1 + 2 * [61, 121][won]);
+    }
 }
 
 #[cfg(unix)]

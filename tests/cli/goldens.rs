@@ -1,6 +1,6 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
-use crate::support::{Place, Ran, SMALL, skip};
+use crate::support::{Place, SMALL, run, skip};
 use localshape::golden::Pixels;
 use localshape::gpu::{AdapterChoice, Gpu};
 
@@ -81,7 +81,7 @@ fn drawing_is_never_taken_for_physics() {
     place.run("compare --bless coarse small.toml --samples 1").good();
     for width in ["256", "512"] {
         let mut command = place.command(["compare", "coarse", "small.toml"]);
-        let wide = Ran::from(command.env("LP_NATIVE_VECTOR_WIDTH", width).output().unwrap());
+        let wide = run(command.env("LP_NATIVE_VECTOR_WIDTH", width));
         assert!(wide.status == Some(0) && wide.out.contains("14 states are the same"), "{width}: {wide:?}");
     }
     // Other settings of PNG.

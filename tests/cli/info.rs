@@ -1,7 +1,6 @@
 //! `info`, `schema` and `completions`; and what becomes of results that nobody reads.
 
-use crate::support::{Place, Ran};
-use std::process::Stdio;
+use crate::support::{Place, Running, run};
 
 #[test]
 fn information_works_without_any_driver() {
@@ -9,7 +8,7 @@ fn information_works_without_any_driver() {
     let nowhere = place.path("nowhere.json");
     let none = |arguments: &str| {
         let mut command = place.command(arguments.split(' '));
-        Ran::from(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap()).good()
+        run(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere)).good()
     };
     for ran in [place.run("info").good(), none("info")] {
         assert!(ran.out.starts_with(concat!("localshape ", env!("CARGO_PKG_VERSION"))), "{}", ran.out);
@@ -55,7 +54,7 @@ fn a_closed_pipe_is_no_failure() {
         // The end for reading is gone before the program writes a word.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
-        let ran = Ran::from(command.stdout(writer).stderr(Stdio::piped()).output().unwrap());
+        let ran = Running::start_into(&mut command, writer).wait();
         assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{arguments}");
     }
     // The work is done all the same.
@@ -69,7 +68,7 @@ fn results_that_cannot_be_written() {
     for arguments in ["schema", "check small.toml", "simulate small.toml --json"] {
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
         let mut command = place.command(arguments.split(' '));
-        Ran::from(command.stdout(full).stderr(Stdio::piped()).output().unwrap()).bad(4, &["standard output"]);
+        Running::start_into(&mut command, full).wait().bad(4, &["standard output"]);
     }
 }
 
@@ -81,8 +80,9 @@ fn closed_outputs() {
     let program = env!("CARGO_BIN_EXE_localshape");
     for (arguments, status) in [("simulate small.toml -o out", 0), ("check absent.toml", 2), ("nonsense", 2)] {
         let line = format!("'{program}' {arguments} >&- 2>&-");
-        let ended = std::process::Command::new("sh").args(["-c", &line]).current_dir(place.path(".")).status().unwrap();
-        assert_eq!(ended.code(), Some(status), "{arguments}");
+        let mut shell = std::process::Command::new("sh");
+        let ran = run(shell.args(["-c", &line]).current_dir(place.path(".")));
+        assert_eq!(ran.status, Some(status), "{arguments}");
     }
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
 }

@@ -1,9 +1,11 @@
 //! Signals: whole files only, whenever the program is stopped.
 #![cfg(unix)]
 
-use crate::support::{Place, lasting};
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use crate::support::{Place, Ran, Running, lasting, run};
+use libc::{SIGHUP, SIGINT, SIGTERM};
+use std::ffi::c_int;
+use std::process::Command;
+use std::time::Duration;
 
 /// A scene that would take very long.
 fn place_for_long() -> Place {
@@ -12,54 +14,130 @@ fn place_for_long() -> Place {
     place
 }
 
-/// Starts the program, and waits until a file is there.
-pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Child {
-    let mut command = place.command(arguments.split(' '));
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-    let started = Instant::now();
-    while !place.path(sign).exists() {
-        assert!(started.elapsed() < Duration::from_secs(60), "{sign} does not appear");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    child
+/// Starts the program with what signals do by default, whatever they do to this test, and waits until a file is there.
+pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Running {
+    start_ignoring(&[], place, arguments, sign)
 }
 
-pub(crate) fn signal(child: &Child, name: &str) {
-    // The shell's own, which is everywhere.
-    let line = format!("kill -{name} {}", child.id());
-    let sent = Command::new("sh").args(["-c", &line]).status().expect("a shell");
-    assert!(sent.success());
+/// As [`start`], with some signals ignored.
+fn start_ignoring(ignored: &'static [c_int], place: &Place, arguments: &str, sign: &str) -> Running {
+    let mut command = place.command(arguments.split(' '));
+    set_signals(&mut command, ignored);
+    let mut running = Running::start(&mut command);
+    running.until(sign, |_| place.path(sign).exists());
+    running
+}
+
+/// What is ignored when a program starts is so in those that it starts, too, and no shell takes that back.
+#[allow(unsafe_code, reason = "what signals do is set between fork and exec, and there is no safe way to")]
+fn set_signals(command: &mut Command, ignored: &'static [c_int]) {
+    use std::os::unix::process::CommandExt;
+    let set = || {
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            let action = if ignored.contains(&signal) { libc::SIG_IGN } else { libc::SIG_DFL };
+            // SAFETY: neither is a handler, and so nothing of this process is ever called.
+            unsafe { libc::signal(signal, action) };
+        }
+        Ok(())
+    };
+    // SAFETY: in the child, `signal` may be called, and nothing is allocated or locked.
+    unsafe { command.pre_exec(set) };
+}
+
+/// Sends signals by name, as quickly as can be.
+pub(crate) fn signal(running: &Running, names: &[&str]) {
+    // The shell's own command, which is everywhere.
+    let kill = |name: &&str| format!("kill -{name} {}", running.id());
+    let line = names.iter().map(kill).collect::<Vec<_>>().join("; ");
+    assert_eq!(run(Command::new("sh").args(["-c", &line])).status, Some(0), "{line}");
+}
+
+/// All files are there and say that the program was stopped.
+#[track_caller]
+fn is_whole(place: &Place, folder: &str, ran: &Ran) {
+    assert!(ran.status == Some(130) && ran.out.contains("interrupted after"), "{ran:?}");
+    assert_eq!(place.names(folder), ["diagnostics.csv", "run.json", "states.npz"]);
+    let run = place.json(&format!("{folder}/run.json"));
+    assert_eq!(run["outcome"], "interrupted");
+    let rows = place.read(&format!("{folder}/diagnostics.csv")).lines().count() as u64;
+    assert_eq!(rows, 1 + 2 * run["frames"]["recorded"].as_u64().unwrap());
 }
 
 #[test]
 fn interrupted_and_terminated() {
     let place = place_for_long();
-    for name in ["INT", "TERM"] {
+    for name in ["INT", "TERM", "HUP"] {
         let folder = format!("out-{name}");
-        let child = start(&place, &format!("simulate long.toml --states -o {folder}"), &format!("{folder}/run.json"));
-        signal(&child, name);
-        let output = child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(130));
-        assert!(String::from_utf8_lossy(&output.stdout).contains("interrupted after"), "{output:?}");
-
-        assert_eq!(place.names(&folder), ["diagnostics.csv", "run.json", "states.npz"]);
-        let run = place.json(&format!("{folder}/run.json"));
-        assert_eq!(run["outcome"], "interrupted");
-        let rows = place.read(&format!("{folder}/diagnostics.csv")).lines().count() as u64;
-        assert_eq!(rows, 1 + 2 * run["frames"]["recorded"].as_u64().unwrap());
+        let running = start(&place, &format!("simulate long.toml --states -o {folder}"), &format!("{folder}/run.json"));
+        signal(&running, &[name]);
+        is_whole(&place, &folder, &running.wait());
     }
+}
+
+/// `timeout` sends its signal to the program and to the group that it is in.
+#[test]
+fn the_same_request_twice_loses_nothing() {
+    let place = place_for_long();
+    for name in ["INT", "TERM", "HUP"] {
+        for number in 0..4 {
+            let folder = format!("out-{name}-{number}");
+            let arguments = format!("simulate long.toml --states -o {folder}");
+            let running = start(&place, &arguments, &format!("{folder}/run.json"));
+            signal(&running, &[name, name]);
+            is_whole(&place, &folder, &running.wait());
+        }
+    }
+}
+
+/// As by `nohup`, and in the background of a script.
+#[test]
+fn what_is_ignored_stays_ignored_and_the_rest_is_heard() {
+    let place = place_for_long();
+    let arguments = "simulate long.toml --states -o out";
+    let mut running = start_ignoring(&[SIGINT, SIGHUP], &place, arguments, "out/run.json");
+    signal(&running, &["INT", "HUP"]);
+    // So long it would not have lived.
+    std::thread::sleep(Duration::from_millis(200));
+    assert!(running.is_running());
+    assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
+    signal(&running, &["TERM", "TERM"]);
+    is_whole(&place, "out", &running.wait());
+}
+
+/// If it does not end for all its requests, nothing that is finished is lost.
+#[test]
+fn a_later_ctrl_c_ends_at_once() {
+    use std::io::Write;
+    let place = place_for_long();
+    // Nobody reads from a pipe that is full: the program waits for ever before its last word.
+    let (reader, mut writer) = std::io::pipe().unwrap();
+    let out = writer.try_clone().unwrap();
+    std::thread::spawn(move || while writer.write_all(&[b' '; 4096]).is_ok() {});
+    let mut command = place.command(["simulate", "long.toml", "-o", "out"]);
+    set_signals(&mut command, &[]);
+    let mut running = Running::start_into(&mut command, out);
+    running.until("run.json", |_| place.path("out/run.json").exists());
+    signal(&running, &["INT"]);
+    running.until("the end of the simulation", |_| place.json("out/run.json")["outcome"] == "interrupted");
+    std::thread::sleep(Duration::from_millis(1100));
+    signal(&running, &["TERM", "HUP"]);
+    std::thread::sleep(Duration::from_millis(200));
+    assert!(running.is_running(), "other programs only ask");
+    signal(&running, &["INT"]);
+    assert_eq!(running.wait().status, Some(130));
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
+    drop(reader);
 }
 
 #[test]
 fn later_scenes_are_not_begun() {
     let place = place_for_long();
     place.write("small.toml", crate::support::SMALL);
-    let child = start(&place, "simulate long.toml small.toml --json -o out", "out/long/run.json");
-    signal(&child, "INT");
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
-    let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one document");
-    assert_eq!(document["scenes"].as_array().unwrap().len(), 1);
+    let running = start(&place, "simulate long.toml small.toml --json -o out", "out/long/run.json");
+    signal(&running, &["INT"]);
+    let ran = running.wait();
+    assert_eq!(ran.status, Some(130));
+    assert_eq!(ran.json()["scenes"].as_array().unwrap().len(), 1);
     assert_eq!(place.names("out"), ["long"]);
 }
 
@@ -67,11 +145,10 @@ fn later_scenes_are_not_begun() {
 #[test]
 fn killed() {
     let place = place_for_long();
-    let mut child = start(&place, "simulate long.toml", "output/long/run.json");
+    let mut running = start(&place, "simulate long.toml", "output/long/run.json");
     // The summary is there before the diagnostics are begun; the first of these must have been written out.
-    std::thread::sleep(Duration::from_millis(100));
-    child.kill().unwrap();
-    child.wait().unwrap();
+    running.until("diagnostics", |_| place.names("output/long").len() == 2);
+    running.kill();
     let names = place.names("output/long");
     assert!(names.len() == 2 && names[0].starts_with(".localshape-") && names[1] == "run.json", "{names:?}");
     assert_eq!(place.json("output/long/run.json")["outcome"], "unfinished");
@@ -86,10 +163,9 @@ fn within_a_frame() {
     let place = Place::new();
     let one_long_frame = lasting("1e6").replace("frames_per_second = 60", "frames_per_second = 1e-6");
     place.write("long.toml", &one_long_frame);
-    let child = start(&place, "simulate long.toml --frames 1", "output/long/run.json");
-    signal(&child, "INT");
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
+    let running = start(&place, "simulate long.toml --frames 1", "output/long/run.json");
+    signal(&running, &["INT"]);
+    assert_eq!(running.wait().status, Some(130));
     assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
     let run = place.json("output/long/run.json");
     assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));

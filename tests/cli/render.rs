@@ -1,6 +1,6 @@
 //! `render`: frames and what they say about themselves.
 
-use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, lasting, skip};
+use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
 use localshape::output::{Tags, read_tags};
 use std::path::Path;
 
@@ -186,10 +186,9 @@ fn interrupted_while_simulating_ahead() {
     }
     let place = Place::new();
     place.write("long.toml", &with_strip(&lasting("100000")));
-    let child = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
-    crate::interrupt::signal(&child, "INT");
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
+    let running = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
+    crate::interrupt::signal(&running, &["INT"]);
+    assert_eq!(running.wait().status, Some(130));
     assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
     let run = place.json("output/long/run.json");
     assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));
@@ -263,7 +262,7 @@ fn without_a_driver() {
     let nowhere = place.path("nowhere.json");
     let run = |arguments: &str| {
         let mut command = place.command(arguments.split(' '));
-        Ran::from(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap())
+        run_command(command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere))
     };
     run("render small.toml").bad(3, &["mesa-vulkan-drivers"]);
     assert_eq!(place.names("."), ["small.toml"]);
@@ -290,10 +289,9 @@ fn interrupted_while_drawing() {
     }
     let place = Place::new();
     place.write("long.toml", &lasting("1000"));
-    let child = crate::interrupt::start(&place, "render long.toml --samples 1", "output/long/frame_00003.png");
-    crate::interrupt::signal(&child, "INT");
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
+    let running = crate::interrupt::start(&place, "render long.toml --samples 1", "output/long/frame_00003.png");
+    crate::interrupt::signal(&running, &["INT"]);
+    assert_eq!(running.wait().status, Some(130));
     let run = place.json("output/long/run.json");
     let written = run["frames"]["written"].as_u64().unwrap();
     assert_eq!(run["frames"]["recorded"].as_u64(), Some(written));
@@ -302,4 +300,21 @@ fn interrupted_while_drawing() {
     for name in names.iter().filter(|name| name.ends_with(".png")) {
         pixels(&place.path("output/long").join(name));
     }
+}
+
+/// What was made before is kept, and the summary says how it ended.
+#[test]
+fn a_frame_that_cannot_be_written() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    // No file can take the place of a folder.
+    place.write("out/frame_00003.png/notes.txt", "mine");
+    place.run("render small.toml -o out").bad(2, &["out holds frame_00003.png, which is a folder", "--overwrite"]);
+    place.run("render small.toml -o out --overwrite").bad(4, &["cannot write out/frame_00003.png"]);
+    assert_eq!(place.json("out/run.json")["outcome"], "failed");
+    assert!(read_tags(&place.path("out/frame_00002.png")).unwrap().is_some());
+    assert!(place.read("out/diagnostics.csv").lines().count() > 2 * 3);
+    assert_eq!(place.names("out").iter().filter(|name| name.starts_with('.')).count(), 0);
 }

@@ -1,6 +1,8 @@
 //! `simulate`: diagnostics, summary and states.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES};
+use localshape::scene::{Limits, Scene};
+use localshape::sequence::Sequence;
 use std::io::Read;
 
 const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
@@ -33,6 +35,67 @@ fn diagnostics_of_each_run_and_frame() {
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
     assert!(rows.iter().all(|row| digits(row[2]) == 17 && digits(row[3]) == 17), "{table}");
     assert!(rows.iter().all(|row| row[16] == "ok"));
+}
+
+/// Each number stands below its name.
+#[test]
+fn columns_are_what_their_heads_say() {
+    let place = Place::with_small();
+    place.run("simulate small.toml").good();
+    let table = place.read("output/small/diagnostics.csv");
+    let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    let scene = Scene::load(&place.path("small.toml"), &Limits::default()).unwrap();
+    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let rows = rows(&table);
+    for (number, row) in rows.iter().enumerate() {
+        let frame = sequence.frame(number as u64 / 2);
+        let d = &frame.runs[number % 2].snapshot.diagnostics;
+        let columns = [
+            ("kinetic", d.kinetic),
+            ("elastic", d.elastic),
+            ("gravitational", d.gravitational),
+            ("momentum_x", d.momentum.x),
+            ("momentum_y", d.momentum.y),
+            ("momentum_z", d.momentum.z),
+            ("angular_momentum_x", d.angular_momentum.x),
+            ("angular_momentum_y", d.angular_momentum.y),
+            ("angular_momentum_z", d.angular_momentum.z),
+            ("residual", d.residual),
+            ("turned_over", d.turned_over as f64),
+            ("volume_ratio", d.volume_ratio),
+            ("shape_error", d.shape_error),
+        ];
+        for (name, number) in columns {
+            let at = heads.iter().position(|head| *head == name).expect("a column");
+            let written: f64 = row[at].parse().unwrap();
+            assert!(written == number || written.is_nan() && number.is_nan(), "{name}: {written} for {number}");
+        }
+    }
+}
+
+/// A square pulled to one and a half of its width, in numbers that anyone can work out.
+#[test]
+fn volume_and_shape_of_a_square_pulled_wide() {
+    let place = Place::new();
+    let (head, tail) = SMALL.split_once("[body]").unwrap();
+    let runs = &tail[tail.find("[[run]]").unwrap()..tail.find("[[obstacle]]").unwrap()];
+    let body = "[body]\nnodes = [[0, 0], [0.2, 0], [0.2, 0.2], [0, 0.2]]\nelements = [[0, 1, 2, 3]]\n\
+                positions = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]\nmass = 1.0\n";
+    place.write("wide.toml", &format!("{}{body}{runs}", head.replace("[0, -9.8, 0]", "[0, -9.8]")));
+    place.run("simulate wide.toml --frames 0").good();
+    let table = place.read("output/wide/diagnostics.csv");
+    let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    let run = place.json("output/wide/run.json");
+    // Each node is a quarter of the pull away from where it would be in the square that fits best.
+    for (name, number) in [("volume_ratio", 1.5), ("shape_error", 0.05)] {
+        let at = heads.iter().position(|head| *head == name).expect("a column");
+        for row in rows(&table) {
+            assert!((row[at].parse::<f64>().unwrap() - number).abs() < 1e-12, "{name}: {table}");
+        }
+        for run in run["runs"].as_array().unwrap() {
+            assert!((run["last"][name].as_f64().unwrap() - number).abs() < 1e-12, "{name}: {run}");
+        }
+    }
 }
 
 #[test]
@@ -107,6 +170,9 @@ fn json_is_one_document_also_when_a_later_scene_fails() {
     let outcomes: Vec<_> = document["scenes"].as_array().unwrap().iter().map(|scene| &scene["outcome"]).collect();
     assert_eq!(outcomes, ["done", "failed"]);
     assert_eq!(document["scenes"][1]["files"], serde_json::json!([]));
+    // On the disk, too.
+    assert_eq!(place.json("out/small/run.json")["outcome"], "done");
+    assert_eq!(place.json("out/other/run.json")["outcome"], "failed");
     assert!(!place.path("out/third").exists());
 }
 

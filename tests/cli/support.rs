@@ -2,9 +2,11 @@
 
 use serde_json::Value;
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// Two cubes on a floor with two runs and seven frames; quick, and small when drawn.
@@ -88,12 +90,98 @@ impl Place {
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
         command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
+        // What whoever starts the tests likes best.
+        for name in ["CLICOLOR", "CLICOLOR_FORCE", "NO_COLOR", "COLUMNS"] {
+            command.env_remove(name);
+        }
         command
     }
 
     /// Runs the program with arguments, written with spaces between.
     pub(crate) fn run(&self, arguments: &str) -> Ran {
-        Ran::from(self.command(arguments.split(' ')).output().expect("the program starts"))
+        run(&mut self.command(arguments.split(' ')))
+    }
+}
+
+/// So long the program may take for what a test asks of it, on a slow machine that has other things to do.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// Runs a command to its end.
+pub(crate) fn run(command: &mut Command) -> Ran {
+    Running::start(command).wait()
+}
+
+/// A command on its way, which ends with the test, however that ends.
+pub(crate) struct Running {
+    child: Child,
+    out: File,
+    err: File,
+}
+
+impl Running {
+    /// Starts a command. What it says goes into files: so nobody waits for it to be read.
+    #[track_caller]
+    pub(crate) fn start(command: &mut Command) -> Self {
+        let out = tempfile::tempfile().expect("a file");
+        let mut running = Self::start_into(command, out.try_clone().expect("the same file"));
+        running.out = out;
+        running
+    }
+
+    /// Starts a command whose standard output goes elsewhere.
+    #[track_caller]
+    pub(crate) fn start_into(command: &mut Command, out: impl Into<Stdio>) -> Self {
+        let err = tempfile::tempfile().expect("a file");
+        let into = err.try_clone().expect("the same file");
+        let child = command.stdout(out).stderr(into).spawn().expect("the program starts");
+        // The command keeps its end of what it was given, and somebody may wait for that to be closed.
+        command.stdout(Stdio::null());
+        Self { child, out: tempfile::tempfile().expect("a file"), err }
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    pub(crate) fn is_running(&mut self) -> bool {
+        self.child.try_wait().expect("a child of this process").is_none()
+    }
+
+    /// Ends it at once.
+    pub(crate) fn kill(&mut self) {
+        self.child.kill().expect("a child of this process");
+        self.child.wait().expect("a child of this process");
+    }
+
+    /// Waits for something that it does.
+    #[track_caller]
+    pub(crate) fn until(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
+        let started = Instant::now();
+        while !is_so(self) {
+            assert!(started.elapsed() < PATIENCE, "{what}: not within {PATIENCE:?}");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Waits for its end.
+    #[track_caller]
+    pub(crate) fn wait(mut self) -> Ran {
+        self.until("the end of a command", |running| !running.is_running());
+        let status = self.child.wait().expect("a child of this process").code();
+        let text = |file: &mut File| {
+            let mut text = String::new();
+            file.rewind().and_then(|()| file.read_to_string(&mut text)).expect("text in UTF-8");
+            text
+        };
+        Ran { status, out: text(&mut self.out), err: text(&mut self.err) }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // If it has ended, there is nothing to be done.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
@@ -103,13 +191,6 @@ pub(crate) struct Ran {
     pub(crate) status: Option<i32>,
     pub(crate) out: String,
     pub(crate) err: String,
-}
-
-impl From<Output> for Ran {
-    fn from(output: Output) -> Self {
-        let text = |bytes| String::from_utf8(bytes).expect("text in UTF-8");
-        Self { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
-    }
 }
 
 impl Ran {

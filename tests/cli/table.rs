@@ -120,12 +120,12 @@ fn interrupted() {
     let place = Place::new();
     for (name, table) in [("INT", "table1 --orientations 10000"), ("TERM", "ratio")] {
         let folder = format!("out-{name}");
-        let child = start(&place, &format!("table {table} -o {folder}"), &folder);
+        let running = start(&place, &format!("table {table} -o {folder}"), &folder);
         std::thread::sleep(std::time::Duration::from_millis(100));
-        signal(&child, name);
-        let output = child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(130), "{output:?}");
-        assert!(String::from_utf8_lossy(&output.stdout).starts_with("interrupted; "), "{output:?}");
+        signal(&running, &[name]);
+        let ran = running.wait();
+        assert_eq!(ran.status, Some(130), "{ran:?}");
+        assert!(ran.out.starts_with("interrupted; "), "{ran:?}");
         assert_eq!(place.names(&folder), [""; 0]);
     }
 }

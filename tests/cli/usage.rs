@@ -1,6 +1,6 @@
 //! Wrong usage: every mistake has its words and ends with status 2.
 
-use crate::support::{Place, SMALL};
+use crate::support::{Place, SMALL, run};
 
 #[test]
 fn help_and_version_are_results() {
@@ -75,4 +75,17 @@ fn two_scenes_for_one_folder() {
     place.write("b/scene.toml", &SMALL.replace("Two cubes", "The same cubes"));
     let ran = place.run("simulate a/scene.toml b/scene.toml").bad(2, &["Two cubes", "The same cubes", "-o"]);
     assert!(ran.err.contains("scene; run them"), "{}", ran.err);
+}
+
+/// Colours are for people; what programs read has none.
+#[test]
+fn colours_that_are_forced_stay_out_of_results() {
+    let place = Place::with_small();
+    for arguments in ["simulate small.toml --json", "check small.toml --json", "info --json", "schema"] {
+        let mut command = place.command(arguments.split(' '));
+        let ran = run(command.env("CLICOLOR_FORCE", "1").env("TERM", "xterm-256color")).good();
+        assert!(ran.json().is_object(), "{arguments}");
+    }
+    let ran = run(place.command(["simulate"]).env("CLICOLOR_FORCE", "1"));
+    assert!(ran.status == Some(2) && ran.err.contains('\x1b'), "a user who asks for colours gets them: {ran:?}");
 }

@@ -328,10 +328,11 @@ fn nothing_overlaps_in_any_arrangement() {
     for count in [1, 2, 3, 4, 6, 9, 12] {
         let runs: Vec<_> = (0..count).map(|at| frame.runs[at % 2].clone()).collect();
         let frame = Frame { runs, ..frame.clone() };
-        for columns in [1, 2, 3, count] {
+        // Each arrangement once.
+        for columns in [1, 2, 3].into_iter().filter(|&columns| columns < count).chain([count]) {
             for size in [[1280, 720], [640, 360], [720, 1280], [480, 480], [1920, 1080], [300, 200]] {
                 scene.view.size = size;
-                scene.view.columns = columns.min(count);
+                scene.view.columns = columns;
                 let picture = compose(&scene, &frame);
                 assert_eq!(picture.panels.len(), count);
                 let clocks = picture.words.iter().filter(|run| run.text == "67 ms").count();

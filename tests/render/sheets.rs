@@ -7,6 +7,7 @@ use localshape::picture::{MarkShape, Panel, Picture, TextRun, Weight, compose_fi
 use localshape::scene::Limits;
 use localshape::scene::figure::{Content, Figure, Sheet};
 use localshape::sim::snapshot::Status;
+use std::sync::LazyLock;
 
 const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];
 /// Type is never smaller than this (px).
@@ -56,8 +57,23 @@ fn others() -> Vec<Figure> {
     .collect()
 }
 
-fn all() -> Vec<Figure> {
-    SHEETS.iter().filter_map(|name| Figure::built_in(name)).chain(others()).collect()
+/// Figures with what they show, simulated once for all tests.
+type Shown = Vec<(Figure, Moments)>;
+
+fn show(figures: impl IntoIterator<Item = Figure>) -> Shown {
+    let shown = |figure: Figure| {
+        let moments = Moments::new(&figure);
+        (figure, moments)
+    };
+    figures.into_iter().map(shown).collect()
+}
+
+/// Those of [`SHEETS`].
+static PAPER: LazyLock<Shown> = LazyLock::new(|| show(SHEETS.iter().filter_map(|name| Figure::built_in(name))));
+
+fn all() -> impl Iterator<Item = &'static (Figure, Moments)> {
+    static OTHERS: LazyLock<Shown> = LazyLock::new(|| show(others()));
+    PAPER.iter().chain(OTHERS.iter())
 }
 
 /// The words in a tile.
@@ -72,25 +88,26 @@ fn within<'p>(picture: &'p Picture, panel: &'p Panel) -> impl Iterator<Item = &'
 
 #[test]
 fn no_words_overlap_and_all_can_be_read() {
-    for mut figure in all() {
-        let moments = Moments::new(&figure);
-        for size in [[2400, 1350], [1200, 675], [640, 360], [480, 270], [3000, 1700], [700, 1200], [200, 150], [64, 64]]
-        {
+    const SIZES: [[u32; 2]; 8] =
+        [[2400, 1350], [1200, 675], [640, 360], [480, 270], [3000, 1700], [700, 1200], [200, 150], [64, 64]];
+    for (number, (figure, moments)) in all().enumerate() {
+        let mut figure = figure.clone();
+        for (at, size) in SIZES.into_iter().enumerate() {
             figure.size = size;
-            for times in [1.0, 1.5, 3.0] {
-                figure.look.text_scale = times;
-                let picture = compose_figure(&figure, &moments).expect("room");
-                let figure = format!("{size:?} of {} with type {times} times as large", figure.title);
-                if let Some([one, other]) = overlapping(&picture) {
-                    panic!("“{}” lies over “{}” in {figure}", one.text, other.text);
-                }
-                let [width, height] = size.map(|length| length as f32);
-                for word in &picture.words {
-                    let [left, top, right, bottom] = word.bounds();
-                    let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
-                    assert!(inside, "“{}” leaves the picture of {figure}: {:?}", word.text, word.bounds());
-                    assert!(word.size >= SMALLEST_TYPE, "“{}” in {figure} is {} px high", word.text, word.size);
-                }
+            // Every figure at every size, and both of them with type of every size.
+            let times = [1.0, 1.5, 3.0][(number + at) % 3];
+            figure.look.text_scale = times;
+            let picture = compose_figure(&figure, moments).expect("room");
+            let figure = format!("{size:?} of {} with type {times} times as large", figure.title);
+            if let Some([one, other]) = overlapping(&picture) {
+                panic!("“{}” lies over “{}” in {figure}", one.text, other.text);
+            }
+            let [width, height] = size.map(|length| length as f32);
+            for word in &picture.words {
+                let [left, top, right, bottom] = word.bounds();
+                let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+                assert!(inside, "“{}” leaves the picture of {figure}: {:?}", word.text, word.bounds());
+                assert!(word.size >= SMALLEST_TYPE, "“{}” in {figure} is {} px high", word.text, word.size);
             }
         }
     }
@@ -125,11 +142,11 @@ fn type_is_as_many_times_larger_as_a_figure_says() {
 
 #[test]
 fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
-    for mut figure in all() {
-        let moments = Moments::new(&figure);
+    for (figure, moments) in all() {
+        let mut figure = figure.clone();
         for size in [[2400, 1350], [640, 360], [900, 1400]] {
             figure.size = size;
-            let picture = compose_figure(&figure, &moments).expect("room");
+            let picture = compose_figure(&figure, moments).expect("room");
             let runs: Vec<_> = moments.cells.iter().flatten().collect();
             assert_eq!(runs.len(), picture.panels.len());
             let columns = &sheet(&figure).columns;
@@ -163,9 +180,9 @@ fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
 
 #[test]
 fn floors_of_the_paper_are_at_one_height() {
-    for name in ["fig4b", "fig4c"] {
-        let figure = Figure::built_in(name).expect("a figure of the paper");
-        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
+    for (figure, moments) in &PAPER[1..3] {
+        let name = &figure.name;
+        let picture = compose_figure(figure, moments).expect("room");
         let floors: Vec<_> = picture.panels.iter().map(|panel| panel.floor.as_ref().expect("a floor").height).collect();
         assert!(floors.iter().all(|height| (height - floors[0]).abs() < 1e-6), "{name}: {floors:?}");
         assert!(picture.panels.iter().all(|panel| panel.sight.eye == picture.panels[0].sight.eye));
@@ -174,9 +191,8 @@ fn floors_of_the_paper_are_at_one_height() {
 
 #[test]
 fn counts_are_those_that_were_simulated() {
-    for figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)) {
-        let moments = Moments::new(&figure);
-        let picture = compose_figure(&figure, &moments).expect("room");
+    for (figure, moments) in PAPER.iter() {
+        let picture = compose_figure(figure, moments).expect("room");
         for (panel, run) in picture.panels.iter().zip(moments.cells.iter().flatten()) {
             let expected = run.snapshot.diagnostics.turned_over;
             let count = within(&picture, panel).find(|word| word.weight == Weight::SemiBold).expect("a count");
@@ -203,17 +219,17 @@ fn counts_are_those_that_were_simulated() {
 /// What docs/paper.md says of Fig. 4: which elements stay turned over, and what is left of the volume.
 #[test]
 fn the_last_columns_show_what_the_paper_tells() {
-    for (name, over, volume) in [("fig4a", 1, 0.86), ("fig4b", 9, 0.34), ("fig4c", 9, 0.33)] {
-        let figure = Figure::built_in(name).expect("a figure of the paper");
-        let moments = Moments::new(&figure);
+    for ((name, over, volume), (figure, moments)) in
+        [("fig4a", 1, 0.86), ("fig4b", 9, 0.34), ("fig4c", 9, 0.33)].into_iter().zip(PAPER.iter())
+    {
+        assert_eq!(figure.name, name);
         let [shape, springs] = [0, 1].map(|row| &moments.cells[row].last().expect("a column").snapshot);
         assert_eq!((shape.diagnostics.turned_over, springs.diagnostics.turned_over), (0, over), "{name}");
         assert!((springs.diagnostics.volume_ratio - volume).abs() < 0.015, "{name}: {:?}", springs.diagnostics);
         let least = if name == "fig4a" { 0.99 } else { 0.97 };
         assert!(shape.diagnostics.volume_ratio > least, "{name}: {:?}", shape.diagnostics);
     }
-    let figure = Figure::built_in("fig4a").expect("a figure of the paper");
-    let springs = &Moments::new(&figure).cells[1][4].snapshot;
+    let springs = &PAPER[0].1.cells[1][4].snapshot;
     assert_eq!(springs.turned_over, [false, false, false, false, false, true], "the triangle 1 0 6");
 }
 
@@ -230,9 +246,10 @@ fn letters_ascend_above_columns_and_over_time() {
     let close = own(
         "[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 0.023, 1, 2.99, 3]\nstrips = ['turned_over']\n",
     );
-    for mut figure in SHEETS.iter().filter_map(|name| Figure::built_in(name)).chain([close]) {
+    for (figure, moments) in PAPER.iter().chain(&show([close])) {
+        let mut figure = figure.clone();
         figure.size = [1600, 900];
-        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
+        let picture = compose_figure(&figure, moments).expect("room");
         let count = sheet(&figure).columns.len();
         let letters: Vec<_> = (b'a'..).take(count).map(|byte| char::from(byte).to_string()).collect();
         let top = picture.panels[0].viewport[1] as f32;

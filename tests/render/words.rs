@@ -42,18 +42,19 @@ fn load(text: &str) -> Scene {
     Scene::parse(text, "words.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Scenes with all kinds of words, at many sizes.
+/// Scenes with all kinds of words, at many sizes and in several arrangements.
 fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
-    for show in ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"] {
-        for size in
-            [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]]
-        {
-            for more in ["", "panels = 'column'", "theme = 'dark'\npanels = 'row'"] {
-                let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
-                let text = ALL.replace("spring_colour = {}", colours);
-                scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
-            }
+    let sizes = [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]];
+    let arrangements = ["", "panels = 'column'", "theme = 'dark'\npanels = 'row'"];
+    let shows = ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"];
+    for (number, show) in shows.into_iter().enumerate() {
+        for (at, size) in sizes.into_iter().enumerate() {
+            // Any two of them once at least.
+            let more = arrangements[(number + at) % 3];
+            let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
+            let text = ALL.replace("spring_colour = {}", colours);
+            scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
         }
     }
     scenes
@@ -115,7 +116,7 @@ fn key_arrow(picture: &Picture) -> Option<[f32; 4]> {
 fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
     let shown = "show = ['springs', 'displacements']\n";
     let mut arrows = 0;
-    for (margin, text_scale, line_scale) in [
+    let scales = [
         (0.0, 0.5, 4.0),
         (0.0, 1.0, 1.0),
         (0.0, 1.0, 4.0),
@@ -127,16 +128,21 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
         (2.0, 1.0, 1.0),
         (2.0, 1.5, 1.0),
         (2.0, 3.0, 1.0),
-    ] {
+    ];
+    let sizes = [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]];
+    for (number, (margin, text_scale, line_scale)) in scales.into_iter().enumerate() {
         // In low panels, strips with type of three times the size have no room for two rows.
         for strip in ["", "strip = 'shape_error'"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
-            for view in ["", "caption = ''", "caption = ''\nlegend = false", "panels = 'column'"] {
+            for (at, view) in
+                ["", "caption = ''", "caption = ''\nlegend = false", "panels = 'column'"].into_iter().enumerate()
+            {
                 let text = ALL.lines().filter(|line| !line.starts_with("strip"));
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
                 let scales = format!("margin = {margin}\ntext_scale = {text_scale}\nline_scale = {line_scale}");
                 let mut scene = load(&format!("{}\n{strip}\n{shown}{scales}\n{view}\n", text.join("\n")));
-                for size in [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]] {
+                // Any two of margin, view and size once at least.
+                for size in [sizes[(number + at) % 5], sizes[(number + at + 2) % 5]] {
                     scene.view.size = size;
                     let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(3));
                     let place = format!("{size:?} with {scales} {strip} {view}");
@@ -170,7 +176,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
             }
         }
     }
-    assert!(arrows > 100, "{arrows}");
+    assert!(arrows > 40, "{arrows}");
 }
 
 #[test]
