@@ -164,11 +164,16 @@ impl Side {
         let path = self.origin.to_string_lossy();
         // A name that begins like an option is none behind this.
         let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
-        let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
-        match !path.is_empty() && path.chars().all(is_plain) {
-            true => path.into_owned(),
-            false => format!("'{}'", path.replace('\'', "'\\''")),
-        }
+        shell_word(&path)
+    }
+}
+
+/// A word as it can be pasted into a command line.
+pub(crate) fn shell_word(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }
 

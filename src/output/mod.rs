@@ -20,7 +20,7 @@ pub use atomic::{AtomicFile, remove_leftovers, write_whole};
 pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub use digest::state_digest;
 pub use error::OutputError;
-pub use folder::{FRAME_FILES, Folder, Look, frame_file_name};
+pub use folder::{FRAME_FILES, Folder, Look, Replace, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
 pub(crate) use png::encode_plain;
 pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_tags};

@@ -37,6 +37,8 @@ pub struct Summary {
 pub struct SceneSummary {
     /// Its title.
     pub title: String,
+    /// Its file, as a full path; `null` if it was read from a text.
+    pub file: Option<String>,
     /// Digest of its meaning.
     pub digest: String,
 }
@@ -122,7 +124,11 @@ impl Summary {
         let run = |&run: &usize| RunSummary { name: scene.runs[run].name.clone(), status: RunStatus::Ok, last: None };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),
-            scene: SceneSummary { title: scene.title.clone(), digest: scene.digest.clone() },
+            scene: SceneSummary {
+                title: scene.title.clone(),
+                file: scene.file.as_ref().and_then(|file| Some(file.to_str()?.to_owned())),
+                digest: scene.digest.clone(),
+            },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
             frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },

@@ -175,6 +175,7 @@ pub(super) fn resolve(
     Some(Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
+        file: None,
         digest: digest.into(),
         gravity: gravity?,
         duration: time.duration,
