@@ -1,6 +1,5 @@
 //! `render`: frames, diagnostics and a summary.
 
-use super::driver;
 use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
@@ -69,7 +68,7 @@ impl Render {
         }
         let jobs = self.options.jobs(scenes, true, words)?;
         // Opened when all else is known to be right, and before the first folder is touched.
-        let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
+        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
         for job in &jobs {
             let [width, height] = job.scene.view.size;
             let longest = gpu.longest_side();

@@ -10,6 +10,7 @@
 //! reads, lie beside it, too.
 
 mod beside;
+mod code;
 mod digest;
 mod error;
 pub mod figure;
@@ -65,7 +66,8 @@ pub struct Scene {
     pub name: String,
     /// The scene file, as a full path; none if the scene was read from a text.
     pub file: Option<PathBuf>,
-    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count.
+    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty for a
+    /// scene made in code.
     pub digest: String,
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,
