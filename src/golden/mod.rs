@@ -49,7 +49,7 @@ pub use distance::{Count, Distance, Machines};
 pub use picture::{PictureError, Pixels};
 pub use record::RECORD_FILE;
 pub(crate) use side::{Side, shell_word};
-pub use states::{Change, Course, Displacement, Moment, Moved, Numbers};
+pub use states::{Change, Course, Displacement, Moment, Moved, Numbers, StepChange};
 #[cfg(feature = "render")]
 pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
@@ -251,6 +251,8 @@ impl Comparison {
                     Ok(None) => {}
                     Err(note) => notes.push(note),
                 }
+                let steps = sides[at].steps(&labels[at]);
+                states.set_steps(steps.iter().map(|(run, step)| (run.as_str(), *step)));
             }
             states
         })
@@ -521,6 +523,11 @@ impl Comparison {
         let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
         for moved in self.moved.iter().filter(|_| !are_pictures) {
             writeln!(f, "state moved: {moved}")?;
+        }
+        for (run, step) in
+            self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
+        {
+            writeln!(f, "{run}: {step}")?;
         }
         let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
         for Compared { name, verdict, .. } in wrong.iter().take(MOST_TOLD) {
