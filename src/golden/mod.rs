@@ -55,6 +55,7 @@ pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
 
 use crate::output::Label;
+use crate::sim::words::rounded;
 use pair::Pair;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -457,7 +458,8 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
         // Scenes whose steps are not alike have frames at slightly different times.
         let is_other = (actual.time - expected.time).abs() > 0.01 * actual.time.abs().max(expected.time.abs());
         is_other.then(|| {
-            format!("{name} shows frame {} at {:.3} s instead of {:.3} s", actual.frame, actual.time, expected.time)
+            let [was, is] = [expected.time, actual.time].map(|time| rounded(time, 4));
+            format!("{name} shows frame {} at {is} s instead of {was} s", actual.frame)
         })
     };
     let mut all = pairs.iter().filter_map(told);
@@ -524,17 +526,17 @@ impl Comparison {
         for moved in self.moved.iter().filter(|_| !are_pictures) {
             writeln!(f, "state moved: {moved}")?;
         }
-        for (run, step) in
-            self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
-        {
-            writeln!(f, "{run}: {step}")?;
-        }
         let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
         for Compared { name, verdict, .. } in wrong.iter().take(MOST_TOLD) {
             writeln!(f, "{name}: {verdict}")?;
         }
         if wrong.len() > MOST_TOLD {
             writeln!(f, "and {} more", wrong.len() - MOST_TOLD)?;
+        }
+        for (run, step) in
+            self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
+        {
+            writeln!(f, "{run}: {step}")?;
         }
         if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
             // A single picture that passes is told, too.

@@ -216,7 +216,9 @@ fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
     assert_eq!(change["parts"], 50.0);
     // Of two single pictures, too.
     let pair = told("small/frame_00003.png stiffer/frame_00003.png");
+    assert!(pair.starts_with("frame_00003.png: state moved: Local shape, node "), "{pair}");
     assert!(pair.contains("\nLocal shape: its step changed from "), "{pair}");
+    assert!(pair.contains("frame_00003.png shows frame 3 at 0.04976 s instead of 0.05027 s\n"), "{pair}");
     // What is not known of these very pictures is not told.
     let summary = place.read("small/run.json");
     let (step, cycle) = ("\"step\":", "\"cycle\":");
