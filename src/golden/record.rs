@@ -151,7 +151,7 @@ struct FileRun {
     every: usize,
     /// In which positions are counted (m).
     quantum: f64,
-    /// Time step and the scene's cycle T (s). Earlier versions of this program did not record them, and figures have none.
+    /// Time step and the scene's cycle T (s). Earlier versions of this program did not record them.
     step: Option<f64>,
     cycle: Option<f64>,
 }
