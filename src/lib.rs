@@ -30,6 +30,8 @@
 //! # }
 //! ```
 //!
+//! A body made in code becomes a scene by [`Scene::new`](scene::Scene::new), with a camera that shows it.
+//!
 //! # The way of the data
 //!
 //! ```text
@@ -41,6 +43,9 @@
 //! states that a figure shows, [`table`] measures what the paper tells in numbers, [`output`] writes files, [`cli`] is the
 //! program. Without the feature `render` (on by
 //! default) the crate simulates and needs no graphics library.
+
+/// The vectors in which positions are given, of the version that this crate uses.
+pub use glam;
 
 pub mod cli;
 pub mod colour;

@@ -30,6 +30,11 @@ impl Moments {
     /// The states behind a figure, each with a name of its own: those of a contact sheet cell by cell; of a diagram of
     /// forces those at the start of all runs of its scenes.
     pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
+        self.runs_and_states(figure).into_iter().map(|(name, _, state)| (name, state)).collect()
+    }
+
+    /// The same with the scene and the run in it that each is of.
+    pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, Cow<'a, Snapshot>)> {
         let mut states = self.named_states(figure);
         // Two scenes may have one title.
         for at in 1..states.len() {
@@ -41,7 +46,7 @@ impl Moments {
         states
     }
 
-    fn named_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
+    fn named_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, Cow<'a, Snapshot>)> {
         let named = |scene: &Scene, run: usize| format!("{} · {}", scene.title, scene.runs[run].name);
         match &figure.content {
             Content::Sheet(sheet) => {
@@ -49,8 +54,9 @@ impl Moments {
                 rows.flat_map(|(row, cells)| {
                     cells.iter().enumerate().map(move |(column, cell)| {
                         let (scene, run, _) = sheet.cell(row, column);
-                        let name = named(&sheet.scenes[scene], run);
-                        (format!("{name}, row {}, column {}", row + 1, column + 1), Cow::Borrowed(&cell.snapshot))
+                        let scene = &sheet.scenes[scene];
+                        let name = format!("{}, row {}, column {}", named(scene, run), row + 1, column + 1);
+                        (name, (scene, run), Cow::Borrowed(&cell.snapshot))
                     })
                 })
                 .collect()
@@ -58,11 +64,17 @@ impl Moments {
             Content::Forces(forces) => {
                 let runs = |scene: &'a Scene| (0..scene.runs.len()).map(move |run| (scene, run));
                 let states = forces.scenes.iter().flat_map(runs);
-                states.map(|(scene, run)| (named(scene, run), Cow::Owned(scene.world(run).snapshot()))).collect()
+                let state = |(scene, run): OfRun<'a>| {
+                    (named(scene, run), (scene, run), Cow::Owned(scene.world(run).snapshot()))
+                };
+                states.map(state).collect()
             }
         }
     }
 }
+
+/// A run of a scene.
+type OfRun<'a> = (&'a Scene, usize);
 
 /// A figure's simulations on their way, in slices.
 pub struct Taking {

@@ -4,7 +4,6 @@ use super::console;
 use super::failure::{Failure, Status, with_causes};
 #[cfg(feature = "render")]
 use super::{
-    driver,
     frames::FrameRanges,
     interrupt,
     render::{samples, size},
@@ -226,8 +225,8 @@ impl Compare {
             }
         };
         let wish = Wish { frames, size: *size, samples: *samples, ..Wish::default() };
-        let open = || adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new);
-        let gpu = driver::hushed(open).map_err(|error| Failure::adapter(&error))?;
+        let gpu =
+            adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new).map_err(|error| Failure::adapter(&error))?;
         interrupt::listen();
         let drawn = draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested());
         let drawn = drawn.map_err(|error| match error {

@@ -1,7 +1,6 @@
 //! `figure`: the paper's figures, and figures of a user's own.
 
 use super::console;
-use super::driver;
 use super::failure::{Failure, Status, with_causes};
 use super::interrupt;
 use super::options::processors;
@@ -106,7 +105,7 @@ impl FigureCommand {
             self.fit(figure)?;
         }
         let paths = self.paths(&figures)?;
-        let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
+        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
         if let Some(figure) = figures.iter().find(|figure| figure.size.iter().any(|&side| side > gpu.longest_side())) {
             let ([width, height], adapter, longest) = (figure.size, gpu.description(), gpu.longest_side());
             let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");

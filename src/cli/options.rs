@@ -25,7 +25,8 @@ pub(super) struct RunOptions {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(super) out: Option<PathBuf>,
 
-    /// Replace what the output folder holds of another scene, or of another size or choice of runs
+    /// Replace what the output folder holds of another scene, of another size or choice of runs, or, if it was named
+    /// with -o, of an earlier version of the scene file
     #[arg(long)]
     pub(super) overwrite: bool,
 

@@ -61,6 +61,11 @@ pub(super) fn run_all(
             break;
         }
         let path = job.folder.path().to_owned();
+        let mut blank = if number > 0 { "\n" } else { "" };
+        if let Some(earlier) = job.folder.earlier().filter(|_| !options.json && !options.quiet) {
+            console::print(&format!("{blank}{}: replacing {earlier}\n", path.display()))?;
+            blank = "";
+        }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         result = record(job, &mut summary, &pool, options, studio);
         if options.json {
@@ -68,7 +73,6 @@ pub(super) fn run_all(
             merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
             documents.push(document);
         } else if !options.quiet && result.is_ok() {
-            let blank = if number > 0 { "\n" } else { "" };
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
         }
         if result.is_err() {

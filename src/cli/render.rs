@@ -1,6 +1,5 @@
 //! `render`: frames, diagnostics and a summary.
 
-use super::driver;
 use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
@@ -26,6 +25,9 @@ Examples:
 The folder then holds frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, \
 for each run and frame) and run.json (what was run, how it went, and which files it wrote). Frames of another scene \
 are never mixed with them, nor frames of another --size or --only; other frames of the same sequence stay.
+
+output/NAME follows its scene file: what an earlier version of that file made there is replaced. A folder named with -o, \
+and one with results of another scene, is left as it is unless --overwrite is given.
 
 Without a GPU, pictures are drawn on the processor; `localshape info` tells with what.";
 
@@ -64,9 +66,9 @@ impl Render {
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }
-        let jobs = self.options.jobs(scenes, true)?;
+        let jobs = self.options.jobs(scenes, true, words)?;
         // Opened when all else is known to be right, and before the first folder is touched.
-        let gpu = driver::hushed(|| Gpu::new(&self.adapter)).map_err(|error| Failure::adapter(&error))?;
+        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
         for job in &jobs {
             let [width, height] = job.scene.view.size;
             let longest = gpu.longest_side();

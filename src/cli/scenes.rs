@@ -3,9 +3,11 @@
 use super::failure::{Failure, Status, complain, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Folder, Look};
+use crate::golden::shell_word;
+use crate::output::{Folder, Look, OutputError, Replace};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 impl SceneOptions {
@@ -57,8 +59,8 @@ pub(super) struct Job {
 }
 
 impl RunOptions {
-    /// What is to be done for each scene, with or without `pictures`.
-    pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool) -> Result<Vec<Job>, Failure> {
+    /// What is to be done for each scene, with or without `pictures`, by the command of these `words`.
+    pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool, words: &[OsString]) -> Result<Vec<Job>, Failure> {
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -78,10 +80,23 @@ impl RunOptions {
             let frames = self.frames(&scene)?;
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
             let look = pictures.then_some(Look { size: scene.view.size, runs: names });
-            let folder = Folder::inspect(&path, &scene, look, self.overwrite)?;
+            let folder = Folder::inspect(&path, &scene, look, self.replace()).map_err(|error| match error {
+                OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", overwriting(words))),
+                error => error.into(),
+            })?;
             jobs.push(Job { runs, frames, folder, scene });
         }
         Ok(jobs)
+    }
+
+    /// A folder that has its name from the scene follows its file. One that was named by the user keeps what it has, for
+    /// it may be what later versions are to be compared with.
+    fn replace(&self) -> Replace {
+        match (self.overwrite, &self.out) {
+            (true, _) => Replace::All,
+            (false, None) => Replace::Earlier,
+            (false, Some(_)) => Replace::Nothing,
+        }
     }
 
     fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
@@ -98,6 +113,13 @@ impl RunOptions {
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|told| Failure::usage(format!("frames of “{}”: {told}", scene.title)))
     }
+}
+
+/// The same command with `--overwrite`, which stands where no other word is taken for its own.
+fn overwriting(words: &[OsString]) -> String {
+    let words: Vec<_> = words.iter().map(|word| shell_word(&word.to_string_lossy())).collect();
+    let (program, rest) = words.split_at(words.len().min(2));
+    [program, &["--overwrite".to_owned()], rest].concat().join(" ")
 }
 
 /// How close a name must come to be taken for a slip, of 1 for equal.

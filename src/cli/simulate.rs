@@ -13,7 +13,10 @@ Examples:
   localshape simulate scenes/*.toml --json > results.json
 
 The folder then holds diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), \
-run.json (what was run, how it went, and which files it wrote) and, with --states, states.npz. A run that diverges is a result, not an error.";
+run.json (what was run, how it went, and which files it wrote) and, with --states, states.npz. A run that diverges is a result, not an error.
+
+output/NAME follows its scene file: what an earlier version of that file made there is replaced. A folder named with -o, \
+and one with results of another scene, is left as it is unless --overwrite is given.";
 
 /// Simulate scenes without drawing them; touches no graphics device
 #[derive(Args, Debug)]
@@ -27,7 +30,7 @@ pub(super) struct Simulate {
 
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let jobs = self.options.jobs(self.scenes.load_all()?, false)?;
+        let jobs = self.options.jobs(self.scenes.load_all()?, false, words)?;
         record::run_all(jobs, &self.options, words, false, None)
     }
 }

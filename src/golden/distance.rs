@@ -32,7 +32,9 @@ const PART_OF_INTERIORS: f64 = 1e-3;
 pub enum Machines {
     /// The same adapter with the same driver, for software on the same type of processor: not a byte may differ.
     Same,
-    /// Adapters of one kind, or nobody knows.
+    /// Neither picture says who drew it, so that nothing excuses a difference.
+    Unknown,
+    /// Adapters of one kind, or one of the pictures does not say.
     OneKind,
     /// Adapters of different kinds.
     OtherKind,
@@ -42,6 +44,7 @@ impl Machines {
     /// What two adapters, as pictures name them, are to each other.
     pub fn of(expected: Option<&str>, actual: Option<&str>) -> Self {
         match (expected, actual) {
+            (None, None) => Self::Unknown,
             (Some(one), Some(other)) if one == other => Self::Same,
             (Some(one), Some(other)) if kind(one) != kind(other) => Self::OtherKind,
             _ => Self::OneKind,
@@ -115,7 +118,7 @@ impl Distance {
     fn limits(&self) -> impl Iterator<Item = Limit> {
         let first = match self.machines {
             // Not a byte may differ.
-            Machines::Same => Count { visible: self.unequal, ..self.counted },
+            Machines::Same | Machines::Unknown => Count { visible: self.unequal, ..self.counted },
             _ => self.counted,
         };
         let limits = [Some(first), self.interiors, self.one_sided].into_iter().zip([None, Some(CONTRAST), None]);
@@ -213,7 +216,7 @@ impl Tally {
             one_sided.allowed = part(0.0, all);
             return Distance { machines, unequal, counted, interiors: Some(interiors), one_sided: Some(one_sided) };
         }
-        counted.allowed = if machines == Machines::Same { 0 } else { part(PART, all) };
+        counted.allowed = if machines == Machines::OneKind { part(PART, all) } else { 0 };
         Distance { machines, unequal, counted, interiors: None, one_sided: None }
     }
 }
@@ -283,9 +286,14 @@ impl fmt::Display for Distance {
             allowed => format!("{allowed} may"),
         };
         let Count { visible, largest, .. } = self.counted;
-        if self.machines == Machines::Same {
+        let strict = match self.machines {
+            Machines::Same => Some("one machine drew both"),
+            Machines::Unknown => Some("neither says who drew it"),
+            Machines::OneKind | Machines::OtherKind => None,
+        };
+        if let Some(why) = strict {
             let pixels = differ(self.unequal);
-            return write!(f, "{pixels}, by up to {largest} of 255; none may, for one machine drew both");
+            return write!(f, "{pixels}, by up to {largest} of 255; none may, for {why}");
         }
         let by = if largest > 0 { format!(", by up to {largest}") } else { String::new() };
         let pixels = format!("{} by more than {CHANNEL} of 255 ({}){by}", differ(visible), may(self.counted));
@@ -322,6 +330,7 @@ mod tests {
         assert_eq!(Machines::of(Some(old), Some(new)), Machines::OneKind);
         assert_eq!(Machines::of(Some(old), Some("NVIDIA H200 (discrete gpu, vulkan)")), Machines::OtherKind);
         assert_eq!(Machines::of(Some(old), None), Machines::OneKind);
+        assert_eq!(Machines::of(None, None), Machines::Unknown);
         let [one, other] = ["Intel(R) UHD (integrated gpu, vulkan)", "Intel(R) Xe (integrated gpu, vulkan)"];
         assert_eq!(Machines::of(Some(one), Some(other)), Machines::OtherKind);
     }

@@ -3,7 +3,7 @@
 use super::distance::kind;
 use super::record::{Drawn, Plan, Record};
 use super::side::{Kind, Side, Source};
-use super::states::{State, States};
+use super::states::{State, States, Step};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
 use crate::history::{History, Rehearsal};
 use crate::moments::Taking;
@@ -208,6 +208,8 @@ fn draw_scene(
             return Ok(None);
         }
     }
+    let cycle = scene.cycle();
+    states.set_steps(scene.runs.iter().map(|run| (run.name.as_str(), Step { step: run.step, cycle })));
     let scenes = vec![scene.digest.clone()];
     let record = Record { subject: String::new(), scenes, size, samples, pictures: drawn, states };
     Ok(Some(Made { record, pictures, notes: stopped.into_values().collect() }))
@@ -234,8 +236,9 @@ fn draw_figure(
     }
     let moments = taking.finish();
     let mut states = States::default();
-    for (name, snapshot) in moments.states(&figure) {
+    for (name, (scene, run), snapshot) in moments.runs_and_states(&figure) {
         states.add(&name, 0, State::of(&snapshot, true));
+        states.set_steps([(name.as_str(), Step { step: scene.runs[run].step, cycle: scene.cycle() })]);
     }
     let (mut pictures, mut drawn) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = gpu {
@@ -340,6 +343,41 @@ mod tests {
         let (origin, pictures) = ("golden".into(), BTreeMap::new());
         let is_undrawn = kind == Kind::Drawn;
         Side { origin, kind, pictures, record: Some(record), is_undrawn, options: String::new(), notes: Vec::new() }
+    }
+
+    /// A small scene, its golden, and both compared after a change of its states.
+    fn changed(change: impl Fn(&mut States)) -> Comparison {
+        let text = "
+            time = { duration = 0.05, step = 0.01, frames_per_second = 60 }
+            body = { lattice = { cells = [1, 1, 1], side = 1 } }
+            run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1 } }]
+        ";
+        let scene = Scene::parse(text, "one", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let golden = record(&scene, &scene, 0);
+        let mut actual = golden.clone();
+        change(&mut actual.states);
+        Comparison::between(side(golden, Kind::Golden), side(actual, Kind::Drawn)).expect("two records")
+    }
+
+    /// Fewer states are other ones, also where no picture could tell.
+    #[test]
+    fn a_scene_that_became_shorter_never_passes() {
+        assert!(changed(|_| ()).passes());
+        let shorter = changed(|states| drop(states.runs[0].states.remove(&3)));
+        assert_eq!((shorter.passes(), shorter.verdict(), shorter.ends_early), (false, "missing", Some([3, 2])));
+        assert!(shorter.moved.is_empty() && shorter.state_moved());
+    }
+
+    #[test]
+    fn runs_on_one_side_only_never_pass() {
+        let told = |change: &dyn Fn(&mut States)| {
+            let found = changed(change);
+            assert_eq!((found.passes(), found.verdict()), (false, "state moved"));
+            found.moved.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(told(&|states| states.add("other", 0, states.runs[0].states[&0].clone())), ["other is new"]);
+        let renamed = told(&|states| states.runs[0].name = "other".to_owned());
+        assert_eq!(renamed, ["one is gone", "other is new"]);
     }
 
     /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.

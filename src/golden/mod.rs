@@ -48,13 +48,14 @@ pub use bless::{BlessError, Blessed};
 pub use distance::{Count, Distance, Machines};
 pub use picture::{PictureError, Pixels};
 pub use record::RECORD_FILE;
-pub(crate) use side::Side;
-pub use states::{Change, Course, Displacement, Moment, Moved, Numbers};
+pub(crate) use side::{Side, shell_word};
+pub use states::{Change, Course, Displacement, Moment, Moved, Numbers, StepChange};
 #[cfg(feature = "render")]
 pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
 
 use crate::output::Label;
+use crate::sim::words::rounded;
 use pair::Pair;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -251,6 +252,8 @@ impl Comparison {
                     Ok(None) => {}
                     Err(note) => notes.push(note),
                 }
+                let steps = sides[at].steps(&labels[at]);
+                states.set_steps(steps.iter().map(|(run, step)| (run.as_str(), *step)));
             }
             states
         })
@@ -455,7 +458,8 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
         // Scenes whose steps are not alike have frames at slightly different times.
         let is_other = (actual.time - expected.time).abs() > 0.01 * actual.time.abs().max(expected.time.abs());
         is_other.then(|| {
-            format!("{name} shows frame {} at {:.3} s instead of {:.3} s", actual.frame, actual.time, expected.time)
+            let [was, is] = [expected.time, actual.time].map(|time| rounded(time, 4));
+            format!("{name} shows frame {} at {is} s instead of {was} s", actual.frame)
         })
     };
     let mut all = pairs.iter().filter_map(told);
@@ -528,6 +532,11 @@ impl Comparison {
         }
         if wrong.len() > MOST_TOLD {
             writeln!(f, "and {} more", wrong.len() - MOST_TOLD)?;
+        }
+        for (run, step) in
+            self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
+        {
+            writeln!(f, "{run}: {step}")?;
         }
         if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
             // A single picture that passes is told, too.

@@ -6,7 +6,7 @@
 //! second node or fewer.
 
 use super::side::frame_of;
-use super::states::{Numbers, Places, Run, State, States};
+use super::states::{Numbers, Places, Run, State, States, Step};
 use crate::output::Label;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -151,6 +151,15 @@ struct FileRun {
     every: usize,
     /// In which positions are counted (m).
     quantum: f64,
+    /// Time step and the scene's cycle T (s). Earlier versions of this program did not record them.
+    step: Option<f64>,
+    cycle: Option<f64>,
+}
+
+impl FileRun {
+    fn step(&self) -> Option<Step> {
+        Some(Step { step: self.step?, cycle: self.cycle? })
+    }
 }
 
 impl File {
@@ -164,7 +173,11 @@ impl File {
             return Err("it has no `[[run]]`, or two of one name".to_owned());
         }
         let count = 1..=u32::MAX as usize;
-        for FileRun { name, nodes, every, quantum } in &self.runs {
+        for FileRun { name, nodes, every, quantum, step, cycle } in &self.runs {
+            let is_time = |time: &f64| time.is_finite() && *time > 0.0;
+            if ![step, cycle].into_iter().flatten().all(is_time) {
+                return Err(format!("run “{}” has a step or cycle that is no positive number", short(name)));
+            }
             let is_sound = count.contains(every) && *nodes <= *count.end();
             if !is_sound || !quantum.is_finite() || *quantum <= 0.0 {
                 return Err(format!(
@@ -200,8 +213,11 @@ impl Record {
             format!("line {line}: {}", short(error.message()))
         })?;
         file.check()?;
-        let mut runs: Vec<Run> =
-            file.runs.iter().map(|run| Run { name: run.name.clone(), states: BTreeMap::new() }).collect();
+        let mut runs: Vec<Run> = file
+            .runs
+            .iter()
+            .map(|run| Run { name: run.name.clone(), step: run.step(), states: BTreeMap::new() })
+            .collect();
         for line in lines(&file.digests) {
             let wrong =
                 || format!("`digests` has the line “{}”; expected a frame and a digest of each run", short(line));
@@ -299,7 +315,8 @@ impl Record {
             // What is rounded already is not rounded again.
             let every = if known().any(|places| places.every > 1) { 1 } else { every };
             let kept = known().map(|places| places.every).max().unwrap_or(1) * every;
-            runs.push(FileRun { name: run.name.clone(), nodes, every: kept, quantum });
+            let [step, cycle] = [run.step.map(|step| step.step), run.step.map(|step| step.cycle)];
+            runs.push(FileRun { name: run.name.clone(), nodes, every: kept, quantum, step, cycle });
             for (frame, state) in &run.states {
                 let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
                 let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
@@ -338,13 +355,17 @@ impl Record {
             scenes.join(", "),
             self.samples,
         );
-        for FileRun { name, nodes, every, quantum } in runs {
+        for run in runs {
+            let FileRun { name, nodes, every, quantum, .. } = run;
             write!(
                 text,
                 "\n[[run]]\nname = {}\nnodes = {nodes}\nevery = {every}\nquantum = {quantum:e}\n",
                 quoted(name)
             )
             .expect("a string takes all");
+            if let Some(Step { step, cycle }) = run.step() {
+                write!(text, "step = {step:e}\ncycle = {cycle:e}\n").expect("a string takes all");
+            }
         }
         for Drawn { file, frame, adapter, version } in &self.pictures {
             let [file, adapter, version] = [file, adapter, version].map(|text| quoted(text));
@@ -414,6 +435,8 @@ mod tests {
                 );
             }
         }
+        // The other run is as in a record of an earlier version of this program.
+        states.set_steps([("Local shape", Step { step: 1.0 / 3.0, cycle: 0.1 })]);
         let drawn = Drawn { file: "frame_00010.png".into(), frame: 10, adapter: "a \"b\"".into(), version: "0".into() };
         Record {
             subject: "fig4b.toml".into(),
@@ -435,6 +458,7 @@ mod tests {
             (&exact.subject, &exact.scenes, exact.size, 4)
         );
         assert_eq!(read.pictures, exact.pictures);
+        assert_eq!([read.states.runs[0].step, read.states.runs[1].step], [exact.states.runs[0].step, None]);
         for (run, coarse) in exact.states.runs.iter().zip(&read.states.runs) {
             assert_eq!((&run.name, run.states.len()), (&coarse.name, coarse.states.len()));
             for (frame, state) in &run.states {
@@ -466,6 +490,7 @@ mod tests {
             ("every = 1", "every = 0", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = nan", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = -1e-6", "expected positive numbers"),
+            ("cycle = 1e-1", "cycle = inf", "no positive number"),
             ("frame_00010.png", "../frame_00010.png", "is no plain name"),
             ("\n6 ", "\n5 ", "frame 5 twice"),
             ("size = [320", "size = [0", "cannot be drawn"),

@@ -4,11 +4,14 @@ use super::ComparisonError;
 use super::archive;
 use super::picture::{self, PictureError, Pixels};
 use super::record::{RECORD_FILE, Record};
-use super::states::{State, States};
-use crate::output::Label;
+use super::states::{State, States, Step};
+use crate::output::{Label, SUMMARY_FILE};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+
+/// The largest summary that is read (bytes).
+const LARGEST_SUMMARY: u64 = 16 << 20;
 
 /// What a side is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,6 +157,30 @@ impl Side {
         Ok(Some(states))
     }
 
+    /// How the time of each run was stepped, from the folder's summary, if there is one of these pictures.
+    pub(super) fn steps(&self, labels: &[&Label]) -> Vec<(String, Step)> {
+        let read = || -> Option<Vec<(String, Step)>> {
+            let path = self.folder().join(SUMMARY_FILE);
+            let found = path.metadata().ok()?;
+            if !matches!(self.kind, Kind::Picture | Kind::Folder) || !found.is_file() || found.len() > LARGEST_SUMMARY {
+                return None;
+            }
+            let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+            let scene = &summary["scene"];
+            let digest = scene["digest"].as_str()?;
+            if labels.iter().flat_map(|label| label.scenes()).any(|other| other != digest) {
+                return None;
+            }
+            let cycle = scene["cycle"].as_f64()?;
+            let step = |run: &serde_json::Value| {
+                Some((run["name"].as_str()?.to_owned(), Step { step: run["step"].as_f64()?, cycle }))
+            };
+            summary["runs"].as_array()?.iter().map(step).collect()
+        };
+        // It is told only if it is known, as in folders of earlier versions of this program it is not.
+        read().unwrap_or_default()
+    }
+
     /// Whether it is a golden, or nothing yet.
     pub(crate) fn is_golden(&self) -> bool {
         matches!(self.kind, Kind::Golden | Kind::Absent)
@@ -164,11 +191,16 @@ impl Side {
         let path = self.origin.to_string_lossy();
         // A name that begins like an option is none behind this.
         let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
-        let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
-        match !path.is_empty() && path.chars().all(is_plain) {
-            true => path.into_owned(),
-            false => format!("'{}'", path.replace('\'', "'\\''")),
-        }
+        shell_word(&path)
+    }
+}
+
+/// A word as it can be pasted into a command line.
+pub(crate) fn shell_word(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }
 

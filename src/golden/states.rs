@@ -2,6 +2,7 @@
 
 use crate::output::state_digest;
 use crate::sim::snapshot::{Diagnostics, Snapshot};
+use crate::sim::words::rounded;
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -18,8 +19,19 @@ pub(super) struct States {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Run {
     pub(super) name: String,
+    /// How its time is stepped, if that is known.
+    pub(super) step: Option<Step>,
     /// By the number of the frame.
     pub(super) states: BTreeMap<u64, State>,
+}
+
+/// How the time of a run is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    /// ΔT (s).
+    pub(super) step: f64,
+    /// The cycle T of the scene's lightest node and stiffest run (s), of which steps may be fractions.
+    pub(super) cycle: f64,
 }
 
 /// One run at one frame.
@@ -105,6 +117,15 @@ impl States {
         }
     }
 
+    /// Notes how the time of runs is stepped, of those that are known.
+    pub(super) fn set_steps<'a>(&mut self, steps: impl IntoIterator<Item = (&'a str, Step)>) {
+        for (name, step) in steps {
+            if let Some(run) = self.runs.iter_mut().find(|run| run.name == name) {
+                run.step = Some(step);
+            }
+        }
+    }
+
     /// Adds what is known of a run at a frame.
     pub(super) fn add(&mut self, run: &str, frame: u64, state: State) {
         let at = self.runs.iter().position(|known| known.name == run).unwrap_or_else(|| {
@@ -140,6 +161,35 @@ pub enum Change {
     New,
 }
 
+/// Another time step than was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StepChange {
+    /// As it was expected (s).
+    pub before: f64,
+    /// As it is (s).
+    pub after: f64,
+    /// Into how many parts both divide the cycle T of the stiffest run, which is another one then; `None` if they do not.
+    pub parts: Option<f64>,
+}
+
+impl StepChange {
+    fn between(before: Option<Step>, after: Option<Step>) -> Option<Self> {
+        let (before, after) = before.zip(after).filter(|(before, after)| before.step != after.step)?;
+        let parts = [before, after].map(|one| rounded(one.cycle / one.step, 6));
+        let parts = (parts[0] == parts[1]).then_some(parts[0]);
+        Some(Self { before: before.step, after: after.step, parts })
+    }
+}
+
+impl fmt::Display for StepChange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { before, after, parts } = self;
+        write!(f, "its step changed from {} s to {} s", rounded(*before, 4), rounded(*after, 4))?;
+        // Whoever made one run stiffer has given all of them a shorter step.
+        parts.map_or(Ok(()), |parts| write!(f, " (T/{parts} of the stiffest run)"))
+    }
+}
+
 /// A run whose states are not those that were expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Moved {
@@ -151,6 +201,8 @@ pub struct Moved {
     pub first: Option<u64>,
     /// The last frame before that with the state that was expected.
     pub last_equal: Option<u64>,
+    /// Its time step, if that is another one, and both are known.
+    pub step: Option<StepChange>,
     /// How many nodes were expected, and how many there are, if these are not as many.
     pub nodes: Option<[usize; 2]>,
     /// The node that is farthest away at the first frame with another state at which places are known.
@@ -214,6 +266,7 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> V
         change,
         first: None,
         last_equal: None,
+        step: None,
         nodes: None,
         displacement: None,
         largest: None,
@@ -226,7 +279,8 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> V
         let first = course.moments.iter().find(|moment| moment.moved)?.frame;
         let equal = course.moments.iter().take_while(|moment| !moment.moved).last();
         let displaced = || course.moments.iter().filter_map(|moment| moment.displacement);
-        let [before, after] = [expected, actual].map(|side| &side.run(&course.run).expect("on both sides").states);
+        let runs = [expected, actual].map(|side| side.run(&course.run).expect("on both sides"));
+        let [before, after] = runs.map(|run| &run.states);
         let both = |frame: &u64| Some([before.get(frame)?, after.get(frame)?]);
         let later = || course.moments.iter().filter(|moment| moment.moved).map(|moment| moment.frame);
         let numbers = later().find_map(|frame| {
@@ -243,6 +297,7 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> V
             change: Change::Moved,
             first: Some(first),
             last_equal: equal.map(|moment| moment.frame),
+            step: StepChange::between(runs[0].step, runs[1].step),
             nodes,
             displacement: displaced().next(),
             // The first of equal ones.
@@ -305,7 +360,8 @@ impl fmt::Display for Moved {
             (None, _) => {}
         }
         if let Some([before, after]) = self.nodes {
-            return write!(f, ": {after} nodes instead of {before}");
+            write!(f, ": {after} nodes instead of {before}")?;
+            return self.step.map_or(Ok(()), |step| write!(f, "; {step}"));
         }
         match (&self.displacement, &self.largest) {
             (Some(near), Some(far)) if near.frame != far.frame && far.distance > far.precision => {
@@ -319,7 +375,7 @@ impl fmt::Display for Moved {
         {
             write!(f, "; turned over {} → {}", before.turned_over, after.turned_over)?;
         }
-        Ok(())
+        self.step.map_or(Ok(()), |step| write!(f, "; {step}"))
     }
 }
 
@@ -375,6 +431,26 @@ mod tests {
         assert_eq!(words(&other), ["run is gone", "walk is new"]);
         // An empty digest says nothing and is no state.
         assert!(!State::default().equals(&State::default()));
+    }
+
+    #[test]
+    fn another_step_is_told_and_whether_the_stiffest_run_made_it() {
+        let with = |digest: &str, step: f64, cycle: f64| {
+            let mut states = states(|_| state(digest, 0.0, &[0.0]));
+            states.set_steps([("run", Step { step, cycle }), ("other", Step { step: 1.0, cycle: 1.0 })]);
+            states
+        };
+        let told = |before: &States, after: &States| {
+            let [found] = &moved(before, after, &courses(before, after))[..] else { panic!("one run") };
+            found.to_string().split_once("velocities differ").expect("no other place").1.to_owned()
+        };
+        let before = with("aa", 0.0444 / 50.0, 0.0444);
+        assert_eq!(told(&before, &with("bb", 0.0444 / 50.0, 0.0314)), "");
+        let shared = "; its step changed from 0.000888 s to 0.000628 s (T/50 of the stiffest run)";
+        assert_eq!(told(&before, &with("bb", 0.0314 / 50.0, 0.0314)), shared);
+        assert_eq!(told(&before, &with("bb", 1e-5, 0.0444)), "; its step changed from 0.000888 s to 0.00001 s");
+        // Records of earlier versions of this program know no steps.
+        assert_eq!(told(&states(|_| state("aa", 0.0, &[0.0])), &with("bb", 1e-5, 0.0444)), "");
     }
 
     #[test]

@@ -221,11 +221,122 @@ mod tests {
         let moved = of(&pixels("soft (1)", "2", |_| ()));
         assert_eq!((moved.to_string().as_str(), moved.passes()), ("state moved: run", false));
         assert!(!of(&pixels("hard", "2", |bytes| bytes.fill(0))).passes());
+        // A run that only the new picture has, and one that it lacks, are other states, too.
+        let mut more = golden.clone();
+        let Some(Label::Frame(tags)) = &mut more.label else { panic!("a frame") };
+        tags.states.push(("2".into(), "new run".into()));
+        assert_eq!((of(&more).to_string().as_str(), of(&more).passes()), ("state moved: new run", false));
+        assert_eq!(Verdict::new(&more, &golden).to_string(), "state moved: new run");
         // Without a state pixels alone are compared.
         let untold = Pixels { label: None, ..golden.clone() };
         assert!(of(&untold).passes() && of(&untold).to_string() == "no state recorded (the pixels are equal)");
         let wide = Pixels { size: [30, 40], ..golden.clone() };
         assert_eq!(of(&wide).to_string(), "same state, drawn differently: 30×40 pixels instead of 40×30");
+    }
+
+    #[test]
+    fn what_nobody_says_who_drew_passes_only_if_it_is_equal() {
+        let golden = pixels("soft (1)", "1", |_| ());
+        let untold = Pixels { label: None, ..golden.clone() };
+        let of = |actual: &Pixels| Verdict::new(&golden, actual);
+        let few_untold = |count: usize| Pixels {
+            label: None,
+            ..pixels("", "1", move |bytes| (0..count).for_each(|at| bytes[30 * at] = 0))
+        };
+        assert!(of(&few_untold(8)).passes() && !of(&few_untold(9)).passes());
+        // Where nobody says who drew, nothing excuses a difference.
+        let foreign = |other: &Pixels| Verdict::new(&untold, other);
+        assert!(foreign(&untold).passes());
+        let hardly = |bytes: &mut [u8]| bytes[0] += 1;
+        let by_one = Pixels { label: None, ..pixels("", "1", hardly) };
+        let told = "no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither says who drew it";
+        assert_eq!((foreign(&by_one).to_string().as_str(), foreign(&by_one).passes()), (told, false));
+        assert!(!foreign(&Pixels { size: [30, 40], ..untold.clone() }).passes());
+    }
+
+    const LARGE: [usize; 2] = [400, 300];
+
+    /// A large picture with a dark square of 200 × 200 pixels on light ground.
+    fn large(adapter: &str, change: impl FnOnce(&mut [u8])) -> Pixels {
+        let [width, height] = LARGE;
+        let is_dark = |at: usize| (100..300).contains(&(at % width)) && (50..250).contains(&(at / width));
+        let mut bytes: Vec<u8> = (0..width * height).flat_map(|at| [if is_dark(at) { 50 } else { 200 }; 3]).collect();
+        change(&mut bytes);
+        let small = pixels(adapter, "1", |_| ());
+        Pixels { size: LARGE.map(|side| side as u32), bytes, ..small }
+    }
+
+    /// In large pictures the part of the pixels that may differ is more than the number that may in any case.
+    #[test]
+    fn the_limits_of_large_pictures_are_parts_of_them() {
+        let [width, height] = LARGE;
+        let golden = large("soft (1)", |_| ());
+        let of = |adapter: &str, change: &dyn Fn(&mut [u8])| Verdict::new(&golden, &large(adapter, change));
+        let dots = |value: u8, count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[30 * at] = value);
+        // A ten-thousandth of them.
+        let most = width * height / 10_000;
+        assert!(most > 8 && of("soft (2)", &dots(0, most)).passes() && !of("soft (2)", &dots(0, most + 1)).passes());
+        assert!(of("soft (2)", &dots(0, most)).to_string().contains(" (12 may)"));
+        // One machine draws the same, however many pixels there are.
+        assert!(!of("soft (1)", &dots(201, 1)).passes());
+        // Between kinds a thousandth of what lies between silhouettes, here the square's border on its two sides.
+        let silhouettes = 796 + 804;
+        let most = (width * height - silhouettes) / 1000;
+        assert!(most > 100 && of("hard (1)", &dots(204, most)).passes(), "{}", of("hard (1)", &dots(204, most)));
+        assert!(!of("hard (1)", &dots(204, most + 1)).passes());
+        let told = of("hard (1)", &dots(204, most + 1)).to_string();
+        assert!(
+            told.contains(&format!("between them {} pixels differ ({most} may), by up to 4 (8 at most)", most + 1)),
+            "{told}"
+        );
+        // Of what stands in one picture only not more than in small ones.
+        assert!(of("hard (1)", &dots(120, 8)).passes() && !of("hard (1)", &dots(120, 9)).passes());
+        // A quarter of the silhouettes.
+        let most = silhouettes / 4;
+        let border = |count: usize| {
+            move |bytes: &mut [u8]| {
+                let on_border =
+                    (0..200).flat_map(|at| [[100 + at, 50], [100 + at, 249], [100, 50 + at], [299, 50 + at]]);
+                let mut places: Vec<_> = on_border.map(|[x, y]| 3 * (y * width + x)).collect();
+                places.sort_unstable();
+                places.dedup();
+                places.into_iter().take(count).for_each(|at| bytes[at] = 53);
+            }
+        };
+        assert!(of("hard (1)", &border(most)).passes(), "{}", of("hard (1)", &border(most)));
+        assert!(!of("hard (1)", &border(most + 1)).passes());
+    }
+
+    /// A soft spot is no silhouette, and too few pixels to count: by its strength alone it is seen.
+    #[test]
+    fn between_silhouettes_nothing_differs_by_much_however_few_pixels_do() {
+        let golden = large("soft (1)", |_| ());
+        let spot = |top: usize, by: u8| {
+            let [width, _] = LARGE;
+            let slope = |bytes: &mut [u8]| {
+                for (x, y) in (10..50).flat_map(|x| (10..40).map(move |y| (x, y))) {
+                    let away = 30_usize.abs_diff(x).max(25_usize.abs_diff(y));
+                    bytes[3 * (y * width + x) + 1] -= top.saturating_sub(usize::from(by) * away) as u8;
+                }
+            };
+            Verdict::new(&golden, &large("hard (1)", slope))
+        };
+        let (faint, strong) = (spot(8, 4), spot(9, 4));
+        for (verdict, largest, passes) in [(&faint, 8, true), (&strong, 9, false)] {
+            let interiors = verdict.distance().unwrap().interiors.unwrap();
+            assert!(interiors.visible < interiors.allowed && interiors.largest == largest, "{verdict}");
+            assert_eq!(
+                (verdict.distance().unwrap().one_sided.unwrap().visible, verdict.passes()),
+                (0, passes),
+                "{verdict}"
+            );
+        }
+        assert!(
+            strong
+                .to_string()
+                .starts_with("same state, drawn differently: another kind of adapter drew it; between them"),
+            "{strong}"
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The graphics device: one handle, typed buffers and the way back of pixels. It knows nothing about what is drawn.
 
 mod buffer;
+mod noise;
 mod processor;
 mod read_back;
 
@@ -156,11 +157,16 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device on the adapter that fits `choice`.
+    /// Opens a device on the adapter that fits `choice`. On Unix, complaints of its driver about the lack of a window are
+    /// held back meanwhile: they go to the standard error of the whole process.
     ///
     /// # Errors
     /// No adapter at all, none that fits, or one that cannot be used.
     pub fn new(choice: &AdapterChoice) -> Result<Self, InitError> {
+        noise::hushed(|| Self::open(choice))
+    }
+
+    fn open(choice: &AdapterChoice) -> Result<Self, InitError> {
         let adapters = enumerate();
         let described: Vec<_> = adapters.iter().map(|adapter| AdapterDescription::of(&adapter.get_info())).collect();
         let at = choose(choice, &described)?;
@@ -238,7 +244,8 @@ fn translate(error: wgpu::Error) -> GpuError {
 
 /// Every graphics adapter of this machine, and the one that [`AdapterChoice::Auto`] would take. Opens no device.
 pub fn adapters() -> (Vec<AdapterDescription>, Option<usize>) {
-    let described: Vec<_> = enumerate().iter().map(|adapter| AdapterDescription::of(&adapter.get_info())).collect();
+    let found = noise::hushed(enumerate);
+    let described: Vec<_> = found.iter().map(|adapter| AdapterDescription::of(&adapter.get_info())).collect();
     let chosen = choose(&AdapterChoice::Auto, &described).ok();
     (described, chosen)
 }

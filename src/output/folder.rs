@@ -30,39 +30,61 @@ pub struct Look {
     pub runs: Vec<String>,
 }
 
+/// What may be replaced in a folder besides the files of the same scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replace {
+    /// Nothing.
+    Nothing,
+    /// What earlier versions of the same scene file made.
+    Earlier,
+    /// All that has the names of our files.
+    All,
+}
+
 /// A folder for the output of one scene, looked at but not yet touched.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    digest: String,
+    scene: Whose,
     look: Option<Look>,
-    overwrite: bool,
+    replace: Replace,
+    /// What is replaced of an earlier version of the scene file, in words.
+    earlier: Option<String>,
+}
+
+/// What tells the results of one scene from those of others.
+#[derive(Debug)]
+struct Whose {
+    digest: String,
+    title: String,
+    file: Option<PathBuf>,
 }
 
 impl Folder {
     /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
     ///
-    /// A folder with files of another scene, or with files of others under the names of ours, is refused unless
-    /// `overwrite`. Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
+    /// A folder with files of another scene, or with files of others under the names of ours, is refused, unless these
+    /// are what may be replaced. Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
     /// a scene can be drawn in parts. But if frames are to be drawn, those that are there must have the same `look`,
     /// or the folder would hold no sequence. A folder that another program writes in is refused in any case.
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is none.
-    pub fn inspect(path: &Path, scene: &Scene, look: Option<Look>, overwrite: bool) -> Result<Self, OutputError> {
-        let folder = Self { path: path.to_owned(), digest: scene.digest.clone(), look, overwrite };
+    pub fn inspect(path: &Path, scene: &Scene, look: Option<Look>, replace: Replace) -> Result<Self, OutputError> {
+        let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
+        let mut folder = Self { path: path.to_owned(), scene, look, replace, earlier: None };
         if is_folder(path)? {
             FolderLock::look(path)?;
-            folder.find()?;
+            folder.earlier = folder.find()?.earlier();
         }
         Ok(folder)
     }
 
     /// What is in the folder, unless it is in the way.
     fn find(&self) -> Result<Found, OutputError> {
-        let found = Found::in_folder(&self.path, &self.digest, self.look.as_ref())?;
-        match found.describe() {
-            Some(what) if !self.overwrite => Err(OutputError::Occupied { path: self.path.clone(), what }),
+        let found = Found::in_folder(&self.path, &self.scene, self.look.as_ref())?;
+        match found.describe(self.replace == Replace::Earlier) {
+            Some(what) if self.replace != Replace::All => Err(OutputError::Occupied { path: self.path.clone(), what }),
             _ => Ok(found),
         }
     }
@@ -70,6 +92,12 @@ impl Folder {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// What is replaced of an earlier version of the scene file, in words: `31 frames made by an earlier version of
+    /// sag.toml`.
+    pub fn earlier(&self) -> Option<&str> {
+        self.earlier.as_deref()
     }
 
     /// Makes the folder if there is none, locks it, and removes leftovers of killed programs and the files of another
@@ -82,8 +110,10 @@ impl Folder {
     pub fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone(&self.path)?;
-        let Found { frames, unlike, records, states: earlier, .. } = self.find()?;
-        for path in [frames, unlike, records].iter().flatten().chain(earlier.iter().filter(|_| !states)) {
+        let found = self.find()?;
+        // The summary goes last: until then it says whose all the others are.
+        let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
+        for path in stale.iter().chain(found.states.iter().filter(|_| !states)) {
             remove(path)?;
         }
         Ok(Claimed { path: self.path, _lock: lock })
@@ -123,18 +153,31 @@ struct Found {
     unlike_look: String,
     /// Diagnostics, states and summary of another scene.
     records: Vec<PathBuf>,
+    /// Frames that an earlier version of this scene's file made.
+    earlier_frames: Vec<PathBuf>,
+    /// Its diagnostics, states and summary.
+    earlier_records: Vec<PathBuf>,
+    /// The name of that file.
+    file: String,
     /// States of this scene.
     states: Option<PathBuf>,
-    /// Title of that scene, if its summary is there.
-    title: Option<String>,
+    /// That other scene, if its summary is there.
+    other: Option<Owner>,
+    /// Title of this scene.
+    title: String,
     /// Names of ours that others have; and what has them, if it is no file.
     foreign: Vec<(String, Option<&'static str>)>,
 }
 
 impl Found {
-    fn in_folder(path: &Path, digest: &str, look: Option<&Look>) -> Result<Self, OutputError> {
-        let mut found = Self::default();
+    fn in_folder(path: &Path, scene: &Whose, look: Option<&Look>) -> Result<Self, OutputError> {
+        let digest = scene.digest.as_str();
+        let name = scene.file.as_ref().and_then(|file| Some(file.file_name()?.to_string_lossy().into_owned()));
+        let mut found = Self { title: scene.title.clone(), file: name.unwrap_or_default(), ..Self::default() };
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
+        let is_same_file =
+            |owner: &Owner| owner.file.is_some() && owner.file.as_deref().map(Path::new) == scene.file.as_deref();
+        let earlier = owner.as_ref().filter(|owner| owner.digest != digest && is_same_file(owner));
         for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
             let entry = entry.map_err(OutputError::reading(path))?;
             let name = entry.file_name();
@@ -156,6 +199,9 @@ impl Found {
                             found.unlike_look = own.describe();
                         }
                     }
+                    Some((_, tags)) if earlier.is_some_and(|earlier| earlier.digest == tags.scene) => {
+                        found.earlier_frames.push(entry.path());
+                    }
                     Some(_) => found.frames.push(entry.path()),
                     None => found.foreign.push((name.to_owned(), None)),
                 }
@@ -166,42 +212,67 @@ impl Found {
                             found.states = Some(entry.path());
                         }
                     }
+                    Some(_) if earlier.is_some() => found.earlier_records.push(entry.path()),
                     Some(_) => found.records.push(entry.path()),
                     None => found.foreign.push((name.to_owned(), None)),
                 }
             }
         }
-        found.title = owner.filter(|owner| owner.digest != digest).map(|owner| owner.title);
         found.foreign.sort_unstable();
+        // The summary last, see `inspect`.
+        found.records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
+        found.earlier_records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
+        found.other = owner.filter(|owner| owner.digest != digest);
         Ok(found)
     }
 
-    /// What is in the way, in words; `None` if nothing is.
-    fn describe(&self) -> Option<String> {
-        let title = self.title.as_ref().map(|title| format!(" (“{title}”)")).unwrap_or_default();
+    /// What an earlier version of the scene's file made, in words.
+    fn earlier(&self) -> Option<String> {
+        let what = match (self.earlier_frames.len(), self.earlier_records.is_empty()) {
+            (0, true) => return None,
+            (0, false) => "results".to_owned(),
+            (1, _) => "a frame".to_owned(),
+            (count, _) => format!("{count} frames"),
+        };
+        Some(format!("{what} made by an earlier version of {}", self.file))
+    }
+
+    /// What is in the way, in words; `None` if nothing is, or only what an earlier version made and that may go.
+    fn describe(&self, may_replace_earlier: bool) -> Option<String> {
+        let another = match &self.other {
+            None => "another scene".to_owned(),
+            Some(Owner { title, file: Some(file), .. }) => format!("another scene (“{title}”, {file})"),
+            // Summaries of earlier versions of this program name no file.
+            Some(Owner { title, .. }) if *title == self.title => {
+                format!("another scene, or an earlier version of this one (“{title}”)")
+            }
+            Some(Owner { title, .. }) => format!("another scene (“{title}”)"),
+        };
         let unlike = match self.unlike.len() {
             0 => None,
             1 => Some(format!("a frame of this scene of {}", self.unlike_look)),
             count => Some(format!("{count} frames of this scene of {}", self.unlike_look)),
         };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
-            (0, true, []) => unlike,
+            (0, true, []) => self.earlier().filter(|_| !may_replace_earlier).or(unlike),
             (0, true, [(name, None)]) => Some(format!("{name}, which was not written by localshape")),
             (0, true, [(name, Some(kind))]) => Some(format!("{name}, which is {kind}")),
             (0, true, [(name, _), others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))
             }
-            (0, false, _) => Some(format!("the results of another scene{title}")),
-            (1, ..) => Some(format!("a frame of another scene{title}")),
-            (count, ..) => Some(format!("{count} frames of another scene{title}")),
+            (0, false, _) => Some(format!("the results of {another}")),
+            (1, ..) => Some(format!("a frame of {another}")),
+            (count, ..) => Some(format!("{count} frames of {another}")),
         }
     }
 }
 
 /// The scene that a summary belongs to.
+#[derive(Debug)]
 struct Owner {
     digest: String,
     title: String,
+    file: Option<String>,
 }
 
 impl Owner {
@@ -211,7 +282,8 @@ impl Owner {
         let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
         let text = |key: &str| summary["scene"][key].as_str().map(str::to_owned);
         let ours = summary.get("localshape").is_some();
-        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title: text("title").unwrap_or_default() }))
+        let title = text("title").unwrap_or_default();
+        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file: text("file") }))
     }
 }
 

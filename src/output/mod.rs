@@ -23,7 +23,7 @@ pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub use digest::state_digest;
 pub use error::OutputError;
 pub(crate) use error::{is_folder, read_file};
-pub use folder::{Claimed, FRAME_FILES, Folder, Look, frame_file_name};
+pub use folder::{Claimed, FRAME_FILES, Folder, Look, Replace, frame_file_name};
 pub use frames::{FrameWriter, PixelFrame};
 pub use lock::FolderLock;
 pub(crate) use png::encode_plain;

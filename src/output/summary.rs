@@ -37,8 +37,12 @@ pub struct Summary {
 pub struct SceneSummary {
     /// Its title.
     pub title: String,
+    /// Its file, as a full path; `null` if it was read from a text.
+    pub file: Option<String>,
     /// Digest of its meaning.
     pub digest: String,
+    /// The cycle T of the lightest node and the stiffest run (s), of which steps may be fractions.
+    pub cycle: f64,
 }
 
 /// How a command ended for one scene.
@@ -75,6 +79,8 @@ pub struct FrameSummary {
 pub struct RunSummary {
     /// Its name.
     pub name: String,
+    /// Time step (s).
+    pub step: f64,
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
@@ -119,10 +125,18 @@ pub struct LastState {
 impl Summary {
     /// The summary before the first frame, of `asked` frames of some of the scene's runs.
     pub fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
-        let run = |&run: &usize| RunSummary { name: scene.runs[run].name.clone(), status: RunStatus::Ok, last: None };
+        let run = |&run: &usize| {
+            let run = &scene.runs[run];
+            RunSummary { name: run.name.clone(), step: run.step, status: RunStatus::Ok, last: None }
+        };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),
-            scene: SceneSummary { title: scene.title.clone(), digest: scene.digest.clone() },
+            scene: SceneSummary {
+                title: scene.title.clone(),
+                file: scene.file.as_ref().and_then(|file| Some(file.to_str()?.to_owned())),
+                digest: scene.digest.clone(),
+                cycle: scene.cycle(),
+            },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
             frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },

@@ -23,7 +23,9 @@ impl Scene {
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let text = text_of(path, limits)?;
-        Self::read(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), limits)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let scene = Self::read(&text, &path.display().to_string(), folder, limits)?;
+        Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
     /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's

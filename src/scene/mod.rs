@@ -10,6 +10,7 @@
 //! reads, lie beside it, too.
 
 mod beside;
+mod code;
 mod digest;
 mod error;
 pub mod figure;
@@ -53,6 +54,7 @@ use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use glam::DVec3;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A scene with everything in it resolved: one body, one world, several runs.
@@ -62,7 +64,10 @@ pub struct Scene {
     pub title: String,
     /// Stem of the scene file, which names the default output folder.
     pub name: String,
-    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count.
+    /// The scene file, as a full path; none if the scene was read from a text.
+    pub file: Option<PathBuf>,
+    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty for a
+    /// scene made in code.
     pub digest: String,
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,

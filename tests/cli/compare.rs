@@ -183,6 +183,57 @@ fn no_damaged_picture_is_ever_accepted() {
     assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
 }
 
+/// The states of a scene in a folder of its name, with frames that are drawn grey.
+fn put_scene(place: &Place, name: &str) {
+    place.run(&format!("simulate {name}.toml --states -o {name} -q")).good();
+    let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
+    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    for index in 0..=scene.last_frame() {
+        let tags = Tags::new(&scene, &sequence.frame(index), "one");
+        put(place, &format!("{name}/frame_{index:05}.png"), &encode([16, 8], &GREY, &tags));
+    }
+}
+
+/// `step = "T/50"` is a part of the cycle of the stiffest run, so another stiffness of one run moves the others.
+#[test]
+fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
+    let place = Place::with_small();
+    let spring = "stiffness = 1e4, damping_ratio = 0.1, springs";
+    place.write("stiffer.toml", &SMALL.replace(spring, &spring.replace("1e4", "2e4")));
+    ["small", "stiffer"].into_iter().for_each(|name| put_scene(&place, name));
+    let step = |name: &str| place.json(&format!("{name}/run.json"))["runs"][0]["step"].as_f64().unwrap();
+    let [before, after] = ["small", "stiffer"].map(step);
+    assert!((before / after - 2_f64.sqrt()).abs() < 1e-12);
+    let told = |folders: &str| place.run(&format!("compare {folders}")).out;
+    let line = |folders: &str| told(folders).lines().find(|line| line.contains("Local shape")).unwrap().to_owned();
+    let found = line("small stiffer");
+    assert!(found.starts_with("state moved: Local shape, first at frame 1: node "), "{found}");
+    let words = "; its step changed from 0.001257 s to 0.0008886 s (T/50 of the stiffest run)";
+    assert!(found.ends_with(words), "{found}");
+    let document = place.run("compare small stiffer --json").json();
+    let change = &document["moved"][0]["step"];
+    assert_eq!((change["before"].as_f64(), change["after"].as_f64()), (Some(before), Some(after)));
+    assert_eq!(change["parts"], 50.0);
+    // Of two single pictures, too.
+    let pair = told("small/frame_00003.png stiffer/frame_00003.png");
+    assert!(pair.starts_with("frame_00003.png: state moved: Local shape, node "), "{pair}");
+    assert!(pair.contains("\nLocal shape: its step changed from "), "{pair}");
+    assert!(pair.contains("frame_00003.png shows frame 3 at 0.04976 s instead of 0.05027 s\n"), "{pair}");
+    // What is not known of these very pictures is not told.
+    let summary = place.read("small/run.json");
+    let (step, cycle) = ("\"step\":", "\"cycle\":");
+    assert!(summary.contains(step) && summary.contains(cycle));
+    for other in [
+        place.read("stiffer/run.json"),
+        summary.replace(step, "\"none\":"),
+        summary.replace(cycle, "\"none\":"),
+        "{}".into(),
+    ] {
+        place.write("small/run.json", &other);
+        assert!(!line("small stiffer").contains("step"), "{other}");
+    }
+}
+
 #[test]
 fn exact_states_tell_node_distance_and_first_frame() {
     let place = Place::new();
@@ -191,15 +242,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
     let spring = "stiffness = 1e4, damping_ratio = 0.1, springs";
     place.write("steady.toml", &steady);
     place.write("stiffer.toml", &steady.replace(spring, &spring.replace("1e4", "1.1e4")));
-    for name in ["steady", "stiffer"] {
-        place.run(&format!("simulate {name}.toml --states -o {name} -q")).good();
-        let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
-        let mut sequence = Sequence::new(&scene, &[0, 1]);
-        for index in 0..=scene.last_frame() {
-            let tags = Tags::new(&scene, &sequence.frame(index), "one");
-            put(&place, &format!("{name}/frame_{index:05}.png"), &encode([16, 8], &GREY, &tags));
-        }
-    }
+    ["steady", "stiffer"].into_iter().for_each(|name| put_scene(&place, name));
     let found = place.run("compare steady stiffer --json").json();
     let [moved] = &found["moved"].as_array().unwrap()[..] else { panic!("one run: {found}") };
     // The floor is touched at once, and then the springs act.
@@ -241,6 +284,49 @@ fn exact_states_tell_node_distance_and_first_frame() {
         assert!(one.unwrap() == other.unwrap(), "{name}");
     }
     place.run("compare steady stiffer").good();
+}
+
+/// Nothing excuses a difference between pictures of which nobody knows who drew them.
+#[test]
+fn foreign_pictures_pass_only_if_they_are_equal() {
+    let place = Place::new();
+    let foreign = |bytes: &[u8]| {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, 16, 8);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.write_header().unwrap().write_image_data(bytes).unwrap();
+        file
+    };
+    let mut other = GREY;
+    other[50] += 1;
+    for (name, bytes) in [("was/a.png", &GREY), ("same/a.png", &GREY), ("other/a.png", &other)] {
+        put(&place, name, &foreign(bytes));
+    }
+    for end in ["", "/a.png"] {
+        let same = place.run(&format!("compare was{end} same{end}")).good();
+        assert_eq!(same.out, "a.png: no state recorded (the pixels are equal)\n");
+        let differs = place.run(&format!("compare was{end} other{end}"));
+        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither says who drew it\n";
+        assert!(differs.status == Some(1) && differs.out.starts_with(told), "{differs:?}");
+    }
+}
+
+/// What is new is not what was expected, also if all that was expected is there.
+#[test]
+fn a_run_that_only_the_new_side_has_is_no_pass() {
+    let place = Place::new();
+    let with = |runs: &[&str]| {
+        let states = runs.iter().map(|run| (digest("1"), (*run).to_owned())).collect();
+        let [scene, version, adapter] = ["s", "0", "one"].map(str::to_owned);
+        encode([16, 8], &GREY, &Tags { scene, states, frame: 0, time: 0.0, version, adapter })
+    };
+    put(&place, "was/a.png", &with(&["one"]));
+    put(&place, "is/a.png", &with(&["one", "other"]));
+    for (folders, change) in [("was is", "new"), ("is was", "gone")] {
+        let ran = place.run(&format!("compare {folders}"));
+        let told = format!("state moved: other is {change}\na.png: state moved: other\n");
+        assert!(ran.status == Some(1) && ran.out.starts_with(&told), "{ran:?}");
+    }
 }
 
 #[test]

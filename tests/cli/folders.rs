@@ -42,6 +42,58 @@ fn another_scene_is_refused_unless_told() {
     assert_eq!(place.read("out/diagnostics.csv").lines().count(), 1 + 2 * 4);
 }
 
+/// Whoever edits a scene and runs it again wants just that, without being asked each time.
+#[test]
+fn a_folder_named_after_its_scene_follows_the_file() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --states").good();
+    let first = place.json("output/small/run.json");
+    let file = place.path("small.toml").canonicalize().unwrap();
+    assert_eq!(first["scene"]["file"].as_str(), file.to_str());
+    place.write("output/small/notes.txt", "mine");
+    for duration in ["0.05", "0.06"] {
+        place.write("small.toml", &lasting(duration));
+        let ran = place.run("simulate ./small.toml").good();
+        let told = "output/small: replacing results made by an earlier version of small.toml\nTwo cubes\n";
+        assert!(ran.out.starts_with(told), "{ran:?}");
+        assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
+    }
+    assert_ne!(place.json("output/small/run.json")["scene"]["digest"], first["scene"]["digest"]);
+    // What stays the same is not said to be replaced, and nothing is said where nothing should be.
+    assert!(place.run("simulate small.toml").good().out.starts_with("Two cubes\n"));
+    place.write("small.toml", &lasting("0.05"));
+    assert_eq!(place.run("simulate small.toml -q").good().out, "");
+    // A file of the same name elsewhere is another scene.
+    place.write("elsewhere/small.toml", crate::support::SMALL);
+    let other = place.run("simulate elsewhere/small.toml");
+    other.bad(2, &["output/small holds the results of another scene (“Two cubes”, ", file.to_str().unwrap()]);
+    // So is one of which nobody knows where it came from.
+    place.write("small.toml", crate::support::SMALL);
+    let summary = place.read("output/small/run.json");
+    let line = summary.lines().find(|line| line.contains("\"file\":")).unwrap();
+    place.write("output/small/run.json", &summary.replace(line, ""));
+    let unknown = place.run("simulate small.toml");
+    unknown
+        .bad(2, &["another scene, or an earlier version of this one (“Two cubes”)", "simulate --overwrite small.toml"]);
+}
+
+/// What was put aside with `-o` may be what later versions are compared with.
+#[test]
+fn a_folder_named_by_its_user_keeps_an_earlier_version() {
+    let place = Place::with_small();
+    place.run("simulate small.toml -o before").good();
+    let before = place.read("before/run.json");
+    place.write("small.toml", &lasting("0.05"));
+    let program = env!("CARGO_BIN_EXE_localshape");
+    let command = format!("--overwrite: {program} simulate --overwrite small.toml -o before\n");
+    let told =
+        "before holds results made by an earlier version of small.toml; choose another folder with -o, or replace";
+    place.run("simulate small.toml -o before").bad(2, &[told, &command]);
+    assert_eq!(place.read("before/run.json"), before);
+    place.run("simulate --overwrite small.toml -o before").good();
+    assert_ne!(place.read("before/run.json"), before);
+}
+
 #[test]
 fn files_of_others_under_our_names_are_refused_unless_told() {
     let place = Place::with_small();

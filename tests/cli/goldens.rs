@@ -51,6 +51,18 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     assert!(slower.contains("the scene files are not the same"), "{slower}");
     assert!(slower.contains("state moved: Mass-spring, first at frame"), "{slower}");
     assert!(slower.contains("the golden is of small.toml, and this is stiffer.toml"), "{slower}");
+    // Of a stiffer run the other one knows by the step that both share, unless the golden is too old to know.
+    place.write("small.toml", &stiffer);
+    let shared = "(T/50 of the stiffest run)";
+    assert_eq!(place.run("compare golden small.toml").out.matches(shared).count(), 2);
+    let record = place.read("golden/golden.toml");
+    let is_new = |line: &&str| line.starts_with("step = ") || line.starts_with("cycle = ");
+    assert_eq!(record.lines().filter(is_new).count(), 4);
+    let old: Vec<_> = record.lines().filter(|line| !is_new(line)).collect();
+    place.write("golden/golden.toml", &(old.join("\n") + "\n"));
+    let untold = place.run("compare golden small.toml").out;
+    assert!(untold.contains("state moved: Local shape, first at") && !untold.contains(shared), "{untold}");
+    place.write("golden/golden.toml", &record);
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     let moved = place.run("compare golden small.toml --json");
     assert_eq!(moved.status, Some(1));
@@ -267,14 +279,29 @@ fn figures_have_goldens_too() {
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     let moved = place.run("compare golden sheet.toml").out;
     assert!(moved.contains("state moved: Two cubes · Local shape, row 1, column 2"), "{moved}");
-    assert!(!moved.contains("column 1"), "{moved}");
+    assert!(!moved.contains("column 1") && !moved.contains("step"), "{moved}");
+    let spring = "1e4, damping_ratio = 0.1, springs";
+    place.write("small.toml", &SMALL.replace(spring, &spring.replace("1e4", "2e4")));
+    let moved = place.run("compare golden sheet.toml").out;
+    let shared = "from 0.001257 s to 0.0008886 s (T/50 of the stiffest run)";
+    assert!(
+        moved.lines().any(|line| line.contains("Local shape, row 1, column 2") && line.ends_with(shared)),
+        "{moved}"
+    );
     place.run("compare golden sheet.toml --frames 1").bad(2, &["--frames is for scenes"]);
 }
 
 #[test]
 fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     let Some(place) = with_golden() else { return };
+    place.run("compare --bless early small.toml --frames 1").good();
     place.write("small.toml", &SMALL.replace("duration = 0.1", "duration = 0.05"));
+    // No picture is missing, only states.
+    let early = place.run("compare early small.toml");
+    assert_eq!(early.status, Some(1), "{early:?}");
+    assert!(early.out.contains("frame_00001.png: identical\n"), "{early:?}");
+    assert!(early.out.contains("the golden goes on to frame 6, the scene ends with frame 3\n"), "{early:?}");
+    place.run("compare --bless early small.toml").bad(1, &["the state moved", "--bless-state early small.toml"]);
     let shorter = place.run("compare golden small.toml");
     assert_eq!(shorter.status, Some(1));
     assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");

@@ -2,6 +2,7 @@
 
 mod archives;
 mod bodies;
+mod code;
 mod digest;
 mod figures;
 mod good;

@@ -16,7 +16,7 @@ pub(in crate::scene) use body::{
 pub(in crate::scene) use look::{BackgroundFile, ColoursFile, FontFile, TypedColour};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
 pub(in crate::scene) use obstacle::ObstacleFile;
-pub(in crate::scene) use view::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
+pub(in crate::scene) use view::{ArrangementFile, CameraFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 
 use super::step::FractionOfCycle;
 use crate::sim::integrate::Integrator;

@@ -15,15 +15,15 @@ mod view;
 
 use super::Scene;
 use super::digest::FileDigests;
-use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
+use super::file::{BodyFile, CameraFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
 use super::font;
 use super::generate::Generator;
 use super::limits::Limits;
 use super::report::{Report, Way, written};
 use super::structure::Checked;
-use super::view::FontFiles;
+use super::view::{Camera, FontFiles};
 use super::words::count;
-use crate::sim::body::Dimension;
+use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
 use lists::Lists;
 use serde::de::DeserializeOwned;
@@ -152,7 +152,10 @@ pub(super) fn resolve(
         (Some(view), Some(body), Some(obstacles)) => {
             let runs = runs.as_deref().unwrap_or_default();
             let around = view::Around {
-                body,
+                body: &body.body,
+                initial: &body.initial,
+                side: body.side,
+                has_cells: body.has_cells,
                 gravity: gravity.unwrap_or_default(),
                 obstacles,
                 grips: grips.as_deref().unwrap_or_default(),
@@ -175,6 +178,7 @@ pub(super) fn resolve(
     Some(Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
+        file: None,
         digest: digest.into(),
         gravity: gravity?,
         duration: time.duration,
@@ -186,6 +190,32 @@ pub(super) fn resolve(
         grips: grips?,
         view: view?,
     })
+}
+
+/// The camera that a scene has if its file says nothing of one.
+pub(super) fn camera(scene: &Scene) -> Camera {
+    let around = view::Around {
+        body: &scene.body,
+        initial: &scene.initial,
+        side: scene.view.side,
+        has_cells: scene.view.has_cells,
+        gravity: scene.gravity,
+        obstacles: &scene.obstacles,
+        grips: &scene.grips,
+        duration: scene.duration,
+        runs: &scene.runs,
+    };
+    view::camera(&CameraFile::default(), None, scene.view.explode, &around)
+}
+
+/// How many panels stand beside each other of so many, if the file says nothing of it.
+pub(super) fn columns(runs: usize) -> usize {
+    view::columns(runs)
+}
+
+/// Mean length of all elements' edges at rest (m); the size of the body if they have none.
+pub(super) fn mean_edge(body: &Body) -> f64 {
+    elements::mean_edge(body)
 }
 
 fn check_frames(time: &TimeFile, report: &mut Report<'_>) {

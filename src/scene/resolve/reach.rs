@@ -37,7 +37,7 @@ struct Neighbourhood<'a> {
 impl Neighbourhood<'_> {
     fn add(&self, point: DVec3, points: &mut Vec<DVec3>) {
         let [low, high] = self.corners;
-        let in_plane = self.scene.body.body.dimension == Dimension::Plane;
+        let in_plane = self.scene.body.dimension == Dimension::Plane;
         let point = if in_plane { point.truncate().extend(0.0) } else { point };
         if point.cmpge(low).all() && point.cmple(high).all() {
             points.push(point);
@@ -86,11 +86,8 @@ impl Neighbourhood<'_> {
     }
 
     fn add_grip(&self, grip: &Grip, points: &mut Vec<DVec3>) {
-        let start: Vec<_> = grip
-            .nodes
-            .iter()
-            .filter_map(|&node| self.scene.body.initial.position.get(node as usize).copied())
-            .collect();
+        let start: Vec<_> =
+            grip.nodes.iter().filter_map(|&node| self.scene.initial.position.get(node as usize).copied()).collect();
         let (low, high) = bounds(&start);
         let middle = start.iter().sum::<DVec3>() / start.len().max(1) as f64;
         for time in times(&grip.motion, [grip.from, grip.until.min(self.scene.duration)]) {

@@ -1,13 +1,12 @@
 //! How the scene is looked at.
 
-use super::body::ResolvedBody;
 use super::camera::{eye, is_inside};
 use super::{look, reach, vector};
 use crate::scene::Run;
-use crate::scene::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
+use crate::scene::file::{ArrangementFile, CameraFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
 use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, StrainScale, View, Visible};
-use crate::sim::body::{Dimension, bounds};
+use crate::sim::body::{Body, Dimension, State, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
 use crate::sim::grip::Grip;
@@ -41,43 +40,21 @@ pub(super) fn resolve(
     font: Option<FontFiles>,
     report: &mut Report<'_>,
 ) -> Option<View> {
-    let &Around { body, obstacles, .. } = scene;
+    let body = scene.body;
     let runs = scene.runs.len();
-    let dimension = body.body.dimension;
+    let dimension = body.dimension;
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
     for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
         let message = format!("`view.camera.{key}` is given, but a body in the plane is looked at from the front");
         report.at_key(&camera(key), message, format!("take `{key}` out"));
     }
-    let (azimuth, elevation) = match dimension {
-        Dimension::Plane => (0.0, 0.0),
-        Dimension::Space => {
-            let elevation = if is_under_plate(obstacles) { UNDER_PLATE } else { ELEVATION };
-            (typed.camera.azimuth.unwrap_or(AZIMUTH), typed.camera.elevation.unwrap_or(elevation))
-        }
+    let target = match &typed.camera.target {
+        Some(target) => Some(vector(target, dimension, &camera("target"), report)?),
+        None => None,
     };
-    let start = &spread(&body.initial.position, typed.explode, obstacles);
-    let standing = standing(start, obstacles);
-    let mut chosen = Camera {
-        azimuth,
-        elevation,
-        field_of_view: typed.camera.field_of_view.unwrap_or(FIELD_OF_VIEW),
-        target: standing,
-        distance: typed.camera.distance.unwrap_or_else(|| DISTANCE * size(body) * (1.0 + typed.explode)),
-        rise: 0.0,
-        follow: typed.camera.follow.into(),
-    };
-    match &typed.camera.target {
-        Some(target) => chosen.target = vector(target, dimension, &camera("target"), report)?,
-        // A camera that follows shows by itself how high a body is.
-        None if chosen.follow != Follow::Nothing => {}
-        None => show_start(&mut chosen, start, dimension, typed.camera.distance.is_some()),
-    }
-    if typed.camera.target.is_none() && typed.camera.distance.is_none() {
-        show_reach(&mut chosen, start, standing, scene);
-    }
-    if dimension == Dimension::Space && is_inside(eye(&chosen), &body.body, &body.initial.position) {
+    let chosen = self::camera(&typed.camera, target, typed.explode, scene);
+    if dimension == Dimension::Space && is_inside(eye(&chosen), body, &scene.initial.position) {
         let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
         let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
@@ -88,7 +65,7 @@ pub(super) fn resolve(
         (None, Some(ArrangementFile::Row)) => runs,
         (None, Some(ArrangementFile::Column)) => 1,
         (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
-        (None, None) => COLUMNS,
+        (None, None) => columns(runs),
     };
     let columns = columns.clamp(1, runs.max(1));
     let colour = match &typed.colour {
@@ -102,7 +79,7 @@ pub(super) fn resolve(
             springs: shown.contains(&ShowFile::Springs),
             displacements: shown.contains(&ShowFile::Displacements),
         },
-        None => Visible::usual(dimension, body.body.len()),
+        None => Visible::usual(dimension, body.len()),
     };
     let look = look::resolve(typed, font.unwrap_or_default(), report)?;
     let at = |key| [Way::Key("view"), Way::Key(key)];
@@ -138,8 +115,8 @@ pub(super) fn resolve(
         visible,
         colour,
         arrow_scale: typed.arrow_scale,
-        side: body.side,
-        has_cells: body.has_cells,
+        side: scene.side,
+        has_cells: scene.has_cells,
         title: typed.title.trim().to_owned(),
         caption: typed.caption.trim().to_owned(),
         labels: labels(typed),
@@ -160,6 +137,45 @@ pub(super) fn resolve(
         outline: typed.outline,
         hatch: typed.hatch,
     })
+}
+
+/// The camera of a scene: what is asked of it, and for the rest what shows the body and what comes near it. Elements may
+/// be drawn `apart`, in parts of their distance from the body's middle.
+pub(super) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Around<'_>) -> Camera {
+    let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
+    let (azimuth, elevation) = match dimension {
+        Dimension::Plane => (0.0, 0.0),
+        Dimension::Space => {
+            let elevation = if is_under_plate(obstacles) { UNDER_PLATE } else { ELEVATION };
+            (typed.azimuth.unwrap_or(AZIMUTH), typed.elevation.unwrap_or(elevation))
+        }
+    };
+    let start = &spread(&scene.initial.position, apart, obstacles);
+    let standing = standing(start, obstacles);
+    let mut chosen = Camera {
+        azimuth,
+        elevation,
+        field_of_view: typed.field_of_view.unwrap_or(FIELD_OF_VIEW),
+        target: standing,
+        distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene) * (1.0 + apart)),
+        rise: 0.0,
+        follow: typed.follow.into(),
+    };
+    match target {
+        Some(target) => chosen.target = target,
+        // A camera that follows shows by itself how high a body is.
+        None if chosen.follow != Follow::Nothing => {}
+        None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
+    }
+    if target.is_none() && typed.distance.is_none() {
+        show_reach(&mut chosen, start, standing, scene);
+    }
+    chosen
+}
+
+/// How many panels stand beside each other of so many, unless a scene says so.
+pub(super) fn columns(runs: usize) -> usize {
+    COLUMNS.min(runs.max(1))
 }
 
 /// Into how many columns panels are put so that the smaller of their sides is largest.
@@ -219,7 +235,12 @@ fn labels(typed: &ViewFile) -> Labels {
 
 /// What a view follows from.
 pub(super) struct Around<'a> {
-    pub(super) body: &'a ResolvedBody,
+    pub(super) body: &'a Body,
+    pub(super) initial: &'a State,
+    /// Mean length of the elements' edges (m).
+    pub(super) side: f64,
+    /// Whether that is the side of a lattice's cells.
+    pub(super) has_cells: bool,
     pub(super) gravity: DVec3,
     pub(super) obstacles: &'a [Obstacle],
     pub(super) grips: &'a [Grip],
@@ -233,21 +254,21 @@ impl Around<'_> {
     fn largest(&self, field: Field) -> f64 {
         /// The strain, and the displacement in edges of an element, that count as large.
         const LARGE: f64 = 0.5;
-        let side = self.body.side;
+        let side = self.side;
         let stiffness = self.runs.iter().fold(0.0, |most: f64, run| most.max(run.model.stiffness()));
         match field {
             Field::Strain => LARGE,
             Field::Displacement => LARGE * side,
             Field::ElasticEnergy => 0.5 * stiffness * (LARGE * side) * (LARGE * side),
             Field::Speed => {
-                let start = self.body.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
-                let (_, high) = bounds(&self.body.initial.position);
+                let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
+                let (_, high) = bounds(&self.initial.position);
                 let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
                 let fall = (2.0 * self.gravity.length() * drop).sqrt();
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
                 // A body that nothing moves swings by itself at the most.
-                let swing = LARGE * side * TAU / cycle(&self.body.body, stiffness);
+                let swing = LARGE * side * TAU / cycle(self.body, stiffness);
                 if fastest > 0.0 { fastest } else { swing }
             }
         }
@@ -255,10 +276,10 @@ impl Around<'_> {
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
-fn size(body: &ResolvedBody) -> f64 {
-    let (low, high) = bounds(&body.initial.position);
+fn size(scene: &Around<'_>) -> f64 {
+    let (low, high) = bounds(&scene.initial.position);
     let start = (high - low).max_element();
-    if start > 0.0 { start } else { body.body.extent() }
+    if start > 0.0 { start } else { scene.body.extent() }
 }
 
 /// The start of a body that is drawn with its elements apart, a little larger than it is drawn.
@@ -303,12 +324,12 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 /// already, or if there is nothing, nothing changes.
 fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Around<'_>) {
     let (low, high) = bounds(start);
-    let (dimension, drop) = (scene.body.body.dimension, standing - (low + high) / 2.0);
+    let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
     let body: Vec<_> = match camera.follow {
         Follow::Nothing => start.iter().flat_map(|&at| [at, at + drop]).collect(),
         Follow::Height | Follow::Body => start.iter().map(|&at| at + drop).collect(),
     };
-    let mut shown = reach::near(scene, &body, size(scene.body));
+    let mut shown = reach::near(scene, &body, size(scene));
     if shown.is_empty() || least_distance(camera, &shown, dimension) <= camera.distance {
         return;
     }

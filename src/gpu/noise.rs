@@ -1,0 +1,106 @@
+//! What graphics drivers say on standard error is not said by this crate, and mostly says nothing to its user.
+
+/// Complaints that mean nothing to a program without a window.
+#[cfg(unix)]
+const NOISE: [&str; 2] = ["XDG_RUNTIME_DIR", "DISPLAY"];
+
+/// Opens a device, or looks for some, while the noise that drivers make on standard error is held back. Whatever else is
+/// said meanwhile, also by other threads, is said right afterwards.
+///
+/// Standard error belongs to the whole process, so only one thread does this at a time, and as shortly as can be.
+#[cfg(unix)]
+pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
+    use std::io::{Read, Seek, Write};
+    use std::sync::{Mutex, PoisonError};
+    static ALONE: Mutex<()> = Mutex::new(());
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // Where this cannot be done, the noise does no harm.
+    let Some((mut words, ears)) = Held::take() else { return open() };
+    let result = open();
+    drop(ears);
+    let mut text = Vec::new();
+    if words.rewind().and_then(|()| words.read_to_end(&mut text)).is_ok() {
+        let is_noise = |line: &[u8]| {
+            let line = String::from_utf8_lossy(line);
+            NOISE.iter().any(|noise| line.contains(noise))
+        };
+        let kept: Vec<u8> =
+            text.split_inclusive(|&byte| byte == b'\n').filter(|line| !is_noise(line)).flatten().copied().collect();
+        let _ = std::io::stderr().write_all(&kept);
+    }
+    result
+}
+
+/// Opens a device, or looks for some.
+#[cfg(not(unix))]
+pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
+    open()
+}
+
+/// Standard error as it was; put back when dropped, also by a panic.
+#[cfg(unix)]
+struct Held(std::os::fd::OwnedFd);
+
+#[cfg(unix)]
+impl Held {
+    /// Leads standard error into a file without a name.
+    fn take() -> Option<(std::fs::File, Self)> {
+        use std::os::fd::AsFd;
+        let before = std::io::stderr().as_fd().try_clone_to_owned().ok()?;
+        let file = tempfile::tempfile().ok()?;
+        rustix::stdio::dup2_stderr(&file).ok()?;
+        Some((file, Self(before)))
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Held {
+    fn drop(&mut self) {
+        let _ = rustix::stdio::dup2_stderr(&self.0);
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::hushed;
+    use std::io::Write;
+    use std::process::Command;
+
+    fn say(line: &str) {
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+
+    /// Standard error is that of the whole process, so this has one of its own.
+    #[test]
+    #[ignore = "started by the test below"]
+    fn in_a_process_of_its_own() {
+        let speak = |number: usize| {
+            say("error: XDG_RUNTIME_DIR is invalid or not set in the environment.");
+            say(&format!("kept {number}"));
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            number
+        };
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..4).map(|number| scope.spawn(move || hushed(|| speak(number)))).collect();
+            for (number, thread) in threads.into_iter().enumerate() {
+                assert_eq!(thread.join().expect("no panic"), number);
+            }
+        });
+        let panics = std::panic::catch_unwind(|| hushed(|| std::panic::resume_unwind(Box::new(()))));
+        assert!(panics.is_err());
+        hushed(|| say("kept at the end"));
+        say("heard again");
+    }
+
+    #[test]
+    fn noise_is_held_back_and_nothing_else() {
+        let mut command = Command::new(std::env::current_exe().expect("this test"));
+        command.args(["--exact", "gpu::noise::tests::in_a_process_of_its_own", "--ignored", "--nocapture"]);
+        let output = command.output().expect("this test starts");
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert!(output.status.success() && !text.contains("XDG_RUNTIME_DIR"), "{text}");
+        for kept in ["kept 0\n", "kept 1\n", "kept 2\n", "kept 3\n", "kept at the end\nheard again\n"] {
+            assert!(text.contains(kept), "{kept}{text}");
+        }
+    }
+}

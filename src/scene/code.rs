@@ -1,0 +1,86 @@
+//! Scenes that are made in code instead of being read from a file.
+
+use super::file::ViewFile;
+use super::resolve;
+use super::view::{View, Visible};
+use super::{Run, Scene};
+use crate::sim::body::{Body, State};
+use glam::DVec3;
+use std::sync::Arc;
+
+impl Scene {
+    /// A body made in code, at rest in its rest shape: a second of it at 60 frames per second, without gravity, obstacles
+    /// and grips, and looked at as if a file had said nothing of its view. All of it can be changed; a change of what is to
+    /// be seen is followed by [`Self::framed`].
+    ///
+    #[cfg_attr(feature = "render", doc = "```")]
+    #[cfg_attr(not(feature = "render"), doc = "```ignore")]
+    /// use localshape::glam::DVec3;
+    /// use localshape::gpu::{AdapterChoice, Gpu};
+    /// use localshape::scene::{Run, Scene};
+    /// use localshape::sequence::Sequence;
+    /// use localshape::sim::body::{Body, Dimension, Solids};
+    /// use localshape::sim::integrate::Integrator;
+    /// use localshape::sim::model::shape_based::ShapeBased;
+    /// use localshape::{picture, render::Renderer};
+    /// use std::sync::Arc;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// // A tetrahedron, thrown upwards.
+    /// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
+    /// let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
+    /// let run = Run {
+    ///     name: "Local shape".into(),
+    ///     model: Arc::new(ShapeBased {
+    ///         stiffness: 1e4,
+    ///         damping: 0.0,
+    ///         passes: 2,
+    ///         rotation: Default::default(),
+    ///         damping_of: Default::default(),
+    ///     }),
+    ///     integrator: Integrator::SemiImplicitEuler,
+    ///     step: 1e-3,
+    /// };
+    /// let mut scene = Scene::new("tetrahedron", body, vec![run]);
+    /// scene.gravity = -9.8 * DVec3::Y;
+    /// scene.initial.velocity.fill(DVec3::Y);
+    ///
+    /// let frame = Sequence::new(&scene, &[0]).frame(6);
+    /// # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
+    /// let gpu = Gpu::new(&AdapterChoice::Auto)?;
+    /// let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
+    /// # let _ = image;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn new(title: &str, body: Body, runs: Vec<Run>) -> Self {
+        let side = resolve::mean_edge(&body);
+        let visible = Visible::usual(body.dimension, body.len());
+        let (columns, clock) = (resolve::columns(runs.len()), ViewFile::default().clock);
+        let view = View { side, visible, columns, clock, ..View::default() };
+        let scene = Self {
+            title: title.into(),
+            name: title.into(),
+            file: None,
+            digest: String::new(),
+            gravity: DVec3::ZERO,
+            duration: 1.0,
+            frames_per_second: 60.0,
+            initial: State::at_rest(body.rest.clone()),
+            body: Arc::new(body),
+            runs,
+            obstacles: Vec::new(),
+            grips: Vec::new(),
+            view,
+        };
+        scene.framed()
+    }
+
+    /// The same scene with the camera that it has if a file says nothing of one: it shows the body and what comes near it.
+    /// It follows from the body, its start, obstacles, grips and duration.
+    pub fn framed(mut self) -> Self {
+        self.view.camera = resolve::camera(&self);
+        self
+    }
+}
