@@ -125,7 +125,7 @@ fn a_frame_composed_alone_has_the_same_strips() {
     // Of one run alone, without the other behind it and by its own scale.
     let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
     let [own, halo, dot] = &compose(&scene, &alone).curves[1..] else { panic!("a moment, a curve and a dot") };
-    assert!(own.points.len() == 2 && own.dash.is_none() && halo.points == dot.points);
+    assert!(own.points.len() == 2 && own.dash.is_empty() && halo.points == dot.points);
     // Nobody who says nothing of the scene's course gets one made up.
     assert!(Composer::new(&scene).compose(&frames[1]).curves.is_empty());
 }
@@ -220,16 +220,16 @@ fn joints_do_not_show() {
     let (mut scene, frame) = fig4b(0);
     scene.view.size = [200, 100];
     let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
-    let mut draw = |points: Vec<[f32; 2]>, dash| {
+    let mut draw = |points: Vec<[f32; 2]>, dash: &[f32]| {
         let mut picture = compose(&scene, &frame);
         picture.panels.clear();
         picture.marks.clear();
         picture.words.clear();
-        picture.curves = vec![Curve { points, width: 2.2, dash, colour: [0, 0, 0], alpha: 0.5 }];
+        picture.curves = vec![Curve { points, width: 2.2, dash: dash.to_vec(), colour: [0, 0, 0], alpha: 0.5 }];
         renderer.draw(&picture).expect("the device works")
     };
     for (from, to) in [([10.0, 20.3], [190.0, 20.3]), ([10.0, 10.0], [190.0, 77.0]), ([99.7, 95.0], [102.0, 5.0])] {
-        for dash in [None, Some([7.0, 4.0])] {
+        for dash in [&[][..], &[7.0, 4.0], &[11.0, 3.0, 2.5, 3.0], &[7.0, 3.0, 2.5, 3.0, 2.5, 3.0]] {
             let at = |share: f32| [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
             let whole = draw(vec![from, to], dash);
             let pieces = draw((0..=60).map(|at_piece| at(at_piece as f32 / 60.0)).collect(), dash);
@@ -240,6 +240,6 @@ fn joints_do_not_show() {
     }
     // Nowhere is it darker than its own opacity, also where it turns sharply.
     let zigzag = (0..30).map(|at| [10.0 + 3.0 * at as f32, if at % 2 == 0 { 20.0 } else { 80.0 }]).collect();
-    let darkest = draw(zigzag, None).pixels().map(|pixel| pixel[0]).min();
+    let darkest = draw(zigzag, &[]).pixels().map(|pixel| pixel[0]).min();
     assert!(darkest >= Some(124), "{darkest:?}");
 }
