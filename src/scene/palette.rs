@@ -365,7 +365,7 @@ const DARK: Palette = Palette {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Lab, Sight, cie76, ciede2000, encoded, lab, linear, seen_by};
+    use crate::colour::{Lab, Sight, cie76, ciede2000, difference, encoded, lab, linear, seen_by};
 
     const WHITE: Colour = [255; 3];
 
@@ -464,6 +464,31 @@ mod tests {
             }
         }
         println!("as they are, lit, just behind, deep inside: {least:.1?}");
+    }
+
+    /// How different two colours look at the least, to all eyes.
+    fn least_difference(one: Colour, other: Colour) -> f64 {
+        Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
+        for theme in [LIGHT, DARK] {
+            for (at, &colour) in theme.runs.iter().enumerate() {
+                let found = contrast(colour, theme.background);
+                assert!(found >= LINE_CONTRAST, "{colour:x?} has a contrast of {found:.2} with the background");
+                let found = least_difference(colour, theme.alarm);
+                assert!(found >= 20.0, "{colour:x?} and turned-over elements differ by {found:.1}");
+                for other in &theme.runs[..at] {
+                    let found = least_difference(colour, *other);
+                    assert!(found >= 15.0, "{colour:x?} and {other:x?} differ by {found:.1}");
+                }
+            }
+        }
+        // Where there are no colours, dashes say it.
+        for (at, dash) in DASHES.iter().enumerate() {
+            assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
+        }
     }
 
     #[test]

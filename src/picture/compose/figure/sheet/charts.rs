@@ -40,8 +40,10 @@ const BEYOND: f64 = 0.35;
 const UPRIGHT_ABOVE: f64 = 9.0;
 const MOMENT: f64 = 1.1;
 const MOMENT_ALPHA: f64 = 0.62;
-/// The part of the picture's width that names at the ends of curves take at most.
+/// The part of the picture's width that names at the ends of curves take at most, and half of what is free between those
+/// of two charts (px in the reference picture).
 const NAMES: f64 = 0.16;
+const NAMES_APART: f64 = 3.0;
 
 /// What charts show.
 pub(super) struct Charts<'a> {
@@ -90,12 +92,8 @@ impl<'a> Charts<'a> {
 
     /// The height that the names of all curves of a chart need (px in the reference picture).
     pub(super) fn ends_height(&self) -> f64 {
-        self.ends.as_ref().map_or(0.0, |_| self.lines() as f64 * APART)
-    }
-
-    /// The most curves of a chart.
-    fn lines(&self) -> usize {
-        self.charts.iter().map(|one| one.lines.len()).max().unwrap_or(0)
+        let names = self.charts.iter().map(|one| one.lines.len()).max().unwrap_or(0);
+        self.ends.as_ref().map_or(0.0, |_| names as f64 * APART + 2.0 * NAMES_APART)
     }
 
     pub(super) fn count(&self) -> usize {
@@ -112,8 +110,9 @@ impl<'a> Charts<'a> {
         self.moments(writer, room, bottom);
         for (at, (one, &[top, bottom])) in self.charts.iter().zip(&room.charts).enumerate() {
             let parts = self.parts(scale, room.span, [top, bottom]);
-            // Names may stand beside the gaps between charts, too.
-            let between = [top - 0.5 * room.between, bottom + 0.5 * room.between];
+            // Names may stand beside the gaps between charts, too, but not next to those of another chart.
+            let beyond = 0.5 * room.between - NAMES_APART * scale.type_unit();
+            let between = [top - beyond, bottom + beyond];
             one.draw(writer, &parts, at + 1 == room.charts.len(), self.ends.as_ref(), between);
             if let Some(left) = room.names {
                 one.write_name(writer, [left, 0.5 * (top + bottom)]);
