@@ -13,9 +13,11 @@ use super::text::{Fonts, Weight};
 /// reference picture).
 const GAP: f64 = 14.0;
 pub(super) const APART: f64 = 15.0;
-/// Free at both ends of a line that leads to a name, its width (px in the reference picture), and its opacity.
+/// Free at both ends of a line that leads to a name, its width, its dots and gaps where it comes from a curve that ends
+/// early and must not look like its course (px in the reference picture), and its opacity.
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
+const DOTS: [f64; 2] = [1.0, 3.5];
 const LEADER_ALPHA: f64 = 0.7;
 /// A name that is shifted by less than this needs no line (px in the reference picture).
 const HARDLY: f64 = 3.0;
@@ -83,7 +85,7 @@ impl Ends {
                 writer.curves.push(Curve {
                     points: points.into_iter().map(|point| point.map(narrow)).collect(),
                     width: narrow(LEADER * chart.thin),
-                    dash: Vec::new(),
+                    dash: if is_early { DOTS.map(|length| narrow(length * unit)).to_vec() } else { Vec::new() },
                     colour: line.style.colour,
                     alpha: narrow(LEADER_ALPHA),
                 });

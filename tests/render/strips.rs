@@ -216,9 +216,9 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
     // The one that goes on is not flattened, and ends with a dot.
     assert_eq!(dots(&picture).len(), 2);
-    let heights = of_calm.points.iter().map(|[_, y]| *y);
-    let [low, high] = heights.fold([f32::MAX, f32::MIN], |[low, high], y| [low.min(y), high.max(y)]);
-    assert!(high - low > 5.0, "the calm curve is {} px high", high - low);
+    let bottom = moments(&picture)[0].points[1][1];
+    let height = bottom - of_calm.points[0][1];
+    assert!(height > 10.0, "the calm curve is {height} px high");
     assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=720.0).contains(y)));
 }
 
@@ -326,8 +326,8 @@ fn eight_runs_of_one_model_are_told_apart() {
         // Whichever runs are shown, each keeps its line.
         let few = Frame { runs: vec![frame.runs[6].clone(), frame.runs[2].clone()], ..frame.clone() };
         let picture = compose(&scene, &few);
-        let shown: Vec<_> = picture.curves.iter().filter(|curve| curve.width == widest).map(look_of).collect();
-        assert!(shown.iter().all(|look| [&looks[6], &looks[2]].contains(&look)) && !shown.is_empty(), "{shown:?}");
+        let shown: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).map(look_of).collect();
+        assert!(shown.iter().all(|look| [&looks[6], &looks[2]].contains(&look)) && shown.len() == 4, "{shown:?}");
     }
 }
 

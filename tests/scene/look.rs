@@ -78,7 +78,7 @@ fn mistakes_of_colours_of_runs() {
     let told = |view: &str, colour: &str| {
         let text = of_runs(view, &["", &format!("colour = {colour}")]);
         let error = Scene::parse(&text, "scene.toml", &Limits::default()).expect_err(colour).to_string();
-        assert!(error.contains("scene.toml:11:10: "), "{error}");
+        assert!(error.contains("scene.toml:13:10: "), "{error}");
         error
     };
     assert!(told("", "'navi'").contains("`run[1].colour` is \"navi\"; expected digits such as"));
