@@ -57,7 +57,7 @@ impl Ends {
     }
 
     /// Writes them beside a chart, between two heights (px). `ends` are the ends of the curves (px), of those that have
-    /// any; the name of one run may be stronger than the others.
+    /// any; the name of one run may be stronger than the others. Where not all have room, none is written.
     pub(super) fn write(
         &self,
         writer: &mut Writer<'_>,
@@ -69,6 +69,9 @@ impl Ends {
     ) {
         let (unit, size) = (chart.unit, NUMBERS * chart.unit);
         let mut order: Vec<_> = (0..lines.len()).filter_map(|at| Some((at, ends[at]?))).collect();
+        if order.len() as f64 * APART * unit > bottom - top {
+            return;
+        }
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
         let heights: Vec<_> = order.iter().map(|&(_, [_, y])| y).collect();
         let half = 0.5 * APART * unit;

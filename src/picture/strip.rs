@@ -28,7 +28,7 @@ const DOT: f64 = 4.5;
 const HALO: f64 = 2.2;
 /// The part of a strip's width that the names at the ends of curves take at most, and how far above the chart they begin
 /// at most (px in the reference picture).
-const NAMES: f64 = 0.36;
+const NAMES: f64 = 0.4;
 const NAMES_ABOVE: f64 = 8.0;
 /// The height of the room for these names (px in the reference picture), in strips of the usual height.
 pub(super) const NAMES_HEIGHT: f64 = 88.0;

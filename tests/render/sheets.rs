@@ -292,8 +292,15 @@ fn of_alike(runs: usize, sheet: &str) -> (Figure, Moments) {
 #[test]
 fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
     for runs in [2, 3, 8, 10] {
-        let text = "size = [2400, 1350]\n[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\nstrips = ['energy', 'shape_error']\n";
-        let (figure, moments) = of_alike(runs, text);
+        let text = "[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\nstrips = ['energy', 'shape_error']\n";
+        let (mut figure, moments) = of_alike(runs, text);
+        // In the second one there is too little room for many names.
+        for size in [[1200, 675], [1200, 360], [400, 300]] {
+            figure.size = size;
+            let picture = compose_figure(&figure, &moments).expect("room");
+            assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None, "{runs} in {size:?}");
+        }
+        figure.size = [2400, 1350];
         let picture = compose_figure(&figure, &moments).expect("room");
         assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None);
         let curves: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).collect();

@@ -86,9 +86,12 @@ fn mistakes_of_colours_of_runs() {
     assert!(told("", "'#12345'").contains("three or six digits"));
     assert!(told("", "'#12345680'").contains("expected an opaque colour"));
     assert!(told("", "7").contains("`run[1].colour`"));
-    let faint = told("", "'gold'");
     assert!(
-        faint.contains("has a contrast of 1.3 to 1 with the background #fbfbfa; expected at least 3 to 1"),
+        told("", "'gold'").contains("choose another hue; this one, made darker, would be like turned-over elements")
+    );
+    let faint = told("", "'skyblue'");
+    assert!(
+        faint.contains("has a contrast of 1.6 to 1 with the background #fbfbfa; expected at least 3 to 1"),
         "{faint}"
     );
     let named =

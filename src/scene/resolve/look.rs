@@ -68,6 +68,11 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
 /// The colours that runs have of their own must be seen on the background, and not be taken for that of turned-over
 /// elements.
 pub(super) fn check_runs(typed: &[Option<RunFile>], palette: &Palette, report: &mut Report<'_>) {
+    let like_alarm = |colour: Colour| {
+        let measured = Sight::ALL.map(|sight| (difference(colour, palette.alarm, sight), sight));
+        let nearest = measured.into_iter().min_by(|one, other| one.0.total_cmp(&other.0));
+        nearest.filter(|(found, _)| *found < LEAST_DIFFERENCE)
+    };
     for (at, run) in typed.iter().enumerate() {
         let Some(colour) = run.as_ref().and_then(|run| run.colour).map(|colour| colour.0) else { continue };
         let path = [Way::Key("run"), Way::Index(at), Way::Key("colour")];
@@ -79,13 +84,14 @@ pub(super) fn check_runs(typed: &[Option<RunFile>], palette: &Palette, report: &
                 rounded_down(found),
                 written(palette.background)
             );
-            let other = written(readable(colour, palette.background, LINE_CONTRAST));
+            let other = readable(colour, palette.background, LINE_CONTRAST);
             let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
-            report.at(&path, message, format!("make it {towards}, such as \"{other}\""));
-        }
-        let measured = Sight::ALL.map(|sight| (difference(colour, palette.alarm, sight), sight));
-        let nearest = measured.into_iter().min_by(|one, other| one.0.total_cmp(&other.0));
-        if let Some((found, sight)) = nearest.filter(|(found, _)| *found < LEAST_DIFFERENCE) {
+            let help = match like_alarm(other) {
+                None => format!("make it {towards}, such as \"{}\"", written(other)),
+                Some(_) => format!("choose another hue; this one, made {towards}, would be like turned-over elements"),
+            };
+            report.at(&path, message, help);
+        } else if let Some((found, sight)) = like_alarm(colour) {
             let message = format!(
                 "`run[{at}].colour` is too like that of turned-over elements, {}: to {} they differ by {} (CIEDE2000); \
                  expected at least {LEAST_DIFFERENCE}",

@@ -436,7 +436,7 @@ impl<'a> Drawn<'a> {
         }
         if forces.numbers {
             for &at in &order {
-                self.number(at, arrows[at], writer, &mut labels, own);
+                self.number(at, arrows[at], writer, &mut labels, palette.text_like(own));
             }
         }
     }
