@@ -341,7 +341,7 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
     let text = "[sheet]\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n\
                 [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";
     let (figure, _) = of_alike(4, text);
-    let [first, second] = &figure.scenes()[..] else { panic!("two scenes") };
+    let [first, second] = figure.scenes() else { panic!("two scenes") };
     assert_eq!(
         second.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>(),
         ["k = 1500", "k = 1000", "k = 2000"]
