@@ -8,9 +8,12 @@ struct Piece {
     @location(1) joints: vec4<f32>,
     // sRGB, and the opacity.
     @location(2) colour: vec4<f32>,
-    // Its width, how much of the pattern the curve has gone through before, and the length of a dash and of the gap after
-    // it (px). A solid curve has no gap.
-    @location(3) pattern: vec4<f32>,
+    // Its width, how much of the pattern the curve has gone through before, and how long the pattern is (px): 0 for a solid
+    // curve.
+    @location(3) pattern: vec3<f32>,
+    // The lengths of three dashes, each with that of the gap after it (px); 0 for those that it does not have.
+    @location(4) dashes: vec4<f32>,
+    @location(5) last_dash: vec2<f32>,
 }
 
 struct Corner {
@@ -18,7 +21,9 @@ struct Corner {
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) joints: vec4<f32>,
     @location(2) @interpolate(flat) colour: vec4<f32>,
-    @location(3) @interpolate(flat) pattern: vec4<f32>,
+    @location(3) @interpolate(flat) pattern: vec3<f32>,
+    @location(4) @interpolate(flat) dashes: vec4<f32>,
+    @location(5) @interpolate(flat) last_dash: vec2<f32>,
 }
 
 struct Canvas {
@@ -42,7 +47,7 @@ fn piece(@builtin(vertex_index) index: u32, piece: Piece) -> Corner {
     let end = select(piece.ends.xy - reach * along, piece.ends.zw + reach * along, (index & 1u) == 1u);
     let at = end + select(-reach, reach, (index >> 1u) == 1u) * vec2(-along.y, along.x);
     let place = vec4(at / canvas.size * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.5, 1.0);
-    return Corner(place, piece.ends, piece.joints, piece.colour, piece.pattern);
+    return Corner(place, piece.ends, piece.joints, piece.colour, piece.pattern, piece.dashes, piece.last_dash);
 }
 
 @fragment
@@ -61,12 +66,22 @@ fn piece_colour(corner: Corner) -> @location(0) vec4<f32> {
     let half_width = 0.5 * corner.pattern.x;
     // Curves thinner than a pixel are fainter instead.
     var covered = saturate(half_width + 0.5 - off) - saturate(0.5 - half_width - off);
-    if corner.pattern.w > 0.0 {
-        let period = corner.pattern.z + corner.pattern.w;
+    let period = corner.pattern.z;
+    if period > 0.0 {
         let place = corner.pattern.y + gone;
         let phase = place - period * floor(place / period);
-        // How far inside of a dash this is, of the one begun or the one to come.
-        covered *= saturate(0.5 + max(min(phase, corner.pattern.z - phase), phase - period));
+        let first = corner.dashes.x;
+        let second = first + corner.dashes.y;
+        let third = second + corner.dashes.z + corner.dashes.w;
+        // How far inside of a dash this is, of one of the pattern or the first of the next.
+        var inside = max(min(phase, first - phase), phase - period);
+        if corner.dashes.z > 0.0 {
+            inside = max(inside, min(phase - second, second + corner.dashes.z - phase));
+        }
+        if corner.last_dash.x > 0.0 {
+            inside = max(inside, min(phase - third, third + corner.last_dash.x - phase));
+        }
+        covered *= saturate(0.5 + inside);
     }
     return vec4(corner.colour.rgb, corner.colour.a * covered);
 }

@@ -2,7 +2,7 @@
 
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::narrow::narrow;
-use super::palette::{Colour, Palette};
+use super::palette::{Colour, LineStyle, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
 use super::{Curve, Mark, MarkShape, number};
@@ -22,11 +22,9 @@ const TITLE_BASELINE: f64 = 62.0;
 /// Between a panel's letter and its name, and the height of small letters, in parts of the type's size.
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
-/// Between a name and the sample of its line; the sample's length and thickness, its dashes and the gaps between them (px
-/// in the reference picture).
+/// Between a name and the sample of its line; the sample's length and thickness (px in the reference picture).
 const SAMPLE_GAP: f64 = 14.0;
 const SAMPLE: [f64; 2] = [40.0, 2.6];
-pub(super) const DASHES: [f64; 2] = [7.0, 4.0];
 /// How far the scale bar lies above the baseline of counts, and the length of its ticks (px in the reference picture).
 const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
@@ -68,8 +66,8 @@ pub(super) struct Heading<'a> {
     pub(super) letter: String,
     /// The run's name.
     pub(super) name: &'a str,
-    /// The line or arrow that stands for it elsewhere in the picture: its colour, and whether it is dashed.
-    pub(super) sample: Option<(Colour, bool)>,
+    /// The line that stands for it elsewhere in the picture.
+    pub(super) sample: Option<LineStyle>,
     /// The line below.
     pub(super) second: &'a str,
 }
@@ -130,8 +128,8 @@ impl Writer<'_> {
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
-    /// A piece of the line that stands for a model elsewhere, from a place on (px).
-    pub(super) fn sample(&mut self, [left, middle]: [f64; 2], (colour, is_dashed): (Colour, bool)) {
+    /// A piece of the line that stands for a run elsewhere, from a place on (px).
+    pub(super) fn sample(&mut self, [left, middle]: [f64; 2], LineStyle { colour, dash }: LineStyle) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
         let thickness = thickness * self.scale.line_factor;
@@ -141,12 +139,16 @@ impl Writer<'_> {
             let shape = MarkShape::Filled;
             self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
         };
-        if !is_dashed {
+        if dash.is_empty() {
             return piece(0.0, length.round());
         }
-        let [dash, gap] = DASHES.map(|length| (length * unit).round().max(1.0));
+        let whole = |length: f64| (length * unit).round().max(1.0);
         let mut from = 0.0;
-        while from + dash <= length + gap {
+        for two in dash.chunks(2).cycle() {
+            let [dash, gap] = [two[0], two[1]].map(whole);
+            if from + dash > length + gap {
+                break;
+            }
             piece(from, from + dash);
             from += dash + gap;
         }

@@ -157,7 +157,7 @@ impl Chart {
         Curve {
             points: ends.iter().map(|end| end.map(narrow)).collect(),
             width: narrow(MOMENT * self.thickness()),
-            dash: None,
+            dash: Vec::new(),
             colour,
             alpha: narrow(MOMENT_ALPHA),
         }
@@ -179,5 +179,5 @@ pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
 
 /// A filled disc.
 pub(super) fn dot(at: [f64; 2], radius: f64, colour: Colour) -> Curve {
-    Curve { points: vec![at.map(narrow)], width: narrow(2.0 * radius), dash: None, colour, alpha: 1.0 }
+    Curve { points: vec![at.map(narrow)], width: narrow(2.0 * radius), dash: Vec::new(), colour, alpha: 1.0 }
 }

@@ -2,10 +2,10 @@
 
 use super::Curve;
 use super::axis::Axis;
-use super::caption::{DASHES, Writer};
+use super::caption::Writer;
 use super::chart::Chart;
 use super::narrow::narrow;
-use super::palette::Colour;
+use super::palette::{LineStyle, Palette};
 use crate::history::Course;
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
@@ -29,8 +29,10 @@ const LEAST_RANGE: f64 = 0.02;
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub(super) run: usize,
-    /// Whether its model has springs.
-    pub(super) has_springs: bool,
+    /// What a reader calls it.
+    pub(super) name: String,
+    /// What the curve looks like.
+    pub(super) style: LineStyle,
     /// Whether it is a count, which goes in steps.
     pub(super) is_count: bool,
     /// Times (s) and values, as far as they are numbers.
@@ -39,29 +41,16 @@ pub(super) struct Line {
     pub(super) diverged: Option<f64>,
 }
 
-/// How a curve looks.
-#[derive(Clone, Copy)]
-pub(super) struct Look {
-    width: f64,
-    colour: Colour,
-    dashed: bool,
-    alpha: f64,
-}
-
-impl Look {
-    pub(super) fn new(width: f64, colour: Colour, dashed: bool, alpha: f64) -> Self {
-        Self { width, colour, dashed, alpha }
-    }
-}
-
 impl Line {
-    /// A diagnostic of a run of a scene.
-    pub(super) fn new(diagnostic: Diagnostic, course: &Course, scene: &Scene) -> Self {
+    /// A diagnostic of a run of a scene, in the colours of a picture.
+    pub(super) fn new(diagnostic: Diagnostic, course: &Course, scene: &Scene, palette: &Palette) -> Self {
         let values = course.diagnostics.iter().map(|all| diagnostic.of(all));
         let points = course.times.iter().zip(values).map(|(&time, value)| [time, value]);
+        let run = &scene.runs[course.run];
         Self {
             run: course.run,
-            has_springs: scene.runs.get(course.run).is_some_and(|run| !run.model.springs().is_empty()),
+            name: run.name.clone(),
+            style: palette.line(run),
             is_count: diagnostic == Diagnostic::TurnedOver,
             points: points.filter(|[_, value]| value.is_finite()).collect(),
             diverged: course.divergence.map(|divergence| divergence.time),
@@ -81,11 +70,23 @@ impl Line {
         let ends = [start, end].map(|moment| at(moment).filter(|_| points.iter().all(|&[time, _]| time != moment)));
         let points = ends[0].into_iter().chain(inside).chain(ends[1]).collect();
         let diverged = self.diverged.filter(|time| (start..=end).contains(time));
-        Self { points, diverged, ..*self }
+        Self { points, diverged, name: self.name.clone(), ..*self }
     }
 
-    /// The curve, with a cross where the run blew up.
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2], look: Look) {
+    /// Where the curve ends in a chart (px); `None` if it has no values.
+    pub(super) fn end(&self, chart: Chart, [times, values]: [&Axis; 2]) -> Option<[f64; 2]> {
+        let &[time, value] = self.points.last()?;
+        Some([chart.x(times, time), chart.y(values, value).clamp(chart.top, chart.bottom)])
+    }
+
+    /// The curve at a width (px in the reference picture) and an opacity, with a cross where the run blew up.
+    pub(super) fn draw(
+        &self,
+        writer: &mut Writer<'_>,
+        chart: Chart,
+        [times, values]: [&Axis; 2],
+        [width, alpha]: [f64; 2],
+    ) {
         let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
         let mut points: Vec<_> = points.collect();
         if self.is_count {
@@ -93,23 +94,23 @@ impl Line {
         }
         let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
         let thickness = chart.thickness();
-        let curve = |points: &[[f64; 2]], width: f64, dash: Option<[f32; 2]>| Curve {
+        let curve = |points: &[[f64; 2]], width: f64, dash: Vec<f32>| Curve {
             points: points.iter().map(|point| point.map(narrow)).collect(),
             width: narrow(width * thickness),
             dash,
-            colour: look.colour,
-            alpha: narrow(look.alpha),
+            colour: self.style.colour,
+            alpha: narrow(alpha),
         };
-        let dash = look.dashed.then(|| DASHES.map(|length| narrow(length * thickness)));
+        let dash: Vec<_> = self.style.dash.iter().map(|length| narrow(length * thickness)).collect();
         for part in within(&points, borders) {
-            writer.curves.push(curve(&simplified(&part, EXACT), look.width, dash));
+            writer.curves.push(curve(&simplified(&part, EXACT), width, dash.clone()));
         }
         if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
             let [x, y] = [chart.x(times, time), last.clamp(chart.top, chart.bottom)];
             let arm = ARM * thickness;
             for slope in [-1.0, 1.0] {
                 let ends = [[x - arm, y - slope * arm], [x + arm, y + slope * arm]];
-                writer.curves.push(curve(&ends, CROSS.min(look.width), None));
+                writer.curves.push(curve(&ends, CROSS.min(width), Vec::new()));
             }
         }
     }
@@ -240,7 +241,9 @@ mod tests {
 
     fn line(values: &[f64], diverged: bool) -> Line {
         let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
-        Line { run: 0, has_springs: false, is_count: false, points, diverged: diverged.then_some(values.len() as f64) }
+        let style = LineStyle { colour: [0; 3], dash: &[] };
+        let diverged = diverged.then_some(values.len() as f64);
+        Line { run: 0, name: String::new(), style, is_count: false, points, diverged }
     }
 
     #[test]

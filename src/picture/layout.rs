@@ -12,6 +12,8 @@
 //! caption
 //! ```
 
+use super::ends::APART;
+use super::strip::{MOST_OTHERS, NAMES_HEIGHT};
 use crate::scene::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
@@ -120,9 +122,12 @@ impl Layout {
         let panels = panels([size[0], height], runs, view.columns);
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
         let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
+        // The names at the ends of curves have room above each other.
+        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * APART } else { 0.0 };
+        let strip_units = STRIP + (names - NAMES_HEIGHT).max(0.0);
         let strip_height = |height: f64| match view.strip {
             Some(_) => {
-                let usual = STRIP * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
+                let usual = strip_units * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
                 let more = (scale.like_margin(BELOW_STRIP) - BELOW_STRIP) * scale.unit;
                 (usual + more).min(STRIP_SHARE * height).round()
             }

@@ -17,6 +17,7 @@ mod chart;
 mod compose;
 mod course;
 mod ears;
+mod ends;
 mod exploded;
 mod field;
 mod grip;
@@ -347,8 +348,8 @@ pub struct Curve {
     pub points: Vec<[f32; 2]>,
     /// Its width (px).
     pub width: f32,
-    /// Length of its dashes and of the gaps between them (px); `None` for a solid curve.
-    pub dash: Option<[f32; 2]>,
+    /// Lengths of its dashes and of the gaps after them, by turns (px), up to three of each; empty for a solid curve.
+    pub dash: Vec<f32>,
     /// Its colour.
     pub colour: Colour,
     /// Its opacity, from 0 to 1.

@@ -4,7 +4,8 @@
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
-use super::course::{self, Line, Look, OWN};
+use super::course::{self, Line, OWN};
+use super::ends::Ends;
 use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, Rectangle, Scale};
 use super::text::Weight;
 use crate::history::History;
@@ -19,12 +20,18 @@ const ABOVE: f64 = 26.0;
 /// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
 /// Where there are more other runs than this, they would only be a thicket, and take their time.
-const MOST_OTHERS: usize = 8;
+pub(super) const MOST_OTHERS: usize = 8;
 /// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
 const OTHER: f64 = 1.4;
-const FAINT: f64 = 0.4;
+const FAINT: f64 = 0.55;
 const DOT: f64 = 4.5;
 const HALO: f64 = 2.2;
+/// The part of a strip's width that the names at the ends of curves take at most, and how far above the chart they begin
+/// at most (px in the reference picture).
+const NAMES: f64 = 0.4;
+const NAMES_ABOVE: f64 = 8.0;
+/// The height of the room for these names (px in the reference picture), in strips of the usual height.
+pub(super) const NAMES_HEIGHT: f64 = 88.0;
 
 /// What the strips of a scene show.
 #[derive(Debug)]
@@ -42,7 +49,9 @@ pub(super) struct Strips {
 impl Strips {
     /// Prepares to show a diagnostic of all runs of a history.
     pub(super) fn new(diagnostic: Diagnostic, history: &History, scene: &Scene) -> Self {
-        let lines: Vec<_> = history.courses.iter().map(|course| Line::new(diagnostic, course, scene)).collect();
+        let palette = &scene.view.look.palette;
+        let line = |course| Line::new(diagnostic, course, scene, palette);
+        let lines: Vec<_> = history.courses.iter().map(line).collect();
         // Counts blow up to the number of elements at the most, and all of them are shown.
         let range = course::range(&lines, diagnostic != Diagnostic::TurnedOver);
         let name = course::name(diagnostic, scene);
@@ -52,8 +61,8 @@ impl Strips {
     /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, rectangle: Rectangle, shown: &RunFrame) {
         let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_STRIP_UNIT));
-        let [left, top, width, height] = rectangle.map(f64::from);
-        let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
+        let [left, top_of_all, width, height] = rectangle.map(f64::from);
+        let [top, bottom] = [top_of_all + (ABOVE * unit).round(), top_of_all + height - (BELOW * unit).round()];
         let chart = Chart {
             left,
             right: left + width,
@@ -81,7 +90,12 @@ impl Strips {
         let numbers =
             values.iter().flat_map(|axis| &axis.texts).map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
         let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
-        let chart = Chart { left: (left + indent).round(), ..chart };
+        let between = [chart.top - NAMES_ABOVE * unit, top_of_all + height];
+        let few = self.lines.len() <= MOST_OTHERS + 1;
+        let names =
+            Ends::new(writer.fonts, &self.lines, unit, [NAMES * width, between[1] - between[0]]).filter(|_| few);
+        let taken = names.as_ref().map_or(0.0, |names| names.width);
+        let chart = Chart { left: (left + indent).round(), right: (chart.right - taken).round(), ..chart };
         if chart.right - chart.left < LEAST_WIDTH {
             return;
         }
@@ -97,20 +111,22 @@ impl Strips {
         let palette = writer.palette;
         if let Some(values) = &values {
             let others = self.lines.iter().filter(|line| line.run != shown.run);
-            for line in others.filter(|_| self.lines.len() <= MOST_OTHERS + 1) {
-                let look = Look::new(OTHER, palette.arrows[usize::from(line.has_springs)], line.has_springs, FAINT);
-                line.draw(writer, chart, [&times, values], look);
+            for line in others.filter(|_| few) {
+                line.draw(writer, chart, [&times, values], [OTHER, FAINT]);
+            }
+            if let Some(names) = &names {
+                let ends: Vec<_> = self.lines.iter().map(|line| line.end(chart, [&times, values])).collect();
+                names.write(writer, chart, &self.lines, &ends, Some(shown.run), between);
             }
         }
         let now = chart.x(&times, shown.snapshot.time);
         writer.curves.push(chart.moment(now, palette.text));
         let Some((line, values)) = own.zip(values.as_ref()) else { return };
-        let colour = palette.arrows[usize::from(line.has_springs)];
-        line.draw(writer, chart, [&times, values], Look::new(OWN, colour, line.has_springs, 1.0));
+        line.draw(writer, chart, [&times, values], [OWN, 1.0]);
         let value = self.diagnostic.of(&shown.snapshot.diagnostics);
         let y = chart.y(values, value);
         if shown.snapshot.status == Status::Ok && (chart.top - 1.0..=chart.bottom + 1.0).contains(&y) {
-            for (radius, colour) in [(DOT + HALO, palette.background), (DOT, colour)] {
+            for (radius, colour) in [(DOT + HALO, palette.background), (DOT, line.style.colour)] {
                 writer.curves.push(dot([now, y], radius * chart.thickness(), colour));
             }
         }

@@ -17,12 +17,15 @@ struct Piece {
     /// Normals of the lines that part it from its neighbours, along the curve; zero at the ends of a curve.
     joints: [Vec2; 2],
     colour: [u8; 4],
-    /// Width, where in the pattern it begins, dash and gap.
-    pattern: [f32; 4],
+    /// Width, where in the pattern it begins, and how long the pattern is: 0 for a solid curve.
+    pattern: [f32; 3],
+    /// The lengths of up to three dashes, each with that of the gap after it.
+    dashes: [f32; 6],
 }
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Unorm8x4, 3 => Float32x4];
+const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+    0 => Float32x4, 1 => Float32x4, 2 => Unorm8x4, 3 => Float32x3, 4 => Float32x4, 5 => Float32x2
+];
 
 /// The pipeline, and the curves of one picture. Made for the first picture that has any.
 #[derive(Debug)]
@@ -98,14 +101,16 @@ fn pieces(curve: &Curve) -> Vec<Piece> {
     };
     let [red, green, blue] = curve.colour;
     let colour = [red, green, blue, (255.0 * curve.alpha.clamp(0.0, 1.0)).round() as u8];
-    let [dash, gap] = curve.dash.unwrap_or_default();
-    let period = f64::from(dash) + f64::from(gap);
+    let mut dashes = [0.0; 6];
+    dashes.iter_mut().zip(&curve.dash).for_each(|(own, &length)| *own = length);
+    let period: f64 = dashes.iter().map(|&length| f64::from(length)).sum();
     let mut gone = 0.0_f64;
     let piece = |at: usize| {
         let ends = [points[at], points[at + 1]];
         let begun = if period > 0.0 { gone % period } else { 0.0 };
         gone += f64::from(ends[0].distance(ends[1]));
-        Piece { ends, joints: [joint(at), joint(at + 1)], colour, pattern: [curve.width, begun as f32, dash, gap] }
+        let pattern = [curve.width, begun as f32, period as f32];
+        Piece { ends, joints: [joint(at), joint(at + 1)], colour, pattern, dashes }
     };
     (0..points.len().saturating_sub(1)).map(piece).collect()
 }
@@ -115,7 +120,7 @@ mod tests {
     use super::*;
 
     fn curve(points: &[[f32; 2]]) -> Curve {
-        Curve { points: points.to_vec(), width: 2.0, dash: Some([7.0, 4.0]), colour: [1, 2, 3], alpha: 0.5 }
+        Curve { points: points.to_vec(), width: 2.0, dash: vec![7.0, 4.0], colour: [1, 2, 3], alpha: 0.5 }
     }
 
     #[test]

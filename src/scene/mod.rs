@@ -38,7 +38,7 @@ pub use error::{Mistake, Mistakes, SceneError};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
-pub use palette::Palette;
+pub use palette::{LineStyle, Palette};
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
 pub use view::{
@@ -48,6 +48,7 @@ pub use view::{
 #[cfg(feature = "render")]
 pub(crate) use words::nearest as nearest_name;
 
+use crate::colour::Colour;
 use crate::sim::body::{Body, State};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
@@ -100,6 +101,11 @@ pub struct Run {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// Its place among the runs of its scene, which says what its lines look like ([`Palette::line`]). In a figure of
+    /// several scenes, runs of one name have one place.
+    pub place: usize,
+    /// A colour of its own for its lines.
+    pub colour: Option<Colour>,
 }
 
 impl Scene {

@@ -1,6 +1,7 @@
 //! The colours of a picture. Those of a theme come from here; what a scene gives takes their place, and whatever belongs
 //! to it follows. Vermilion means "turned over" and nothing else.
 
+use super::Run;
 use super::file::{ColoursFile, TypedColour};
 use super::view::Theme;
 use crate::colour::{Colour, Oklab, best_of, contrast, from_oklab, mixed, oklab, readable};
@@ -70,8 +71,31 @@ pub struct Palette {
     pub spring_on_body: Colour,
     /// The sides of lines that a field colours.
     pub casing: Colour,
-    /// An arrow of a model without springs, and of one with springs.
-    pub arrows: [Colour; 2],
+    /// The lines that stand for runs, by their places: see [`Palette::line`].
+    pub runs: [Colour; 8],
+}
+
+/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They tell
+/// runs apart where colours do not: in grey print, and where there are more runs than colours.
+const DASHES: [&[f64]; 8] = [
+    &[],
+    &[7.0, 4.0],
+    &[18.0, 4.0],
+    &[2.2, 3.2],
+    &[11.0, 3.0, 2.5, 3.0],
+    &[18.0, 4.0, 6.0, 4.0],
+    &[7.0, 3.0, 2.5, 3.0, 2.5, 3.0],
+    &[4.0, 8.0],
+];
+
+/// What the line looks like that stands for a run: curves in charts, and samples of them beside names. Its arrows have
+/// the same colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStyle {
+    /// Its colour.
+    pub colour: Colour,
+    /// Lengths of its dashes and of the gaps after them, by turns (px in the reference picture); empty for a solid line.
+    pub dash: &'static [f64],
 }
 
 impl Palette {
@@ -96,6 +120,23 @@ impl Palette {
     /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].
     pub fn is_made_for_light(&self) -> bool {
         contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])
+    }
+
+    /// The line of a run, the same in every picture of its scene. Eight runs differ in colour and in dashes, more of them,
+    /// up to 64, in one of both. Colours are made lighter or darker where they could not be seen on the background.
+    pub fn line(&self, run: &Run) -> LineStyle {
+        let (colours, dashes) = (self.runs.len(), DASHES.len());
+        let colour = run.colour.unwrap_or(self.runs[run.place % colours]);
+        LineStyle {
+            // The halo's colour is that of the background, whatever ground a picture is laid on.
+            colour: readable(colour, self.halo, LINE_CONTRAST),
+            dash: DASHES[(run.place + run.place / colours) % dashes],
+        }
+    }
+
+    /// A colour in which words can be read on the background: the nearest to a given one.
+    pub fn text_like(&self, colour: Colour) -> Colour {
+        readable(colour, self.halo, LEAST_CONTRAST)
     }
 
     /// The same on another ground, into which the floor goes over without a border and what is far fades.
@@ -173,7 +214,7 @@ impl Palette {
             *own = typed(given).unwrap_or(*own);
         }
         if let Some(arrow) = typed(&given.arrow) {
-            own.arrows = [arrow; 2];
+            own.runs = [arrow; 8];
         }
         own
     }
@@ -196,8 +237,8 @@ impl Palette {
 pub(super) const LEAST_CONTRAST: f64 = 4.5;
 /// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
 const GOOD_CONTRAST: f64 = 5.0;
-/// The least contrast of lines with the body they lie on: they need less than words (WCAG 2.2, 1.4.11).
-const LINE_CONTRAST: f64 = 3.0;
+/// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
+pub(super) const LINE_CONTRAST: f64 = 3.0;
 /// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
 const DARK_ALARM: f64 = 0.48;
 const LIGHTER_HATCH: f64 = 0.36;
@@ -265,7 +306,16 @@ const LIGHT: Palette = Palette {
     spring: [0x3c, 0x43, 0x4d],
     spring_on_body: [0x3c, 0x43, 0x4d],
     casing: [0x5c, 0x66, 0x72],
-    arrows: [[0x00, 0x72, 0xb2], [0x3c, 0x43, 0x4d]],
+    runs: [
+        [0x00, 0x72, 0xb2],
+        [0x3c, 0x43, 0x4d],
+        [0x1e, 0xa0, 0x87],
+        [0x4d, 0x20, 0x01],
+        [0x24, 0x9d, 0xb1],
+        [0x40, 0x00, 0x54],
+        [0x00, 0x00, 0xcb],
+        [0x43, 0x5a, 0x44],
+    ],
 };
 
 const DARK: Palette = Palette {
@@ -300,13 +350,22 @@ const DARK: Palette = Palette {
     spring: [0xc3, 0xcb, 0xd5],
     spring_on_body: [0x1d, 0x25, 0x30],
     casing: [0x0b, 0x10, 0x17],
-    arrows: [[0x56, 0xb4, 0xe9], [0xc3, 0xcb, 0xd5]],
+    runs: [
+        [0x56, 0xb4, 0xe9],
+        [0xc3, 0xcb, 0xd5],
+        [0x3a, 0xa9, 0x96],
+        [0xff, 0xfd, 0x00],
+        [0xc5, 0xec, 0xb9],
+        [0x93, 0x60, 0x93],
+        [0x59, 0x74, 0xf0],
+        [0x8b, 0x59, 0x3d],
+    ],
 };
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Lab, Sight, cie76, ciede2000, encoded, lab, linear, seen_by};
+    use crate::colour::{Lab, Sight, cie76, ciede2000, difference, encoded, lab, linear, seen_by};
 
     const WHITE: Colour = [255; 3];
 
@@ -405,6 +464,31 @@ mod tests {
             }
         }
         println!("as they are, lit, just behind, deep inside: {least:.1?}");
+    }
+
+    /// How different two colours look at the least, to all eyes.
+    fn least_difference(one: Colour, other: Colour) -> f64 {
+        Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
+        for theme in [LIGHT, DARK] {
+            for (at, &colour) in theme.runs.iter().enumerate() {
+                let found = contrast(colour, theme.background);
+                assert!(found >= LINE_CONTRAST, "{colour:x?} has a contrast of {found:.2} with the background");
+                let found = least_difference(colour, theme.alarm);
+                assert!(found >= 20.0, "{colour:x?} and turned-over elements differ by {found:.1}");
+                for other in &theme.runs[..at] {
+                    let found = least_difference(colour, *other);
+                    assert!(found >= 15.0, "{colour:x?} and {other:x?} differ by {found:.1}");
+                }
+            }
+        }
+        // Where there are no colours, dashes say it.
+        for (at, dash) in DASHES.iter().enumerate() {
+            assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
+        }
     }
 
     #[test]

@@ -53,7 +53,7 @@ fn larger(picture: &Picture) -> Picture {
     for curve in &mut large.curves {
         curve.points.iter_mut().flatten().for_each(|at| *at *= times);
         curve.width *= times;
-        curve.dash = curve.dash.map(|dash| dash.map(|length| length * times));
+        curve.dash.iter_mut().for_each(|length| *length *= times);
     }
     for words in &mut large.words {
         words.size *= times;

@@ -1,5 +1,6 @@
 //! Contact sheets: nothing overlaps, nothing is cut, and what is said is what was simulated.
 
+use super::strips::alike;
 use super::words::overlapping;
 use glam::Vec3;
 use localshape::moments::Moments;
@@ -284,4 +285,87 @@ fn a_body_without_width_is_drawn_as_a_line_or_a_dot() {
     let lengths: Vec<_> = picture.curves.iter().map(|curve| curve.points.len()).collect();
     // The point, the line, and both once more for the springs.
     assert_eq!(lengths, [1, 2, 1, 2]);
+}
+
+/// A sheet of a scene with eight runs of one model, and what it shows.
+fn of_alike(runs: usize, sheet: &str) -> (Figure, Moments) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");
+    write("alike.toml", alike(runs, "light"));
+    // The same runs, but for the first, and in another order.
+    let mut others: Vec<_> = alike(runs, "light").split("[[run]]").map(str::to_owned).collect();
+    if runs > 2 {
+        others.swap(2, 3);
+    }
+    others.remove(1);
+    write("others.toml", others.join("[[run]]"));
+    write("sheet.toml", sheet.to_owned());
+    let figure = Figure::load(&folder.path().join("sheet.toml"), &Limits::default());
+    let figure = figure.unwrap_or_else(|error| panic!("{error}"));
+    let moments = Moments::new(&figure);
+    (figure, moments)
+}
+
+#[test]
+fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
+    for runs in [2, 3, 8, 10] {
+        let text = "[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\nstrips = ['energy', 'shape_error']\n";
+        let (mut figure, moments) = of_alike(runs, text);
+        // In the second one there is too little room for many names.
+        for size in [[1200, 675], [1200, 360], [400, 300]] {
+            figure.size = size;
+            let picture = compose_figure(&figure, &moments).expect("room");
+            assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None, "{runs} in {size:?}");
+        }
+        figure.size = [2400, 1350];
+        let picture = compose_figure(&figure, &moments).expect("room");
+        assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None);
+        let curves: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).collect();
+        assert_eq!(curves.len(), 2 * runs);
+        let looks: Vec<_> = curves[..runs].iter().map(|curve| (curve.colour, curve.dash.clone())).collect();
+        for (at, look) in looks.iter().enumerate() {
+            assert!(!looks[..at].contains(look), "{look:?} stands for two runs");
+            if runs <= 8 {
+                assert!(looks[..at].iter().all(|other| other.0 != look.0 && other.1 != look.1), "{look:?}");
+            }
+        }
+        let scene = &sheet(&figure).scenes[0];
+        for (chart, curves) in curves.chunks(runs).enumerate() {
+            // From top to bottom names stand as curves end.
+            let mut ends: Vec<_> = scene
+                .runs
+                .iter()
+                .zip(curves)
+                .map(|(run, curve)| {
+                    assert_eq!(curve.colour, picture.palette.line(run).colour);
+                    let [x, y] = curve.points[curve.points.len() - 1];
+                    let names = picture.words.iter().filter(|word| word.text == run.name && word.span[0] > x);
+                    let name =
+                        names.min_by(|one, other| (one.baseline - y).abs().total_cmp(&(other.baseline - y).abs()));
+                    let name = name.unwrap_or_else(|| panic!("{} is named right of chart {chart} of {runs}", run.name));
+                    assert!(name.span[0] - x < 40.0, "{name:?}");
+                    (y, name.baseline)
+                })
+                .collect();
+            ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+            assert!(ends.windows(2).all(|two| two[1].1 - two[0].1 >= 0.9 * 21.0), "{ends:?}");
+        }
+    }
+}
+
+#[test]
+fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
+    let text = "[sheet]\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n\
+                [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";
+    let (figure, _) = of_alike(4, text);
+    let [first, second] = figure.scenes() else { panic!("two scenes") };
+    assert_eq!(
+        second.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>(),
+        ["k = 1500", "k = 1000", "k = 2000"]
+    );
+    let palette = &figure.look.palette;
+    for run in &second.runs {
+        let same = first.runs.iter().find(|same| same.name == run.name).expect("a run of that name");
+        assert_eq!(palette.line(run), palette.line(same), "{}", run.name);
+    }
 }

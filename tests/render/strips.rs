@@ -2,7 +2,7 @@
 
 use super::{fig4b, gpu};
 use localshape::history::History;
-use localshape::picture::{Composer, Curve, Mark, Picture, TextRun, compose};
+use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, compose};
 use localshape::render::Renderer;
 use localshape::scene::{Limits, Look, Scene, Theme};
 use localshape::sequence::Sequence;
@@ -29,6 +29,11 @@ fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Picture; N] 
 fn moments(picture: &Picture) -> Vec<&Curve> {
     let upright = |curve: &&Curve| matches!(curve.points[..], [[left, top], [right, bottom]] if left == right && bottom - top > 30.0);
     picture.curves.iter().filter(upright).collect()
+}
+
+/// The thin lines that lead from the ends of curves to their names.
+fn is_leader(curve: &Curve) -> bool {
+    curve.alpha == 0.7
 }
 
 fn dots(picture: &Picture) -> Vec<&Curve> {
@@ -71,7 +76,8 @@ fn nothing_but_the_present_moment_moves() {
 #[test]
 fn the_present_moment_is_on_the_curve() {
     let (scene, frames) = with_strip(Diagnostic::ShapeError, [0, 4, 57, 180]);
-    for (frame, picture) in frames.iter().zip(pictures(&scene, &frames)) {
+    for (frame, mut picture) in frames.iter().zip(pictures(&scene, &frames)) {
+        picture.curves.retain(|curve| !is_leader(curve));
         // For each panel the other run's curve, the moment, the own curve, a halo and a dot.
         assert_eq!(picture.curves.len(), 10);
         for (run, curves) in frame.runs.iter().zip(picture.curves.chunks(5)) {
@@ -83,8 +89,8 @@ fn the_present_moment_is_on_the_curve() {
             assert_eq!(x, moment.points[0][0]);
             let off = own.points.windows(2).map(|two| off_segment([x, y], two)).fold(f32::MAX, f32::min);
             assert!(off < 0.15, "{off}");
-            // A shape model is solid, one with springs dashed.
-            assert_eq!((own.dash.is_some(), own.colour), (run.run == 1, picture.palette.arrows[run.run]));
+            // The first run is solid, the second one dashed.
+            assert_eq!((!own.dash.is_empty(), own.colour), (run.run == 1, picture.palette.runs[run.run]));
         }
     }
 }
@@ -125,7 +131,7 @@ fn a_frame_composed_alone_has_the_same_strips() {
     // Of one run alone, without the other behind it and by its own scale.
     let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
     let [own, halo, dot] = &compose(&scene, &alone).curves[1..] else { panic!("a moment, a curve and a dot") };
-    assert!(own.points.len() == 2 && own.dash.is_none() && halo.points == dot.points);
+    assert!(own.points.len() == 2 && own.dash.is_empty() && halo.points == dot.points);
     // Nobody who says nothing of the scene's course gets one made up.
     assert!(Composer::new(&scene).compose(&frames[1]).curves.is_empty());
 }
@@ -192,13 +198,16 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let frame = sequence.frame(scene.last_frame());
     let Status::Diverged(divergence) = frame.runs[1].snapshot.status else { panic!("this one blows up") };
     let picture = compose(&scene, &frame);
-    let is_arm =
-        |curve: &&Curve| matches!(curve.points[..], [[left, _], [right, _]] if (2.0..20.0).contains(&(right - left)));
+    let is_arm = |curve: &&Curve| {
+        let is_short = matches!(curve.points[..], [[left, _], [right, _]] if (2.0..20.0).contains(&(right - left)));
+        is_short && !is_leader(curve)
+    };
     let arms: Vec<_> = picture.curves.iter().filter(is_arm).collect();
     assert_eq!(arms.len(), 4, "two in each strip");
     let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
-    let of_calm = picture.curves.iter().rfind(|curve| curve.points.len() > 1 && curve.colour == arms[0].colour);
-    let of_calm = of_calm.expect("a curve");
+    let calm = picture.palette.line(&scene.runs[1]).colour;
+    let of_calm = picture.curves.iter().filter(|curve| curve.colour == calm);
+    let of_calm = of_calm.max_by_key(|curve| curve.points.len()).expect("a curve");
     assert_eq!(middle(arms[0]), middle(arms[1]));
     // It says when: as a part of the way from the first moment to the last, which the line of the moment now shows.
     let now = moments(&picture)[0].points[0][0];
@@ -207,9 +216,9 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
     // The one that goes on is not flattened, and ends with a dot.
     assert_eq!(dots(&picture).len(), 2);
-    let heights = of_calm.points.iter().map(|[_, y]| *y);
-    let [low, high] = heights.fold([f32::MAX, f32::MIN], |[low, high], y| [low.min(y), high.max(y)]);
-    assert!(high - low > 5.0, "the calm curve is {} px high", high - low);
+    let bottom = moments(&picture)[0].points[1][1];
+    let height = bottom - of_calm.points[0][1];
+    assert!(height > 10.0, "the calm curve is {height} px high");
     assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=720.0).contains(y)));
 }
 
@@ -220,16 +229,16 @@ fn joints_do_not_show() {
     let (mut scene, frame) = fig4b(0);
     scene.view.size = [200, 100];
     let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
-    let mut draw = |points: Vec<[f32; 2]>, dash| {
+    let mut draw = |points: Vec<[f32; 2]>, dash: &[f32]| {
         let mut picture = compose(&scene, &frame);
         picture.panels.clear();
         picture.marks.clear();
         picture.words.clear();
-        picture.curves = vec![Curve { points, width: 2.2, dash, colour: [0, 0, 0], alpha: 0.5 }];
+        picture.curves = vec![Curve { points, width: 2.2, dash: dash.to_vec(), colour: [0, 0, 0], alpha: 0.5 }];
         renderer.draw(&picture).expect("the device works")
     };
     for (from, to) in [([10.0, 20.3], [190.0, 20.3]), ([10.0, 10.0], [190.0, 77.0]), ([99.7, 95.0], [102.0, 5.0])] {
-        for dash in [None, Some([7.0, 4.0])] {
+        for dash in [&[][..], &[7.0, 4.0], &[11.0, 3.0, 2.5, 3.0], &[7.0, 3.0, 2.5, 3.0, 2.5, 3.0]] {
             let at = |share: f32| [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
             let whole = draw(vec![from, to], dash);
             let pieces = draw((0..=60).map(|at_piece| at(at_piece as f32 / 60.0)).collect(), dash);
@@ -240,6 +249,90 @@ fn joints_do_not_show() {
     }
     // Nowhere is it darker than its own opacity, also where it turns sharply.
     let zigzag = (0..30).map(|at| [10.0 + 3.0 * at as f32, if at % 2 == 0 { 20.0 } else { 80.0 }]).collect();
-    let darkest = draw(zigzag, None).pixels().map(|pixel| pixel[0]).min();
+    let darkest = draw(zigzag, &[]).pixels().map(|pixel| pixel[0]).min();
     assert!(darkest >= Some(124), "{darkest:?}");
+}
+
+/// A bar that sags in runs of one model, which differ in stiffness.
+pub(crate) fn alike(runs: usize, theme: &str) -> String {
+    let run = |at: usize| {
+        let stiffness = (at + 1) * 500;
+        format!("[[run]]\nname = 'k = {stiffness}'\nmodel = {{ kind = 'shape-based', stiffness = {stiffness} }}\n")
+    };
+    let runs: String = (0..runs).map(run).collect();
+    format!(
+        "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.4, frames_per_second = 20 }}\n\
+         body = {{ lattice = {{ cells = [3, 1, 1], side = 0.1 }}, mass = 0.1 }}\n{runs}\
+         [[hold]]\nnodes = {{ low = [-0.16, 0, -1], high = [-0.14, 1, 1] }}\n\
+         [view]\nsize = [1600, 900]\ntheme = '{theme}'\nstrip = 'energy'\npanels = 'grid'\n"
+    )
+}
+
+/// How a curve is told from others: colour and dashes, in parts of the first dash.
+fn look_of(curve: &Curve) -> ([u8; 3], Vec<i32>) {
+    let first = curve.dash.first().copied().unwrap_or(1.0);
+    (curve.colour, curve.dash.iter().map(|length| (length / first * 100.0).round() as i32).collect())
+}
+
+fn each_differs<T: PartialEq + std::fmt::Debug>(all: &[T]) {
+    for (at, one) in all.iter().enumerate() {
+        assert!(!all[..at].contains(one), "{one:?} stands for two runs");
+    }
+}
+
+#[test]
+fn eight_runs_of_one_model_are_told_apart() {
+    for theme in ["light", "dark"] {
+        let scene = Scene::parse(&alike(8, theme), "alike.toml", &Limits::default()).expect("sound");
+        let all: Vec<_> = (0..8).collect();
+        let frame = Sequence::new(&scene, &all).frame(scene.last_frame());
+        let picture = compose(&scene, &frame);
+        // In each strip the own curve is the widest, and below the name stands the same line.
+        let widest =
+            picture.curves.iter().filter(|curve| curve.points.len() > 2).map(|curve| curve.width).fold(0.0, f32::max);
+        let own: Vec<_> =
+            picture.curves.iter().filter(|curve| curve.points.len() > 2 && curve.width == widest).collect();
+        assert_eq!(own.len(), 8);
+        let looks: Vec<_> = own.iter().map(|curve| look_of(curve)).collect();
+        each_differs(&looks.iter().map(|look| look.0).collect::<Vec<_>>());
+        each_differs(&looks.iter().map(|look| look.1.clone()).collect::<Vec<_>>());
+        for (run, curve) in scene.runs.iter().zip(&own) {
+            let line = picture.palette.line(run);
+            assert_eq!((line.colour, line.dash.len()), (curve.colour, curve.dash.len()));
+            let name = picture.words.iter().find(|word| word.text == run.name).expect("a name above the panel");
+            let [_, top, right, bottom] = name.bounds();
+            let sample = picture.marks.iter().find(|mark| {
+                let [x, y, ..] = mark.rectangle;
+                mark.shape == MarkShape::Filled && x > right && x < right + 40.0 && top < y && y < bottom
+            });
+            assert_eq!(sample.expect("a sample beside it").colour, line.colour);
+        }
+        // All names stand at the ends of the curves of all strips, in words that can be read, clear of each other.
+        for run in &scene.runs {
+            let names: Vec<_> = picture.words.iter().filter(|word| word.text == run.name).collect();
+            assert_eq!(names.len(), 1 + 8, "{}", run.name);
+        }
+        assert_eq!(super::words::overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None);
+        // And clear of the present moment, which is now at the end.
+        for dot in dots(&picture) {
+            let [x, y] = dot.points[0];
+            let radius = dot.width / 2.0;
+            for word in &picture.words {
+                let [left, top, right, bottom] = word.bounds();
+                let beside = x + radius <= left || right <= x - radius;
+                assert!(beside || y + radius <= top || bottom <= y - radius, "a dot over “{}”", word.text);
+            }
+        }
+        // Whichever runs are shown, each keeps its line.
+        let few = Frame { runs: vec![frame.runs[6].clone(), frame.runs[2].clone()], ..frame.clone() };
+        let picture = compose(&scene, &few);
+        let shown: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).map(look_of).collect();
+        assert!(shown.iter().all(|look| [&looks[6], &looks[2]].contains(&look)) && shown.len() == 4, "{shown:?}");
+    }
+}
+
+#[test]
+fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
+    let scene = Scene::parse(&alike(64, "light"), "alike.toml", &Limits::default()).expect("sound");
+    each_differs(&scene.runs.iter().map(|run| scene.view.look.palette.line(run)).collect::<Vec<_>>());
 }

@@ -28,10 +28,79 @@ fn a_scene_that_says_nothing_has_the_look_of_its_theme() {
 fn colours_are_taken_as_typed() {
     let look =
         look("colours = { body = 'DarkSeaGreen', turned_over = '#82f', text = '#102030', arrow = 'rgb(9 8 7)' }");
-    let Palette { sound, alarm, text, arrows, .. } = look.palette;
+    let Palette { sound, alarm, text, runs, .. } = look.palette;
     assert_eq!((sound, alarm, text), ([143, 188, 143], [0x88, 0x22, 0xff], [0x10, 0x20, 0x30]));
-    assert_eq!(arrows, [[9, 8, 7]; 2]);
+    assert_eq!(runs, [[9, 8, 7]; 8]);
     assert!(!look.transparent);
+}
+
+/// Scenes of several runs, each with what is said of it.
+fn of_runs(view: &str, runs: &[&str]) -> String {
+    let run = |(at, said): (usize, &&str)| {
+        format!("[[run]]\nname = 'Run {at}'\nmodel = {{ kind = 'shape-based', stiffness = 1 }}\n{said}\n")
+    };
+    let runs: String = runs.iter().enumerate().map(run).collect();
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }";
+    format!("time = {{ duration = 1, step = 0.01 }}\n{body}\n[view]\n{view}\n{runs}")
+}
+
+#[test]
+fn runs_have_their_places_colours_or_their_own() {
+    for theme in ["light", "dark"] {
+        let scene =
+            good(&of_runs(&format!("theme = '{theme}'"), &["", "colour = 'royalblue'", "", "colour = '#4169e1'"]));
+        let palette = scene.view.look.palette;
+        let lines: Vec<_> = scene.runs.iter().map(|run| palette.line(run)).collect();
+        let own = [65, 105, 225];
+        assert_eq!(
+            lines.iter().map(|line| line.colour).collect::<Vec<_>>(),
+            [palette.runs[0], own, palette.runs[2], own]
+        );
+        // Of one colour, but not of one dash.
+        assert_ne!(lines[1].dash, lines[3].dash);
+    }
+    // What a scene gives for all of them leaves each its own, and nothing is drawn that could not be seen.
+    let scene = good(&of_runs("background = '#808080'\ncolours.arrow = 'black'", &["", "colour = 'white'"]));
+    let colours: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).colour).collect();
+    assert_eq!(colours, [[0; 3], [255; 3]]);
+    let scene = good(&of_runs("background = '#808080'", &[""; 8]));
+    for run in &scene.runs {
+        let line = scene.view.look.palette.line(run);
+        assert!(contrast(line.colour, [0x80; 3]) >= 3.0, "{line:?}");
+    }
+    let digest = |said: &str| good(&of_runs("", &[said])).digest;
+    assert_eq!(digest("colour = 'royalblue'"), digest("colour = '#4169E1'"));
+    assert_ne!(digest("colour = 'royalblue'"), digest(""));
+}
+
+#[test]
+fn mistakes_of_colours_of_runs() {
+    let told = |view: &str, colour: &str| {
+        let text = of_runs(view, &["", &format!("colour = {colour}")]);
+        let error = Scene::parse(&text, "scene.toml", &Limits::default()).expect_err(colour).to_string();
+        assert!(error.contains("scene.toml:13:10: "), "{error}");
+        error
+    };
+    assert!(told("", "'navi'").contains("`run[1].colour` is \"navi\"; expected digits such as"));
+    assert!(told("", "'navi'").contains("did you mean \"navy\"?"));
+    assert!(told("", "'#12345'").contains("three or six digits"));
+    assert!(told("", "'#12345680'").contains("expected an opaque colour"));
+    assert!(told("", "7").contains("`run[1].colour`"));
+    assert!(
+        told("", "'gold'").contains("choose another hue; this one, made darker, would be like turned-over elements")
+    );
+    let faint = told("", "'skyblue'");
+    assert!(
+        faint.contains("has a contrast of 1.6 to 1 with the background #fbfbfa; expected at least 3 to 1"),
+        "{faint}"
+    );
+    let named =
+        faint.split("make it darker, such as \"").nth(1).and_then(|rest| rest.split('"').next()).expect("a colour");
+    good(&of_runs("", &[&format!("colour = '{named}'")]));
+    assert!(told("theme = 'dark'", "'navy'").contains("make it lighter, such as \"#"));
+    let alarm = told("", "'#d45500'");
+    assert!(alarm.contains("`run[1].colour` is too like that of turned-over elements, #e2661c: to "), "{alarm}");
+    assert!(alarm.contains("(CIEDE2000); expected at least 20") && alarm.contains("choose another hue"), "{alarm}");
 }
 
 #[test]

@@ -74,7 +74,7 @@ fn unknown_keys() {
         "hue = 1",
         &[(9, 1, "unknown key `hue` in `body` known here: lattice, polygon, fan, disc, bars, nodes,")],
     );
-    case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `view`")]);
+    case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `run` or `view`; known")]);
     case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
     case(PLANE, "mass = 1", "follow = true", &[(9, 1, "`follow` belongs to `view.camera`")]);
     case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", &[(5, 44, "`rotation` belongs to `body`")]);

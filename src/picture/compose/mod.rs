@@ -13,7 +13,7 @@ use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
-use super::palette::Palette;
+use super::palette::{LineStyle, Palette};
 use super::plane::LEVEL;
 use super::ramp;
 use super::shell::Shell;
@@ -285,12 +285,14 @@ impl<'a> Composer<'a> {
     }
 
     /// The line that stands for a run in strips and among arrows, if there are any.
-    fn sample(&self, run: usize, has_strip: bool) -> Option<(Colour, bool)> {
+    fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
         let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_springs = !self.scene.runs.get(run)?.model.springs().is_empty();
-        let colour = self.palette.arrows[usize::from(has_springs)];
-        (view.legend && (has_strip || has_arrows)).then_some((colour, has_springs && has_strip))
+        (view.legend && (has_strip || has_arrows)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
+            let line = self.palette.line(run);
+            // Arrows are solid.
+            if has_strip { line } else { LineStyle { dash: &[], ..line } }
+        })
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).

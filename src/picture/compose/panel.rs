@@ -284,7 +284,6 @@ impl<'a> Draft<'a> {
         if !view.visible.displacements || self.diverged || self.position.is_empty() {
             return;
         }
-        let has_springs = self.scene.runs.get(self.run.run).is_some_and(|run| !run.model.springs().is_empty());
         let arrows = Arrows {
             lens: &self.lens,
             room: self.clear_of_words(),
@@ -292,10 +291,10 @@ impl<'a> Draft<'a> {
             thickness: self.scale.line_factor,
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
-            colour: match view.colour {
-                // Among the colours of a field, an arrow of a model's colour would not stand out.
-                Some(_) => self.composer.palette.text,
-                None => self.composer.palette.arrows[usize::from(has_springs)],
+            colour: match self.scene.runs.get(self.run.run) {
+                Some(run) if view.colour.is_none() => self.composer.palette.line(run).colour,
+                // Among the colours of a field, an arrow of a run's colour would not stand out.
+                _ => self.composer.palette.text,
             },
             halo: self.composer.palette.halo,
         };

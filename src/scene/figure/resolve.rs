@@ -151,7 +151,8 @@ impl Scenes<'_, '_, '_> {
             note: row.note.unwrap_or_default(),
         };
         let rows = rows.into_iter().map(row).collect();
-        let Self { report, scenes, .. } = self;
+        let Self { report, mut scenes, .. } = self;
+        share_lines(&mut scenes);
         let sheet = Sheet {
             scenes,
             columns: resolved,
@@ -297,9 +298,20 @@ impl Scenes<'_, '_, '_> {
         let mut notes = file.notes;
         notes.resize(runs.len(), String::new());
         let numbers = file.numbers == NumbersFile::Force;
-        let Self { report, scenes, .. } = self;
+        let Self { report, mut scenes, .. } = self;
+        share_lines(&mut scenes);
         let forces = Forces { scenes, notes, compare: compare.flatten(), vectors: file.vectors, numbers };
         Ok((report.total() == before).then_some(forces))
+    }
+}
+
+/// Runs of one name have the same colour in all scenes: that of the first scene.
+fn share_lines(scenes: &mut [Scene]) {
+    let Some((first, others)) = scenes.split_first_mut() else { return };
+    for run in others.iter_mut().flat_map(|scene| &mut scene.runs) {
+        if let Some(same) = first.runs.iter().find(|same| same.name == run.name) {
+            (run.place, run.colour) = (same.place, same.colour);
+        }
     }
 }
 

@@ -140,7 +140,7 @@ pub(in crate::scene) struct ColoursFile {
     pub(in crate::scene) node: Option<TypedColour>,
     /// Springs, and edges that take their place where surfaces are not shown.
     pub(in crate::scene) spring: Option<TypedColour>,
-    /// Arrows of displacements and curves of strips, of all models alike; curves of springs stay dashed.
+    /// Arrows and curves of all runs that have no `colour` of their own; their dashes tell them apart.
     pub(in crate::scene) arrow: Option<TypedColour>,
     /// Arrows of what moves, and marks of what is held.
     pub(in crate::scene) pointer: Option<TypedColour>,

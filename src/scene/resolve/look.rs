@@ -1,8 +1,8 @@
 //! What the scene looks like: colours, type, lines and margins.
 
-use crate::colour::{Colour, Sight, contrast, difference, written};
-use crate::scene::file::{BackgroundFile, ColoursFile, ShowFile, ViewFile};
-use crate::scene::palette::{LEAST_CONTRAST, Palette};
+use crate::colour::{Colour, Sight, contrast, difference, readable, written};
+use crate::scene::file::{BackgroundFile, ColoursFile, RunFile, ShowFile, ViewFile};
+use crate::scene::palette::{LEAST_CONTRAST, LINE_CONTRAST, Palette};
 use crate::scene::ramp::ramp;
 use crate::scene::report::{Report, Way};
 use crate::scene::view::{FloorStyle, FontFiles, Look, Theme};
@@ -62,6 +62,45 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
             message,
             format!("make the text {towards}, or leave it out: it follows the background"),
         );
+    }
+}
+
+/// The colours that runs have of their own must be seen on the background, and not be taken for that of turned-over
+/// elements.
+pub(super) fn check_runs(typed: &[Option<RunFile>], palette: &Palette, report: &mut Report<'_>) {
+    let like_alarm = |colour: Colour| {
+        let measured = Sight::ALL.map(|sight| (difference(colour, palette.alarm, sight), sight));
+        let nearest = measured.into_iter().min_by(|one, other| one.0.total_cmp(&other.0));
+        nearest.filter(|(found, _)| *found < LEAST_DIFFERENCE)
+    };
+    for (at, run) in typed.iter().enumerate() {
+        let Some(colour) = run.as_ref().and_then(|run| run.colour).map(|colour| colour.0) else { continue };
+        let path = [Way::Key("run"), Way::Index(at), Way::Key("colour")];
+        let found = contrast(colour, palette.background);
+        if found < LINE_CONTRAST {
+            let message = format!(
+                "`run[{at}].colour` has a contrast of {} to 1 with the background {}; expected at least {LINE_CONTRAST} \
+                 to 1",
+                rounded_down(found),
+                written(palette.background)
+            );
+            let other = readable(colour, palette.background, LINE_CONTRAST);
+            let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
+            let help = match like_alarm(other) {
+                None => format!("make it {towards}, such as \"{}\"", written(other)),
+                Some(_) => format!("choose another hue; this one, made {towards}, would be like turned-over elements"),
+            };
+            report.at(&path, message, help);
+        } else if let Some((found, sight)) = like_alarm(colour) {
+            let message = format!(
+                "`run[{at}].colour` is too like that of turned-over elements, {}: to {} they differ by {} (CIEDE2000); \
+                 expected at least {LEAST_DIFFERENCE}",
+                written(palette.alarm),
+                sight.name(),
+                rounded_down(found)
+            );
+            report.at(&path, message, "choose another hue, or leave it out".to_owned());
+        }
     }
 }
 

@@ -166,6 +166,9 @@ pub(super) fn resolve(
         }
         _ => None,
     };
+    if let Some(view) = &view {
+        look::check_runs(&parts.runs, &view.look.palette, report);
+    }
     if let (0, Some(runs)) = (report.total(), &runs) {
         let longest = runs.iter().fold(0.0, |longest: f64, run| longest.max(run.step));
         obstacles::check_steps(&parts.obstacles, longest, report);

@@ -62,7 +62,8 @@ pub(super) fn resolve(
             return None;
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
-        runs.push(Run { name: run.name.clone(), model, integrator, step });
+        let colour = run.colour.map(|colour| colour.0);
+        runs.push(Run { name: run.name.clone(), model, integrator, step, place: at, colour });
     }
     Some(runs)
 }

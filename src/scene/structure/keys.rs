@@ -100,10 +100,11 @@ impl Walk<'_, '_, '_> {
             [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
             _ => String::new(),
         };
-        let help = match (nearest(name, &known), elsewhere(self.schema, name)) {
-            (Some(near), _) => format!("did you mean `{near}`?"),
-            (None, Some(other)) => format!("`{name}` belongs to `{other}`; known here: {}", known.join(", ")),
-            (None, None) => format!("known here: {}", known.join(", ")),
+        let others: Vec<_> = elsewhere(self.schema, name).iter().map(|other| format!("`{other}`")).collect();
+        let help = match nearest(name, &known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if others.is_empty() => format!("known here: {}", known.join(", ")),
+            None => format!("`{name}` belongs to {}; known here: {}", others.join(" or "), known.join(", ")),
         };
         self.mistake(span, format!("unknown key `{}`{place}", shortened(name)), Some(help));
     }
@@ -131,15 +132,16 @@ fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
     unknown.into_iter().any(|key| nearest(key, &known) == Some(name))
 }
 
-/// The table in which a key is known, as written: `view.camera`.
-fn elsewhere(schema: &Json, name: &str) -> Option<String> {
-    let mut properties = tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
-    properties.find_map(|(key, inner)| {
-        if tables(inner).any(|table| table["properties"].get(name).is_some()) {
-            return Some(key.clone());
-        }
-        elsewhere(inner, name).map(|deeper| format!("{key}.{deeper}"))
-    })
+/// The tables in which a key is known, as written: `view.camera`. If there is one near the top, no deeper ones.
+fn elsewhere(schema: &Json, name: &str) -> Vec<String> {
+    let properties = || tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
+    let knows = |inner: &Json| tables(inner).any(|table| table["properties"].get(name).is_some());
+    let here: Vec<_> = properties().filter(|(_, inner)| knows(inner)).map(|(key, _)| key.clone()).collect();
+    if !here.is_empty() {
+        return here;
+    }
+    let deeper = |(key, inner)| elsewhere(inner, name).first().map(|found| format!("{key}.{found}"));
+    properties().find_map(deeper).into_iter().collect()
 }
 
 /// The tables that a schema describes: itself, its entries, and the variants of either.

@@ -70,14 +70,13 @@ struct Cell<'a> {
     /// The displacement that each node's force would undo, over its stiffness (m): where its arrow points.
     ways: Vec<DVec3>,
     /// The same for the run that all are compared with.
-    compared: Option<Vec<DVec3>>,
+    compared: Option<(usize, Vec<DVec3>)>,
     /// The nodes of the ghost (m).
     ghost: Vec<DVec3>,
     /// The camera of the scene, turned to the middle of the body.
     framing: Framing,
     /// Left, top, width and height (px).
     room: [f64; 4],
-    has_springs: bool,
 }
 
 /// Composes a diagram.
@@ -226,9 +225,8 @@ impl<'a> Cell<'a> {
             composer,
             scene,
             ways: ways(run),
-            compared: compare.map(ways),
+            compared: compare.map(|run| (run, ways(run))),
             ghost: scene.body.rest.iter().map(|&at| snapshot.placement.place(at)).collect(),
-            has_springs: !scene.runs[run].model.springs().is_empty(),
             framing: {
                 let middle = snapshot.placement.centre;
                 Framing { target: middle, base: middle, ..Framing::still(&scene.view.camera) }
@@ -260,7 +258,7 @@ impl<'a> Cell<'a> {
         let axes = self.axes();
         let position = &self.snapshot().position;
         let tips = |ways: &[DVec3]| position.iter().zip(ways).map(|(&at, &way)| at + way).collect::<Vec<_>>();
-        let compared = self.compared.as_deref().map(tips).unwrap_or_default();
+        let compared = self.compared.as_ref().map(|(_, ways)| tips(ways)).unwrap_or_default();
         let all = position.iter().chain(&self.ghost).copied().chain(tips(&self.ways)).chain(compared);
         let seen = all.map(|at| DVec2::from(axes.map(|axis| (at - self.middle()).dot(axis))));
         seen.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
@@ -407,17 +405,17 @@ impl<'a> Drawn<'a> {
         if self.draft.flat {
             self.ghost_outline(above, forces.vectors);
         }
-        let own = palette.arrows[usize::from(cell.has_springs)];
+        let own = palette.line(&cell.scene.runs[cell.frame.run]).colour;
         let ends = |ways: &[DVec3]| -> Vec<[DVec2; 2]> {
             position.iter().zip(ways).map(|(&at, &way)| [self.pixel(at), self.pixel(at + way)]).collect()
         };
         let arrows = ends(&cell.ways);
         labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
         let shown = |[from, to]: &[DVec2; 2]| from.distance(*to) >= SHORTEST * unit;
-        if let Some(compared) = &cell.compared {
+        if let Some((run, compared)) = &cell.compared {
             let arrows = ends(compared);
             labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
-            let colour = palette.arrows[0];
+            let colour = palette.line(&cell.scene.runs[*run]).colour;
             for ends in arrows.iter().filter(|ends| shown(ends)) {
                 above.extend(outlined(*ends, *scale, colour, palette.background));
             }
@@ -438,7 +436,7 @@ impl<'a> Drawn<'a> {
         }
         if forces.numbers {
             for &at in &order {
-                self.number(at, arrows[at], writer, &mut labels, own);
+                self.number(at, arrows[at], writer, &mut labels, palette.text_like(own));
             }
         }
     }
@@ -450,7 +448,7 @@ impl<'a> Drawn<'a> {
         let size = NUMBERS * scale.type_unit();
         let way = cell.ways[at];
         let number = format!("{:.3}", way.length() / cell.scene.view.side);
-        let angle = cell.compared.as_ref().map(|compared| way.angle_between(compared[at]).to_degrees());
+        let angle = cell.compared.as_ref().map(|(_, compared)| way.angle_between(compared[at]).to_degrees());
         let angle = angle.filter(|angle| angle.is_finite() && *angle >= 0.5);
         let second = angle.map_or(String::new(), |angle| format!("{angle:.0}° off"));
         let wide = |text: &str| writer.fonts.width(text, Weight::Regular, size);
@@ -479,19 +477,19 @@ impl<'a> Drawn<'a> {
         let visible = (0..position.len()).filter(|&node| seen[node] > 0.5);
         let Some(node) = visible.max_by(|one, other| displaced(one).total_cmp(&displaced(other))) else { return };
         let [now, equilibrium] = [position[node], cell.ghost[node]].map(|at| self.pixel(at));
-        let curve = |to: DVec2, dash: Option<[f32; 2]>| Curve {
+        let curve = |to: DVec2, dash: &[f64]| Curve {
             points: [centre, to].map(|at| at.to_array().map(narrow)).to_vec(),
             width: narrow(VECTOR * scale.line()),
-            dash,
+            dash: dash.iter().map(|length| narrow(length * unit)).collect(),
             colour: palette.text,
             alpha: 0.9,
         };
-        writer.curves.push(curve(now, None));
-        writer.curves.push(curve(equilibrium, Some(DASH.map(|length| narrow(length * unit)))));
+        writer.curves.push(curve(now, &[]));
+        writer.curves.push(curve(equilibrium, &DASH));
         let dot = |at: DVec2, radius: f64, colour: Colour| Curve {
             points: vec![at.to_array().map(narrow)],
             width: narrow(2.0 * radius * unit),
-            dash: None,
+            dash: Vec::new(),
             colour,
             alpha: 1.0,
         };
@@ -610,8 +608,9 @@ impl Key<'_> {
             left = second;
         }
         let ends = [DVec2::new(left, middle), DVec2::new(left + 54.0 * unit, middle)];
-        marks.extend(outlined(ends, scale, palette.arrows[0], palette.background));
-        say(&format!("forces of “{}”, for comparison", scene.runs[compare].name), ends[1].x + gap, writer);
+        let compared = &scene.runs[compare];
+        marks.extend(outlined(ends, scale, palette.line(compared).colour, palette.background));
+        say(&format!("forces of “{}”, for comparison", compared.name), ends[1].x + gap, writer);
     }
 }
 

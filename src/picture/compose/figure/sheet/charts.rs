@@ -6,11 +6,12 @@ use crate::picture::Curve;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Writer};
 use crate::picture::chart::{Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
-use crate::picture::course::{self, Line, Look, OWN};
+use crate::picture::course::{self, Line, OWN};
+use crate::picture::ends::{APART, Ends, spread};
 use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
+use crate::picture::palette::Palette;
 use crate::picture::text::{Fonts, Weight};
-use crate::scene::Scene;
 use crate::scene::figure::Sheet;
 use crate::sim::snapshot::Diagnostic;
 use crate::sim::words::elements;
@@ -39,6 +40,10 @@ const BEYOND: f64 = 0.35;
 const UPRIGHT_ABOVE: f64 = 9.0;
 const MOMENT: f64 = 1.1;
 const MOMENT_ALPHA: f64 = 0.62;
+/// The part of the picture's width that names at the ends of curves take at most, and half of what is free between those
+/// of two charts (px in the reference picture).
+const NAMES: f64 = 0.16;
+const NAMES_APART: f64 = 3.0;
 
 /// What charts show.
 pub(super) struct Charts<'a> {
@@ -46,6 +51,8 @@ pub(super) struct Charts<'a> {
     /// The last moment (s).
     end: f64,
     charts: Vec<One>,
+    /// Names at the ends of curves, if there is room for them; the same beside all charts.
+    ends: Option<Ends>,
     /// The room that names take, and that the numbers beside the charts take with gaps (px).
     pub(super) names_width: f64,
     pub(super) numbers_width: f64,
@@ -64,14 +71,29 @@ struct One {
 
 impl<'a> Charts<'a> {
     /// The charts of a sheet.
-    pub(super) fn new(sheet: &'a Sheet, history: &History, fonts: &Fonts, scale: Scale) -> Self {
-        let scene = &sheet.scenes[0];
-        let charts: Vec<_> = sheet.strips.iter().map(|&diagnostic| One::new(diagnostic, history, scene)).collect();
+    pub(super) fn new(sheet: &'a Sheet, history: &History, writer: &Writer<'_>, width: f64) -> Self {
+        let (fonts, scale) = (writer.fonts, writer.scale);
+        let one = |&diagnostic: &Diagnostic| One::new(diagnostic, history, sheet, writer.palette);
+        let charts: Vec<_> = sheet.strips.iter().map(one).collect();
+        // The lines of all charts have the same names.
+        let room = [NAMES * width, f64::INFINITY];
+        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.lines, scale.type_unit(), room));
         let type_unit = scale.type_unit();
         let numbers = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
         let names = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
         let numbers_width = numbers + (GAP + BESIDE_NAMES) * type_unit;
-        Self { sheet, end: history.end, charts, names_width: names, numbers_width }
+        Self { sheet, end: history.end, charts, ends, names_width: names, numbers_width }
+    }
+
+    /// The width of the names right of the charts (px).
+    pub(super) fn ends_width(&self) -> f64 {
+        self.ends.as_ref().map_or(0.0, |ends| ends.width)
+    }
+
+    /// The height that the names of all curves of a chart need (px in the reference picture).
+    pub(super) fn ends_height(&self) -> f64 {
+        let names = self.charts.iter().map(|one| one.lines.len()).max().unwrap_or(0);
+        self.ends.as_ref().map_or(0.0, |_| names as f64 * APART + 2.0 * NAMES_APART)
     }
 
     pub(super) fn count(&self) -> usize {
@@ -88,7 +110,10 @@ impl<'a> Charts<'a> {
         self.moments(writer, room, bottom);
         for (at, (one, &[top, bottom])) in self.charts.iter().zip(&room.charts).enumerate() {
             let parts = self.parts(scale, room.span, [top, bottom]);
-            one.draw(writer, &parts, at + 1 == room.charts.len());
+            // Names may stand beside the gaps between charts, too, but not next to those of another chart.
+            let beyond = 0.5 * room.between - NAMES_APART * scale.type_unit();
+            let between = [top - beyond, bottom + beyond];
+            one.draw(writer, &parts, at + 1 == room.charts.len(), self.ends.as_ref(), between);
             if let Some(left) = room.names {
                 one.write_name(writer, [left, 0.5 * (top + bottom)]);
             }
@@ -135,7 +160,7 @@ impl<'a> Charts<'a> {
         let curve = |points: &[[f64; 2]], alpha: f64| Curve {
             points: points.iter().map(|point| point.map(narrow)).collect(),
             width: narrow(MOMENT * scale.line()),
-            dash: None,
+            dash: Vec::new(),
             colour: palette.second_text,
             alpha: narrow(alpha),
         };
@@ -163,8 +188,16 @@ impl<'a> Charts<'a> {
 }
 
 impl One {
-    fn new(diagnostic: Diagnostic, history: &History, scene: &Scene) -> Self {
-        let lines: Vec<_> = history.courses.iter().map(|course| Line::new(diagnostic, course, scene)).collect();
+    fn new(diagnostic: Diagnostic, history: &History, sheet: &Sheet, palette: &Palette) -> Self {
+        let scene = &sheet.scenes[0];
+        let line = |course| {
+            let line = Line::new(diagnostic, course, scene, palette);
+            // What stands beside all rows of a run is what a reader knows it by.
+            let mut labels = sheet.rows.iter().filter(|row| row.run == line.name).map(|row| &row.label);
+            let label = labels.next().filter(|first| labels.all(|label| label == *first)).cloned();
+            Line { name: label.unwrap_or(line.name.clone()), ..line }
+        };
+        let lines: Vec<_> = history.courses.iter().map(line).collect();
         let is_count = diagnostic == Diagnostic::TurnedOver;
         let range = course::range(&lines, !is_count);
         let mut name = course::name(diagnostic, scene).to_owned();
@@ -211,9 +244,16 @@ impl One {
         writer.left(&self.unit, Weight::Regular, UNIT * unit, palette.second_text, left, below);
     }
 
-    /// Draws it, with the times below if it is the last one.
-    fn draw(&self, writer: &mut Writer<'_>, parts: &[(Chart, [f64; 2])], is_last: bool) {
-        let palette = writer.palette;
+    /// Draws it, with the times below if it is the last one, and names at the ends of its curves between two heights (px).
+    fn draw(
+        &self,
+        writer: &mut Writer<'_>,
+        parts: &[(Chart, [f64; 2])],
+        is_last: bool,
+        names: Option<&Ends>,
+        between: [f64; 2],
+    ) {
+        let mut ends = vec![None; self.lines.len()];
         for (at, &(chart, span)) in parts.iter().enumerate() {
             let times = chart.times(writer.fonts, span);
             let rows = ((chart.bottom - chart.top) / (ROWS_APART * chart.unit)) as usize + 1;
@@ -231,46 +271,13 @@ impl One {
                 chart.columns(writer, &times, values.is_none(), from);
             }
             let Some(values) = &values else { continue };
-            for line in &lines {
-                let colour = palette.arrows[usize::from(line.has_springs)];
-                line.draw(writer, chart, [&times, values], Look::new(OWN, colour, line.has_springs, 1.0));
+            for (line, end) in lines.iter().zip(&mut ends) {
+                line.draw(writer, chart, [&times, values], [OWN, 1.0]);
+                *end = line.end(chart, [&times, values]).or(*end);
             }
         }
-    }
-}
-
-/// Places as near as possible to the given ones, which rise, at least so far apart and within two ends.
-fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f64> {
-    // Neighbours that would be too near stand around their common middle (isotonic regression).
-    let mut groups: Vec<(f64, usize)> = Vec::new();
-    for (at, place) in places.iter().enumerate() {
-        let mut group = (place - at as f64 * apart, 1);
-        while let Some(&(middle, count)) = groups.last().filter(|last| last.0 > group.0) {
-            groups.pop();
-            group = ((middle * count as f64 + group.0 * group.1 as f64) / (count + group.1) as f64, count + group.1);
+        if let (Some(names), Some(&(chart, _))) = (names, parts.last()) {
+            names.write(writer, chart, &self.lines, &ends, None, between);
         }
-        groups.push(group);
-    }
-    let most = (high - places.len().saturating_sub(1) as f64 * apart).max(low);
-    let all = groups.into_iter().flat_map(|(middle, count)| std::iter::repeat_n(middle.clamp(low, most), count));
-    all.enumerate().map(|(at, middle)| middle + at as f64 * apart).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::spread;
-
-    #[test]
-    fn rings_part_as_little_as_they_must() {
-        let near = |places: &[f64], expected: &[f64]| {
-            let found = spread(places, 20.0, [0.0, 100.0]);
-            let off = found.iter().zip(expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-            assert!(found.len() == expected.len() && off < 1e-9, "{places:?}: {found:?}");
-        };
-        near(&[0.0, 50.0, 100.0], &[0.0, 50.0, 100.0]);
-        near(&[50.0, 50.0, 53.0], &[31.0, 51.0, 71.0]);
-        near(&[0.0, 2.0], &[0.0, 20.0]);
-        near(&[98.0, 99.0], &[80.0, 100.0]);
-        near(&[], &[]);
     }
 }

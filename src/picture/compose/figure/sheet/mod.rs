@@ -55,7 +55,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
 
     let header = header::write(&mut writer, figure, &words::key(&scenes));
     let legend = legend(&scenes, size, scale);
-    let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &fonts, scale));
+    let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &writer, f64::from(size[0])));
     let labels = words::RowLabels::new(sheet, &fonts, scale, charts.is_some(), f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
     let plan = Plan::new(sheet, &writer, [size[0], bottom], header, &labels, charts.as_ref());
@@ -148,7 +148,7 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
     let is_dot = ends[0].distance(ends[1]) < 1.0;
     let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };
     let points = ends.iter().take(if is_dot { 1 } else { 2 }).map(|end| [end.x, end.y].map(narrow)).collect();
-    Curve { points, width: narrow(width), dash: None, colour, alpha: 1.0 }
+    Curve { points, width: narrow(width), dash: Vec::new(), colour, alpha: 1.0 }
 }
 
 /// The key of colours and arrows, if there are any.

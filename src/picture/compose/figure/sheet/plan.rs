@@ -75,6 +75,8 @@ pub(super) struct ChartsRoom {
     pub(super) names: Option<f64>,
     /// Top and bottom of each chart.
     pub(super) charts: Vec<[f64; 2]>,
+    /// What is free between them.
+    pub(super) between: f64,
 }
 
 impl Plan {
@@ -109,7 +111,7 @@ impl Plan {
             lines => first + (lines - 1.0) * HEADING_LINE * type_unit + BELOW_HEADINGS * unit,
         };
         let free = (height - top).max(0.0);
-        let shape = charts.and_then(|charts| ChartsShape::new(charts.count(), free, scale));
+        let shape = charts.and_then(|charts| ChartsShape::new(charts, free, scale));
         let below = shape.as_ref().map_or(BELOW_TILES * unit, |shape| shape.height(scale));
         let usual = ((free - below) / rows as f64).max(1.0);
         let tally = (BELOW_BODY * type_unit).max(TALLY_RAISED * unit);
@@ -134,7 +136,11 @@ impl Plan {
             headings,
             headings_baseline: first,
             labels: has_labels.then_some([margin, words]),
-            charts: shape.map(|shape| shape.place(tiles_end, [left, right], has_labels.then_some(margin), scale)),
+            charts: shape.map(|shape| {
+                // Right of the charts are the names of their curves.
+                let right = right - charts.map_or(0.0, Charts::ends_width);
+                shape.place(tiles_end, [left, right.round()], has_labels.then_some(margin), scale)
+            }),
         }
     }
 
@@ -173,20 +179,24 @@ struct ChartsShape {
 }
 
 impl ChartsShape {
-    /// As many of a number of charts as there is room for in a height (px), with tiles above them; `None` for none.
-    fn new(count: usize, free: f64, scale: Scale) -> Option<Self> {
+    /// As many charts as there is room for in a height (px), with tiles above them; `None` for none.
+    fn new(charts: &Charts<'_>, free: f64, scale: Scale) -> Option<Self> {
         let [least, usual, _] = CHART;
         let [wide, narrow] = BETWEEN_CHARTS;
         let sizes = [(usual, wide), (0.75 * usual, wide), (0.75 * usual, narrow), (least, narrow)];
+        // As high as the names of their curves need, or lower without these.
+        let with_names = |(chart, between): (f64, f64)| (chart.max(charts.ends_height() - between), between);
+        let sizes: Vec<_> = sizes.map(with_names).into_iter().chain([sizes[3]]).collect();
         // Where type is larger than usual, charts are lower rather than bodies small.
         let wanted = CHARTS_SHARE * (scale.unit / scale.type_unit()).min(1.0);
-        (1..=count).rev().find_map(|count| {
-            let shapes = sizes.map(|size| {
+        (1..=charts.count()).rev().find_map(|count| {
+            let shape = |size: &(f64, f64)| {
                 let [chart, between] = [size.0, size.1].map(|length| length * scale.type_unit());
                 Self { count, chart, between }
-            });
+            };
+            let shapes: Vec<_> = sizes.iter().map(shape).collect();
             let lowest = shapes.iter().rev().find(|shape| shape.height(scale) <= CHARTS_SHARE * free);
-            { shapes }.iter().find(|shape| shape.height(scale) <= wanted * free).or(lowest).copied()
+            shapes.iter().find(|shape| shape.height(scale) <= wanted * free).or(lowest).copied()
         })
     }
 
@@ -209,7 +219,7 @@ impl ChartsShape {
             let top = first + at as f64 * (self.chart + self.between);
             [top, top + self.chart].map(f64::round)
         };
-        ChartsRoom { rings, span, names, charts: (0..self.count).map(chart).collect() }
+        ChartsRoom { rings, span, names, charts: (0..self.count).map(chart).collect(), between: self.between }
     }
 }
 

@@ -221,9 +221,10 @@ impl RowLabels {
             baseline -= NAME_LINE * unit;
             if with_sample {
                 baseline += SAMPLE_BELOW * unit;
-                let has_springs = has_springs(sheet, row);
-                let colour = palette.arrows[usize::from(has_springs)];
-                writer.sample([left, baseline], (colour, has_springs));
+                let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
+                if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
+                    writer.sample([left, baseline], palette.line(&scene.runs[run]));
+                }
             }
             baseline += NOTE_BELOW * unit;
             for line in note.iter().take(notes) {
@@ -232,12 +233,6 @@ impl RowLabels {
             }
         }
     }
-}
-
-/// Whether the model of a row has springs.
-fn has_springs(sheet: &Sheet, row: usize) -> bool {
-    let run = |scene: &Scene| scene.runs.iter().find(|run| run.name == sheet.rows[row].run).cloned();
-    sheet.scenes.first().and_then(run).is_some_and(|run| !run.model.springs().is_empty())
 }
 
 /// What stands below the body of a tile.
