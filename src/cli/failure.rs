@@ -1,6 +1,7 @@
 //! Exit statuses, and how a failure is told.
 
 use crate::output::OutputError;
+use crate::scene::Mistakes;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -87,6 +88,13 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
         cause = error.source();
     }
     text
+}
+
+/// Tells of what is probably not meant in a scene.
+pub(super) fn warn(warnings: &Mistakes) {
+    if warnings.total > 0 {
+        let _ = writeln!(std::io::stderr(), "warning: {warnings}");
+    }
 }
 
 /// Tells of an error on standard error. Nobody is left to be told if that fails.

@@ -1,6 +1,6 @@
 //! From scene files as typed to scenes that can be run.
 
-use super::failure::{Failure, Status, complain, with_causes};
+use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
 use crate::output::{Folder, Look};
@@ -59,6 +59,9 @@ pub(super) struct Job {
 impl RunOptions {
     /// What is to be done for each scene, with or without `pictures`.
     pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool) -> Result<Vec<Job>, Failure> {
+        if !self.quiet {
+            scenes.iter().for_each(|scene| warn(&scene.warnings));
+        }
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();

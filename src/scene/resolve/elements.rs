@@ -2,7 +2,7 @@
 
 use super::lists::{Lists, Place};
 use crate::scene::report::Report;
-use crate::scene::words::count;
+use crate::scene::words::{count, list};
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
@@ -21,6 +21,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let mut held = vec![false; node_count];
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
+    let mut disorder = Disorder::default();
     for (at, element) in elements.iter().enumerate() {
         if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
@@ -28,9 +29,10 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         }
         element.iter().for_each(|&node| held[node as usize] = true);
         if !repeated(place, "elements", at, element, &mut known, report) && !flawed {
-            lists.check_extent(at, element, solids, report);
+            lists.check_extent(at, element, solids, &mut disorder, report);
         }
     }
+    disorder.tell(lists, report);
     known.clear();
     for (at, spring) in springs.iter().flatten().enumerate() {
         if check_indices(place, "springs", at, spring, node_count, report) {
@@ -52,7 +54,14 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
 
 impl Lists {
     /// Reports an element without extent, inside out or clockwise.
-    fn check_extent(&self, at: usize, element: &[u32], solids: Solids, report: &mut Report<'_>) {
+    fn check_extent(
+        &self,
+        at: usize,
+        element: &[u32],
+        solids: Solids,
+        disorder: &mut Disorder,
+        report: &mut Report<'_>,
+    ) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
@@ -83,13 +92,14 @@ impl Lists {
             _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
+        disorder.ordered += 1;
         if measure.abs() <= FLAT * whole {
             let help = match kind {
                 ElementKind::Polygon => None,
                 ElementKind::Hexahedron => Some("list the corners in bit order: x fastest, then y, then z".to_owned()),
-                _ => Some("write convex = true in [body] for nodes in any order".to_owned()),
+                _ => Some(CONVEX.to_owned()),
             };
-            tell(format!("`{name}` has {flat}"), help);
+            disorder.flat.push((at, kind, format!("`{name}` has {flat}"), help));
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
             let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
@@ -97,10 +107,77 @@ impl Lists {
         } else if measure < 0.0 {
             let (what, turned) = mended(kind, element);
             let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
-            tell(format!("`{name}` is {what}"), Some(help));
+            disorder.turned.push((at, kind, format!("`{name}` is {what}"), Some(help)));
         }
     }
 }
+
+/// Elements whose nodes are probably not in the order that is expected of them: place, kind, message and help of each.
+#[derive(Debug, Default)]
+struct Disorder {
+    /// How many elements there are of which an order is expected.
+    ordered: usize,
+    flat: Vec<(usize, ElementKind, String, Option<String>)>,
+    turned: Vec<(usize, ElementKind, String, Option<String>)>,
+}
+
+impl Disorder {
+    /// Reports each; all at once, if all elements have the same mistake: it is one of whatever wrote them.
+    fn tell(self, lists: &Lists, report: &mut Report<'_>) {
+        let Self { ordered, flat, turned } = self;
+        let place = &lists.place;
+        let name = place.name("elements", &[]);
+        let all = |some: &[(usize, ElementKind, String, Option<String>)]| some.len() > 1 && some.len() == ordered;
+        // A polygon without area has no order in which it has one.
+        if all(&flat) && lists.dimension == Dimension::Space {
+            let message = format!(
+                "all {} elements of `{name}` have no volume: their nodes are in planes, or not in their order",
+                count(ordered as u128)
+            );
+            let around = "hexahedra in VTK's order need [0, 1, 3, 2, 4, 5, 7, 6] of it";
+            return place.tell(report, "elements", &[], message, format!("{CONVEX}, or reorder them: {around}"));
+        }
+        if all(&turned) {
+            let mut kinds: Vec<ElementKind> = Vec::new();
+            turned.iter().map(|element| element.1).for_each(|kind| {
+                if !kinds.contains(&kind) {
+                    kinds.push(kind)
+                }
+            });
+            let orders = kinds.iter().map(|&kind| {
+                let (name, nodes) = match kind {
+                    ElementKind::Tetrahedron => ("tetrahedra", 4),
+                    ElementKind::Pyramid => ("pyramids", 5),
+                    ElementKind::Wedge => ("wedges", 6),
+                    _ => ("hexahedra", 8),
+                };
+                let now: Vec<u32> = (0..nodes).collect();
+                format!("{name} as {:?}", mended(kind, &now).1)
+            });
+            let orders: Vec<_> = orders.collect();
+            let (what, help) = match lists.dimension {
+                Dimension::Plane => {
+                    ("clockwise; expected counter-clockwise", "list the nodes of each backwards".into())
+                }
+                Dimension::Space => (
+                    "turned inside out at rest",
+                    format!(
+                        "{CONVEX}, or reorder those of each: {} of what they are now",
+                        list(&orders, "and", str::to_owned)
+                    ),
+                ),
+            };
+            let message = format!("all {} elements of `{name}` are {what}", count(ordered as u128));
+            return place.tell(report, "elements", &[], message, help);
+        }
+        let mut each: Vec<_> = flat.into_iter().chain(turned).collect();
+        each.sort_by_key(|element| element.0);
+        each.into_iter().for_each(|(at, _, message, help)| place.tell(report, "elements", &[at], message, help));
+    }
+}
+
+/// What helps against every order.
+const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
 /// The most nodes of an element whose faces are those of its convex hull: finding them takes seconds from there on.
 const MOST_IN_HULL: usize = 10_000;
