@@ -36,14 +36,14 @@ impl Check {
             let file = path.to_string_lossy();
             match self.scenes.load(path) {
                 Ok(scene) if self.json => {
-                    let (scene, warnings) = (scene.summary(), &scene.warnings.found);
+                    let (scene, warnings) = (scene.summary(), &scene.warnings);
                     documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
                 }
                 Ok(_) if self.quiet => {}
                 Ok(scene) => {
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
-                    warn(&scene.warnings);
+                    warn(path, &scene);
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));

@@ -1,10 +1,11 @@
 //! Exit statuses, and how a failure is told.
 
 use crate::output::OutputError;
-use crate::scene::Mistakes;
+use crate::scene::{Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// How the program ends. The numbers are part of its interface.
@@ -90,10 +91,11 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
     text
 }
 
-/// Tells of what is probably not meant in a scene.
-pub(super) fn warn(warnings: &Mistakes) {
-    if warnings.total > 0 {
-        let _ = writeln!(std::io::stderr(), "warning: {warnings}");
+/// Tells of what is probably not meant in the scene of a file.
+pub(super) fn warn(file: &Path, scene: &Scene) {
+    if !scene.warnings.is_empty() {
+        let (found, total) = (scene.warnings.clone(), scene.warnings.len());
+        let _ = writeln!(std::io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
     }
 }
 

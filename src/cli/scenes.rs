@@ -15,13 +15,18 @@ impl SceneOptions {
         Scene::load(path, &limits)
     }
 
-    /// Reads all scenes. The mistakes in all of them are told before this fails.
-    pub(super) fn load_all(&self) -> Result<Vec<Scene>, Failure> {
+    /// Reads all scenes. The mistakes in all of them are told before this fails; warnings unless `quiet`.
+    pub(super) fn load_all(&self, quiet: bool) -> Result<Vec<Scene>, Failure> {
         let mut scenes = Vec::new();
         let mut failed = None;
         for path in &self.scenes {
             match self.load(path) {
-                Ok(scene) => scenes.push(scene),
+                Ok(scene) => {
+                    if !quiet {
+                        warn(path, &scene);
+                    }
+                    scenes.push(scene);
+                }
                 Err(error) => {
                     complain(&with_causes(&error));
                     failed = Some(worse(failed, status_of(&error)));
@@ -59,9 +64,6 @@ pub(super) struct Job {
 impl RunOptions {
     /// What is to be done for each scene, with or without `pictures`.
     pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool) -> Result<Vec<Job>, Failure> {
-        if !self.quiet {
-            scenes.iter().for_each(|scene| warn(&scene.warnings));
-        }
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();

@@ -27,7 +27,7 @@ pub(super) struct Simulate {
 
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let jobs = self.options.jobs(self.scenes.load_all()?, false)?;
+        let jobs = self.options.jobs(self.scenes.load_all(self.options.quiet)?, false)?;
         record::run_all(jobs, &self.options, words, false, None)
     }
 }

@@ -122,7 +122,7 @@ pub struct Mistake {
     pub marked: Range<usize>,
 }
 
-/// All mistakes of one file, or all warnings, in the order in which they stand there.
+/// All mistakes of one file in the order in which they stand there.
 ///
 /// They print with the source line and a mark under the place:
 ///
@@ -131,7 +131,7 @@ pub struct Mistake {
 ///    12 | model = { kind = "shape-based", stifness = 1e4 }
 ///       |                                 ^^^^^^^^ did you mean `stiffness`?
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mistakes {
     /// The file, as named by the caller.
     pub file: String,

@@ -65,7 +65,7 @@ impl Scene {
             };
             let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
             let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
-            Ok(scene.map(|scene| Self { warnings: report.warnings(name), ..scene }))
+            Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))
         })
     }
 }

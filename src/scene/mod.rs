@@ -83,7 +83,7 @@ pub struct Scene {
     /// How it is drawn.
     pub view: View,
     /// What is allowed in its file and probably not meant.
-    pub warnings: Mistakes,
+    pub warnings: Vec<Mistake>,
 }
 
 /// One model on the scene's body, and one panel of the picture.

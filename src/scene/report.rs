@@ -94,10 +94,10 @@ impl<'t> Report<'t> {
     }
 
     /// All warnings, in the order of the text.
-    pub(super) fn warnings(&mut self, file: &str) -> Mistakes {
+    pub(super) fn warnings(&mut self) -> Vec<Mistake> {
         let mut found = std::mem::take(&mut self.warned);
         found.sort_by_key(|mistake| (mistake.line, mistake.column));
-        Mistakes { file: file.into(), total: found.len(), found }
+        found
     }
 
     /// All that was found, in the order of the text.

@@ -1,6 +1,7 @@
 //! `simulate`: diagnostics, summary and states.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES};
+use localshape::output::{Tags, encode};
 use std::io::Read;
 
 const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
@@ -150,11 +151,10 @@ fn everything_in_the_files_is_documented() {
     place.run("simulate small.toml --states").good();
     let heads: Vec<_> = HEADS.split(',').collect();
     assert_eq!(documented("diagnostics.csv"), heads);
-    // Every number but counts has a unit.
-    for row in
-        include_str!("../../docs/files.md").lines().filter(|line| line.starts_with("| `") && line.contains(" J |"))
-    {
-        assert_eq!(row.split('|').count(), 5, "{row}");
+    // Every number but counts and ratios has a unit.
+    for head in heads.iter().filter(|head| !["run", "frame", "turned_over", "volume_ratio", "status"].contains(head)) {
+        let row = include_str!("../../docs/files.md").lines().find(|line| line.contains(&format!("`{head}`"))).unwrap();
+        assert!(!row.split('|').nth(2).unwrap().trim().is_empty(), "{row}");
     }
 
     let file = std::fs::File::open(place.path("output/small/states.npz")).unwrap();
@@ -172,6 +172,14 @@ fn everything_in_the_files_is_documented() {
 
     let run = place.json("output/small/run.json");
     assert_eq!(documented("run.json"), run.as_object().unwrap().keys().cloned().collect::<Vec<_>>());
+
+    let (text, states) = (String::new, vec![(String::new(), String::new())]);
+    let tags = Tags { scene: text(), states, frame: 0, time: 0.0, version: text(), adapter: text() };
+    let picture = encode([1, 1], &[0; 3], &tags);
+    let names = picture.windows(11).enumerate().filter(|(_, bytes)| bytes == b"localshape:");
+    let name = |at: usize| picture[at..].split(|&byte| byte == 0).next().expect("a keyword").to_vec();
+    let names: Vec<_> = names.map(|(at, _)| String::from_utf8(name(at)).expect("a keyword")).collect();
+    assert_eq!(documented("frame_00000.png"), names);
 }
 
 /// One array of `states.npz`: its head and its numbers.

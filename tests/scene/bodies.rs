@@ -148,19 +148,19 @@ fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
 }
 
 /// Where nodes that are moved at random would make an element flat or turn it inside out, they are moved less far: each
-/// corner keeps a tenth of what it spans in the regular block.
+/// corner keeps a tenth of what it spans in the regular block. By chance alone one in ten thousand corners does not.
 #[test]
 fn irregular_blocks_have_no_element_that_is_nearly_flat() {
     for (cells, elements) in [
-        ("[5, 5]", "cells"),
-        ("[5, 5]", "triangles"),
-        ("[5, 5]", "mixed"),
-        ("[3, 3, 3]", "cells"),
-        ("[3, 3, 3]", "tetrahedra"),
-        ("[3, 3, 3]", "mixed"),
+        ("[100, 100]", "cells"),
+        ("[100, 100]", "triangles"),
+        ("[100, 100]", "mixed"),
+        ("[20, 20, 20]", "cells"),
+        ("[20, 20, 20]", "tetrahedra"),
+        ("[20, 20, 20]", "mixed"),
     ] {
         let mut moved_far = 0;
-        for seed in 1..=30 {
+        for seed in 1..=2 {
             let block = |irregular: f64| {
                 let rule = format!("cells = {cells}, side = 1, elements = '{elements}', irregular = {irregular}");
                 good(&format!("body.lattice = {{ {rule}, seed = {seed} }}\n{WORLD}")).body

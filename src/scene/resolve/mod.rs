@@ -13,6 +13,7 @@ mod reach;
 mod runs;
 mod view;
 
+use super::Scene;
 use super::digest::FileDigests;
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
 use super::font;
@@ -22,7 +23,6 @@ use super::report::{Report, Way, written};
 use super::structure::Checked;
 use super::view::FontFiles;
 use super::words::{count, short};
-use super::{Mistakes, Scene};
 use crate::sim::body::Dimension;
 use glam::DVec3;
 use lists::Lists;
@@ -185,7 +185,7 @@ pub(super) fn resolve(
         obstacles: obstacles?,
         grips: grips?,
         view: view?,
-        warnings: Mistakes::default(),
+        warnings: Vec::new(),
     };
     warn_of_time(&scene, report);
     Some(scene)
