@@ -348,9 +348,16 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     );
     wrong(
         &row_of_cubes(|_| around),
+        &[
+            "all 12 elements of `body.npz: elements` list their corners around their sides, as VTK, Gmsh and Abaqus do; \
+           expected bit order: x fastest, then y, then z reorder those of each: [0, 1, 3, 2, 4, 5, 7, 6] of what they are \
+           now; or write convex = true in [body]",
+        ],
+    );
+    wrong(
+        &row_of_cubes(|_| [0, 1, 2, 3, 4, 6, 5, 7]),
         &["all 12 elements of `body.npz: elements` have no volume: their nodes are in planes, or not in their order \
-           write convex = true in [body] for nodes in any order, or reorder them: hexahedra in VTK's order need \
-           [0, 1, 3, 2, 4, 5, 7, 6] of it"],
+           write convex = true in [body] for nodes in any order"],
     );
     // What is said to help does.
     for order in [turned, around] {
@@ -369,6 +376,30 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
             "all 2 elements of `body.npz: elements` are clockwise; expected counter-clockwise list the nodes of each backwards",
         ],
     );
+}
+
+/// Parts of a ring have some volume of either sign in another program's order, so that turning them over would seem to help.
+#[test]
+fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
+    let ring = |order: [usize; 8]| {
+        let node = |to: usize| {
+            let angle = std::f64::consts::TAU * (to / 4) as f64 / 12.0;
+            let radius = [0.15, 0.25][to / 2 % 2];
+            [(to % 2) as f64, radius * angle.cos(), radius * angle.sin()]
+        };
+        let nodes: Vec<f64> = (0..48).flat_map(node).collect();
+        let corner = |part: usize, corner: usize| (4 * ((part + (corner >> 2)) % 12) + (corner & 3)) as i64;
+        let elements: Vec<i64> = (0..12).flat_map(|part| order.map(|place| corner(part, place))).collect();
+        archive(
+            &[doubles("nodes", "(48, 3)", &nodes), indices("elements", "(12, 8)", &elements)],
+            CompressionMethod::Stored,
+        )
+    };
+    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).body.elements.len(), 12);
+    for other in [[0, 1, 3, 2, 4, 5, 7, 6], [4, 5, 7, 6, 0, 1, 3, 2]] {
+        wrong(&ring(other), &["all 12 elements of `body.npz: elements` list their corners around their sides"]);
+    }
+    wrong(&ring([4, 5, 6, 7, 0, 1, 2, 3]), &["all 12 elements of `body.npz: elements` are turned inside out"]);
 }
 
 #[test]

@@ -72,7 +72,7 @@ impl Lists {
             return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
         }
         let kind = topology::kind(self.dimension, solids, element.len());
-        let (whole, flat) = match kind {
+        let whole = match kind {
             // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
@@ -88,91 +88,138 @@ impl Lists {
                 }
                 return;
             }
-            ElementKind::Polygon => (size * size, "no area: its nodes are on a line, or its sides cross"),
-            _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
+            ElementKind::Polygon => size * size,
+            _ => size * size * size,
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
         disorder.ordered += 1;
-        if measure.abs() <= FLAT * whole {
-            let help = match kind {
-                ElementKind::Polygon => None,
-                ElementKind::Hexahedron => Some("list the corners in bit order: x fastest, then y, then z".to_owned()),
-                _ => Some(CONVEX.to_owned()),
-            };
-            disorder.flat.push((at, kind, format!("`{name}` has {flat}"), help));
+        let around = || volume_by_faces(kind, &reordered(element, &AROUND), &self.nodes);
+        // A sound hexahedron read in the other order is wound into itself and has hardly any volume, of either sign.
+        if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
+            disorder.found.push((at, Wrong::Around, kind));
+        } else if measure.abs() <= FLAT * whole {
+            disorder.found.push((at, Wrong::Flat, kind));
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
             let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
             tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
-            let (what, turned) = mended(kind, element);
-            let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
-            disorder.turned.push((at, kind, format!("`{name}` is {what}"), Some(help)));
+            disorder.found.push((at, Wrong::Turned, kind));
         }
     }
 }
 
-/// Elements whose nodes are probably not in the order that is expected of them: place, kind, message and help of each.
+/// The order in which other programs list the corners of a hexahedron, around one side and then around the other; and the
+/// way back.
+const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+fn reordered(nodes: &[u32], order: &[usize]) -> Vec<u32> {
+    order.iter().map(|&place| nodes[place]).collect()
+}
+
+/// What is wrong with the nodes of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wrong {
+    Flat,
+    Around,
+    Turned,
+}
+
+/// Elements whose nodes are probably not in the order that is expected of them.
 #[derive(Debug, Default)]
 struct Disorder {
     /// How many elements there are of which an order is expected.
     ordered: usize,
-    flat: Vec<(usize, ElementKind, String, Option<String>)>,
-    turned: Vec<(usize, ElementKind, String, Option<String>)>,
+    /// Place, what is wrong, and kind of each.
+    found: Vec<(usize, Wrong, ElementKind)>,
 }
 
 impl Disorder {
     /// Reports each; all at once, if all elements have the same mistake: it is one of whatever wrote them.
     fn tell(self, lists: &Lists, report: &mut Report<'_>) {
-        let Self { ordered, flat, turned } = self;
         let place = &lists.place;
-        let name = place.name("elements", &[]);
-        let all = |some: &[(usize, ElementKind, String, Option<String>)]| some.len() > 1 && some.len() == ordered;
-        // A polygon without area has no order in which it has one.
-        if all(&flat) && lists.dimension == Dimension::Space {
-            let message = format!(
-                "all {} elements of `{name}` have no volume: their nodes are in planes, or not in their order",
-                count(ordered as u128)
-            );
-            let around = "hexahedra in VTK's order need [0, 1, 3, 2, 4, 5, 7, 6] of it";
-            return place.tell(report, "elements", &[], message, format!("{CONVEX}, or reorder them: {around}"));
+        match self.common(lists) {
+            Some((message, help)) => place.tell(report, "elements", &[], message, help),
+            None => {
+                for (at, wrong, kind) in self.found {
+                    // There may be millions.
+                    if !report.only_counted() {
+                        let (message, help) = told(lists, at, wrong, kind);
+                        place.tell(report, "elements", &[at], message, help);
+                    }
+                }
+            }
         }
-        if all(&turned) {
-            let mut kinds: Vec<ElementKind> = Vec::new();
-            turned.iter().map(|element| element.1).for_each(|kind| {
-                if !kinds.contains(&kind) {
-                    kinds.push(kind)
+    }
+
+    /// Message and help for all elements, if there are several and all have the same mistake.
+    fn common(&self, lists: &Lists) -> Option<(String, String)> {
+        let &(_, wrong, _) = self.found.first()?;
+        if self.ordered < 2 || self.found.len() < self.ordered || self.found.iter().any(|one| one.1 != wrong) {
+            return None;
+        }
+        let (what, help) = match (wrong, lists.dimension) {
+            // A polygon without area has no order in which it has one.
+            (Wrong::Flat, Dimension::Plane) => return None,
+            (Wrong::Turned, Dimension::Plane) => {
+                ("are clockwise; expected counter-clockwise", "list the nodes of each backwards".to_owned())
+            }
+            (Wrong::Flat, Dimension::Space) => {
+                ("have no volume: their nodes are in planes, or not in their order", CONVEX.to_owned())
+            }
+            (Wrong::Around, _) => (
+                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected bit order: x fastest, then y, then z",
+                format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}"),
+            ),
+            (Wrong::Turned, Dimension::Space) => {
+                let mut orders: Vec<String> = Vec::new();
+                for &(_, _, kind) in &self.found {
+                    let (name, nodes) = match kind {
+                        ElementKind::Tetrahedron => ("tetrahedra", 4),
+                        ElementKind::Pyramid => ("pyramids", 5),
+                        ElementKind::Wedge => ("wedges", 6),
+                        _ => ("hexahedra", 8),
+                    };
+                    let order = format!("{name} as {:?}", mended(kind, &Vec::from_iter(0..nodes)).1);
+                    if !orders.contains(&order) {
+                        orders.push(order);
+                    }
                 }
-            });
-            let orders = kinds.iter().map(|&kind| {
-                let (name, nodes) = match kind {
-                    ElementKind::Tetrahedron => ("tetrahedra", 4),
-                    ElementKind::Pyramid => ("pyramids", 5),
-                    ElementKind::Wedge => ("wedges", 6),
-                    _ => ("hexahedra", 8),
-                };
-                let now: Vec<u32> = (0..nodes).collect();
-                format!("{name} as {:?}", mended(kind, &now).1)
-            });
-            let orders: Vec<_> = orders.collect();
-            let (what, help) = match lists.dimension {
-                Dimension::Plane => {
-                    ("clockwise; expected counter-clockwise", "list the nodes of each backwards".into())
-                }
-                Dimension::Space => (
-                    "turned inside out at rest",
-                    format!(
-                        "{CONVEX}, or reorder those of each: {} of what they are now",
-                        list(&orders, "and", str::to_owned)
-                    ),
-                ),
+                let orders = list(&orders, "and", str::to_owned);
+                let help = format!("{CONVEX}, or reorder those of each: {orders} of what they are now");
+                ("are turned inside out at rest", help)
+            }
+        };
+        let (count, name) = (count(self.ordered as u128), lists.place.name("elements", &[]));
+        Some((format!("all {count} elements of `{name}` {what}"), help))
+    }
+}
+
+/// What is wrong with one element, and what helps.
+fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
+    let (name, element) = (lists.place.name("elements", &[at]), &lists.elements[at]);
+    match (wrong, kind) {
+        (Wrong::Flat, ElementKind::Polygon) => {
+            (format!("`{name}` has no area: its nodes are on a line, or its sides cross"), None)
+        }
+        (Wrong::Flat, _) => {
+            let help = match kind {
+                ElementKind::Hexahedron => "list the corners in bit order: x fastest, then y, then z",
+                _ => CONVEX,
             };
-            let message = format!("all {} elements of `{name}` are {what}", count(ordered as u128));
-            return place.tell(report, "elements", &[], message, help);
+            let message = format!("`{name}` has no volume: its nodes are in a plane, or not in their order");
+            (message, Some(help.to_owned()))
         }
-        let mut each: Vec<_> = flat.into_iter().chain(turned).collect();
-        each.sort_by_key(|element| element.0);
-        each.into_iter().for_each(|(at, _, message, help)| place.tell(report, "elements", &[at], message, help));
+        (Wrong::Around, _) => {
+            let expected = "expected bit order: x fastest, then y, then z";
+            let message = format!("`{name}` lists its corners around its sides; {expected}");
+            (message, Some(format!("write {:?}", reordered(element, &AROUND))))
+        }
+        (Wrong::Turned, _) => {
+            let (what, turned) = mended(kind, element);
+            let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
+            (format!("`{name}` is {what}"), Some(help))
+        }
     }
 }
 
