@@ -1,7 +1,7 @@
 //! `check`: what scenes hold, or every mistake in them.
 
 use super::console::{print, print_json};
-use super::failure::{Failure, Status, complain, with_causes};
+use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::options::SceneOptions;
 use super::scenes::{status_of, worse};
 use clap::Args;
@@ -19,7 +19,7 @@ pub(super) struct Check {
     #[command(flatten)]
     scenes: SceneOptions,
 
-    /// Only mistakes
+    /// Only mistakes, no warnings
     #[arg(short, long)]
     quiet: bool,
 
@@ -35,11 +35,15 @@ impl Check {
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
             match self.scenes.load(path) {
-                Ok(scene) if self.json => documents.push(json!({ "file": file, "ok": true, "scene": scene.summary() })),
+                Ok(scene) if self.json => {
+                    let (scene, warnings) = (scene.summary(), &scene.warnings);
+                    documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
+                }
                 Ok(_) if self.quiet => {}
                 Ok(scene) => {
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
+                    warn(path, &scene);
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));

@@ -1,9 +1,11 @@
 //! Exit statuses, and how a failure is told.
 
 use crate::output::OutputError;
+use crate::scene::{Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// How the program ends. The numbers are part of its interface.
@@ -88,6 +90,14 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
         cause = error.source();
     }
     text
+}
+
+/// Tells of what is probably not meant in the scene of a file.
+pub(super) fn warn(file: &Path, scene: &Scene) {
+    if !scene.warnings.is_empty() {
+        let (found, total) = (scene.warnings.clone(), scene.warnings.len());
+        let _ = writeln!(std::io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
+    }
 }
 
 /// Tells of an error on standard error. Nobody is left to be told if that fails.

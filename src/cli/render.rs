@@ -62,7 +62,7 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let mut scenes = self.scenes.load_all()?;
+        let mut scenes = self.scenes.load_all(self.options.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }

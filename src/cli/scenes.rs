@@ -1,6 +1,6 @@
 //! From scene files as typed to scenes that can be run.
 
-use super::failure::{Failure, Status, complain, with_causes};
+use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
 use crate::golden::shell_word;
@@ -17,13 +17,18 @@ impl SceneOptions {
         Scene::load(path, &limits)
     }
 
-    /// Reads all scenes. The mistakes in all of them are told before this fails.
-    pub(super) fn load_all(&self) -> Result<Vec<Scene>, Failure> {
+    /// Reads all scenes. The mistakes in all of them are told before this fails; warnings unless `quiet`.
+    pub(super) fn load_all(&self, quiet: bool) -> Result<Vec<Scene>, Failure> {
         let mut scenes = Vec::new();
         let mut failed = None;
         for path in &self.scenes {
             match self.load(path) {
-                Ok(scene) => scenes.push(scene),
+                Ok(scene) => {
+                    if !quiet {
+                        warn(path, &scene);
+                    }
+                    scenes.push(scene);
+                }
                 Err(error) => {
                     complain(&with_causes(&error));
                     failed = Some(worse(failed, status_of(&error)));

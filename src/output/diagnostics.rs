@@ -8,27 +8,6 @@ use std::path::Path;
 /// The name of the file in its folder.
 pub const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 
-/// The heads of the columns. SI units; see [`crate::sim::snapshot::Diagnostics`] for what each one says.
-const COLUMNS: [&str; 17] = [
-    "run",
-    "frame",
-    "time",
-    "kinetic",
-    "elastic",
-    "gravitational",
-    "momentum_x",
-    "momentum_y",
-    "momentum_z",
-    "angular_momentum_x",
-    "angular_momentum_y",
-    "angular_momentum_z",
-    "residual",
-    "turned_over",
-    "volume_ratio",
-    "shape_error",
-    "status",
-];
-
 /// Writes the diagnostics of frames as they come. The file appears with [`Self::finish`].
 #[derive(Debug)]
 pub struct DiagnosticsWriter {
@@ -47,7 +26,7 @@ impl DiagnosticsWriter {
         let file = AtomicFile::create(&folder.join(DIAGNOSTICS_FILE))?;
         let names = scene.runs.iter().map(|run| run.name.clone()).collect();
         let mut writer = Self { file, names, length: 0 };
-        writer.append(&rows([COLUMNS.map(str::to_owned)]))?;
+        writer.append(&rows([cells("", 0, &Snapshot::default()).map(|(head, _)| head.to_owned())]))?;
         Ok(writer)
     }
 
@@ -57,7 +36,8 @@ impl DiagnosticsWriter {
     /// If they cannot be written; rows written before stay.
     pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let names = &self.names;
-        let text = rows(frame.runs.iter().map(|run| row(&names[run.run], frame.index, &run.snapshot)));
+        let text =
+            rows(frame.runs.iter().map(|run| cells(&names[run.run], frame.index, &run.snapshot).map(|(_, cell)| cell)));
         self.append(&text)
     }
 
@@ -78,35 +58,37 @@ impl DiagnosticsWriter {
     }
 }
 
-fn row(name: &str, frame: u64, snapshot: &Snapshot) -> [String; 17] {
+/// The cells of a row, each with the head of its column; `docs/files.md` says what they mean.
+fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> [(&'static str, String); 18] {
     let d = &snapshot.diagnostics;
     let status = match snapshot.status {
         Status::Ok => "ok",
         Status::Diverged(_) => "diverged",
     };
     [
-        name.to_owned(),
-        frame.to_string(),
-        exact(snapshot.time),
-        exact(d.kinetic),
-        exact(d.elastic),
-        exact(d.gravitational),
-        exact(d.momentum.x),
-        exact(d.momentum.y),
-        exact(d.momentum.z),
-        exact(d.angular_momentum.x),
-        exact(d.angular_momentum.y),
-        exact(d.angular_momentum.z),
-        exact(d.residual),
-        d.turned_over.to_string(),
-        exact(d.volume_ratio),
-        exact(d.shape_error),
-        status.to_owned(),
+        ("run", name.to_owned()),
+        ("frame", frame.to_string()),
+        ("time", exact(snapshot.time)),
+        ("kinetic", exact(d.kinetic)),
+        ("elastic", exact(d.elastic)),
+        ("gravitational", exact(d.gravitational)),
+        ("momentum_x", exact(d.momentum.x)),
+        ("momentum_y", exact(d.momentum.y)),
+        ("momentum_z", exact(d.momentum.z)),
+        ("angular_momentum_x", exact(d.angular_momentum.x)),
+        ("angular_momentum_y", exact(d.angular_momentum.y)),
+        ("angular_momentum_z", exact(d.angular_momentum.z)),
+        ("residual", exact(d.residual)),
+        ("turned_over", d.turned_over.to_string()),
+        ("volume_ratio", exact(d.volume_ratio)),
+        ("shape_error", exact(d.shape_error)),
+        ("energy", exact(d.energy())),
+        ("status", status.to_owned()),
     ]
 }
 
 /// Rows as text, with quotation marks where a name needs them.
-fn rows(rows: impl IntoIterator<Item = [String; 17]>) -> Vec<u8> {
+fn rows(rows: impl IntoIterator<Item = [String; 18]>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.write_record(&row).expect("rows of equal length into memory");

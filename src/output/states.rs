@@ -1,13 +1,15 @@
-//! `states.npz`: positions and velocities of every frame, for numerical work elsewhere.
+//! `states.npz`: a body, and its positions and velocities in every frame, for numerical work elsewhere.
 
 use super::atomic::folder_of;
 use super::{AtomicFile, OutputError};
 use crate::scene::Scene;
+use crate::sim::body::Body;
 use crate::sim::snapshot::Frame;
 use glam::DVec3;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -21,6 +23,9 @@ pub const STATES_FILE: &str = "states.npz";
 /// frame: `time` is that of the first run, and a run whose time step is another one has its own `NAME.time` (F).
 /// A scene lets no run have a name that does not fit into an archive.
 ///
+/// The body is there once: `rest` (N × 3, m), `mass` (N, kg), and as 64-bit integers the nodes of each element,
+/// `elements`, and of each face that bounds the body, `faces`, with -1 behind those that have fewer than others.
+///
 /// Arrays lie one behind the other in the archive but grow all at once, and how many frames come is known only
 /// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
 /// the end: for a moment that takes twice the space on disk.
@@ -28,6 +33,7 @@ pub const STATES_FILE: &str = "states.npz";
 pub struct StatesWriter {
     path: PathBuf,
     spool: File,
+    body: Arc<Body>,
     arrays: Vec<Array>,
     /// Length of one frame in the spool (bytes).
     record: u64,
@@ -74,7 +80,7 @@ impl StatesWriter {
                 record += length as u64;
             }
         }
-        Ok(Self { path, spool, arrays, record, own_time, frames: 0 })
+        Ok(Self { path, spool, body: Arc::clone(&scene.body), arrays, record, own_time, frames: 0 })
     }
 
     /// Appends one frame.
@@ -123,15 +129,8 @@ impl StatesWriter {
     fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
         let mut part = Vec::new();
         for array in &self.arrays {
-            let header = header(self.frames, &array.shape);
-            let size = header.len() as u64 + self.frames * array.length as u64;
-            let options = SimpleFileOptions::default()
-                .compression_method(CompressionMethod::Stored)
-                .last_modified_time(DateTime::default())
-                .unix_permissions(0o644)
-                .large_file(size >= u64::from(u32::MAX));
-            archive.start_file(format!("{}.npy", array.name), options)?;
-            archive.write_all(&header)?;
+            let shape = format!("({},{})", self.frames, array.shape);
+            begin(archive, &array.name, "<f8", &shape, self.frames * array.length as u64)?;
             part.resize(array.length, 0);
             for frame in 0..self.frames {
                 self.spool.seek(SeekFrom::Start(frame * self.record + array.offset))?;
@@ -139,13 +138,60 @@ impl StatesWriter {
                 archive.write_all(&part)?;
             }
         }
-        Ok(())
+        fill_body(archive, &self.body)
     }
 }
 
-/// The head of an array in NumPy's file format, version 1.0.
-fn header(frames: u64, shape: &str) -> Vec<u8> {
-    let mut text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({frames},{shape}), }}");
+/// Writes the arrays of a body.
+fn fill_body(archive: &mut ZipWriter<BufWriter<&mut File>>, body: &Body) -> io::Result<()> {
+    let nodes = body.len();
+    begin(archive, "rest", "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
+    body.rest.iter().try_for_each(|rest| archive.write_all(&vector_bytes(rest)))?;
+    begin(archive, "mass", "<f8", &format!("({nodes},)"), 8 * nodes as u64)?;
+    body.mass.iter().try_for_each(|mass| archive.write_all(&mass.to_le_bytes()))?;
+    fill_lists(archive, "elements", 2, body.elements.iter())?;
+    let faces = &body.faces;
+    let bounds = |&face: &usize| faces.inner[face].is_none() || faces.outer[face].is_none();
+    fill_lists(archive, "faces", 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))
+}
+
+/// Writes lists of nodes as rows of one length, not below `least`.
+fn fill_lists<'l>(
+    archive: &mut ZipWriter<BufWriter<&mut File>>,
+    name: &str,
+    least: usize,
+    lists: impl Iterator<Item = &'l [u32]> + Clone,
+) -> io::Result<()> {
+    let (rows, columns) = lists.clone().fold((0, least), |(rows, most), list| (rows + 1, most.max(list.len())));
+    begin(archive, name, "<i8", &format!("({rows}, {columns})"), 8 * rows * columns as u64)?;
+    for list in lists {
+        let padded = list.iter().map(|&node| node.into()).chain(std::iter::repeat(-1_i64)).take(columns);
+        archive.write_all(&padded.flat_map(i64::to_le_bytes).collect::<Vec<_>>())?;
+    }
+    Ok(())
+}
+
+/// Begins an array of some bytes in the archive: what follows are its numbers.
+fn begin(
+    archive: &mut ZipWriter<BufWriter<&mut File>>,
+    name: &str,
+    number: &str,
+    shape: &str,
+    bytes: u64,
+) -> io::Result<()> {
+    let header = header(number, shape);
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644)
+        .large_file(header.len() as u64 + bytes >= u64::from(u32::MAX));
+    archive.start_file(format!("{name}.npy"), options)?;
+    archive.write_all(&header)
+}
+
+/// The head of an array in NumPy's file format, version 1.0, for numbers of a type and a shape in Python's spelling.
+fn header(number: &str, shape: &str) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{number}', 'fortran_order': False, 'shape': {shape}, }}");
     // Ten bytes stand before the text; the data begin at a multiple of 64.
     let unpadded = 10 + text.len() + 1;
     text.extend(std::iter::repeat_n(' ', unpadded.next_multiple_of(64) - unpadded));
@@ -172,8 +218,8 @@ mod tests {
 
     #[test]
     fn header_is_aligned() {
-        for shape in ["", " 64, 3", " 1000000, 3"] {
-            let header = header(181, shape);
+        for shape in ["(181,)", "(181, 64, 3)", "(181, 1000000, 3)"] {
+            let header = header("<f8", shape);
             assert_eq!(header.len() % 64, 0);
             assert_eq!(usize::from(header[8]) + 256 * usize::from(header[9]), header.len() - 10);
             assert_eq!(header.last(), Some(&b'\n'));

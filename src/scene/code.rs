@@ -73,6 +73,7 @@ impl Scene {
             obstacles: Vec::new(),
             grips: Vec::new(),
             view,
+            warnings: Vec::new(),
         };
         scene.framed()
     }

@@ -66,7 +66,8 @@ impl Scene {
                 _ => String::new(),
             };
             let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
-            Ok(resolve::resolve(parts, &name_of_scene, &digest, limits, report))
+            let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
+            Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))
         })
     }
 }

@@ -88,6 +88,8 @@ pub struct Scene {
     pub grips: Vec<Grip>,
     /// How it is drawn.
     pub view: View,
+    /// What is allowed in its file and probably not meant.
+    pub warnings: Vec<Mistake>,
 }
 
 /// One model on the scene's body, and one panel of the picture.

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
-use zip::ZipArchive;
+use zip::{CompressionMethod, ZipArchive};
 
 /// The longest head of an array that is read (bytes); one of numbers has some hundred.
 const LONGEST_HEAD: usize = 4096;
@@ -176,6 +176,12 @@ impl Npz {
     }
 
     fn head(&mut self, index: usize) -> Result<Array, String> {
+        let packed = self.zip.by_index_raw(index).map_err(|error| format!("cannot be read: {error}"))?.compression();
+        if !matches!(packed, CompressionMethod::Stored | CompressionMethod::Deflated) {
+            let packed = packed.to_string().to_lowercase();
+            let expected = "write it with numpy.savez or numpy.savez_compressed";
+            return Err(format!("is compressed by {packed}, which is not read; {expected}"));
+        }
         let mut entry = self.zip.by_index(index).map_err(|error| format!("cannot be read: {error}"))?;
         let short = || "has no whole head: the file is damaged, or no array of NumPy".to_owned();
         let mut fixed = [0; 12];

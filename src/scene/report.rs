@@ -37,16 +37,24 @@ pub(super) struct Report<'t> {
     root: &'t DeTable<'t>,
     found: Vec<Mistake>,
     total: usize,
+    warned: Vec<Mistake>,
 }
 
 impl<'t> Report<'t> {
     pub(super) fn new(source: &'t Source<'t>, root: &'t DeTable<'t>) -> Self {
-        Self { source, root, found: Vec::new(), total: 0 }
+        Self { source, root, found: Vec::new(), total: 0, warned: Vec::new() }
     }
 
     /// How many mistakes were found so far.
     pub(super) fn total(&self) -> usize {
         self.total
+    }
+
+    /// Counts a mistake of which no more than that would be kept, if so many are known; else its words are needed.
+    pub(super) fn only_counted(&mut self) -> bool {
+        let is_full = self.found.len() >= KEPT;
+        self.total += usize::from(is_full);
+        is_full
     }
 
     /// Whether the key at the end of `path` is typed; a default is not.
@@ -78,6 +86,18 @@ impl<'t> Report<'t> {
         };
         let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
         self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), message, help.into());
+    }
+
+    /// What is allowed and probably not meant, in the value at `path` or in the nearest one that is there.
+    pub(super) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
+        self.warned.push(mistake(self.source, span_of(self.root, path), message, Some(help)));
+    }
+
+    /// All warnings, in the order of the text.
+    pub(super) fn warnings(&mut self) -> Vec<Mistake> {
+        let mut found = std::mem::take(&mut self.warned);
+        found.sort_by_key(|mistake| (mistake.line, mistake.column));
+        found
     }
 
     /// All that was found, in the order of the text.

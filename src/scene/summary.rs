@@ -29,6 +29,8 @@ pub struct Summary {
     pub elements: Vec<String>,
     /// Sides of the box around the body at rest (m): three in space, two in the plane.
     pub extent: Vec<f64>,
+    /// Lowest and highest corner of the box around the body as it starts (m).
+    pub start: [Vec<f64>; 2],
     /// Mass of the body (kg).
     pub mass: f64,
     /// Acceleration of gravity (m/s²): three coordinates in space, two in the plane.
@@ -92,6 +94,7 @@ impl Scene {
             element_count: body.elements.len(),
             elements: words::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low),
+            start: corners(&self.initial.position, body.dimension),
             mass: body.mass.iter().sum(),
             gravity: coordinates(self.gravity),
             duration: self.duration,
@@ -134,6 +137,17 @@ impl Scene {
         let (theme, distance) = (typed(&view.look.theme), short(view.camera.distance));
         format!("{width} × {height} px, {theme}, {panels}, seen {from}, {distance} m away{follow}")
     }
+}
+
+/// Lowest and highest corner of the box around points (m), without what round-off leaves beside zero.
+pub(super) fn corners(points: &[DVec3], dimension: Dimension) -> [Vec<f64>; 2] {
+    let (low, high) = bounds(points);
+    let round_off = 1e-12 * low.abs().max(high.abs()).max_element();
+    let axes = if dimension == Dimension::Plane { 2 } else { 3 };
+    [low, high].map(|corner| {
+        let coordinates = corner.to_array().into_iter().take(axes);
+        coordinates.map(|at| if at.abs() <= round_off { 0.0 } else { at }).collect()
+    })
 }
 
 /// A choice as it is typed in a scene.
@@ -199,6 +213,8 @@ impl fmt::Display for Summary {
             _ => format!("{} elements ({kinds})", count(self.element_count as u128)),
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
+        let [low, high] = &self.start;
+        line("start", &format!("between {} and {} m", vector(low), vector(high)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };

@@ -92,6 +92,13 @@ pub struct Diagnostics {
     pub shape_error: f64,
 }
 
+impl Diagnostics {
+    /// The sum of all energies (J); NaN for a model without an elastic one.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.elastic + self.gravitational
+    }
+}
+
 /// A number that describes a state, to be shown over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -128,7 +135,7 @@ impl Diagnostic {
             Self::Kinetic => all.kinetic,
             Self::Elastic => all.elastic,
             Self::Gravitational => all.gravitational,
-            Self::Energy => all.kinetic + all.elastic + all.gravitational,
+            Self::Energy => all.energy(),
             Self::Momentum => all.momentum.length(),
             Self::AngularMomentum => all.angular_momentum.length(),
             Self::Residual => all.residual,

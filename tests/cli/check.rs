@@ -1,6 +1,6 @@
 //! `check`: what scenes hold, and every mistake in them.
 
-use crate::support::{Place, SMALL};
+use crate::support::{Place, SMALL, numpy};
 
 #[test]
 fn says_what_a_scene_holds() {
@@ -41,6 +41,59 @@ fn as_json() {
     assert_eq!(document["scenes"][0]["scene"]["title"], "Two cubes");
     assert_eq!(document["scenes"][1]["ok"], false);
     assert!(document["scenes"][1]["mistakes"][0]["line"].as_u64().unwrap() > 1);
+}
+
+#[test]
+fn says_where_the_body_starts() {
+    let place = Place::with_small();
+    let ran = place.run("check small.toml").good();
+    assert!(ran.out.contains("\n  start     between (-0.1, 0, -0.05) and (0.1, 0.1, 0.05) m\n"), "{}", ran.out);
+    let document = place.run("check small.toml --json").good().json();
+    let start = &document["scenes"][0]["scene"]["start"];
+    assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
+}
+
+/// A warning is told by every command that reads the scene to run it, and changes nothing else.
+#[test]
+fn warns_of_what_is_probably_not_meant() {
+    let place = Place::new();
+    place.write("rare.toml", &SMALL.replace("frames_per_second = 60", "frames_per_second = 1e-300"));
+    let words = "warning: rare.toml:7:21: at 1e-300 frames per second, 0.1 s have a single frame, the start\n";
+    for command in ["check rare.toml", "simulate rare.toml", "simulate rare.toml --json --overwrite"] {
+        let ran = place.run(command);
+        assert_eq!((ran.status, ran.err.matches("warning: ").count()), (Some(0), 1), "{command}: {ran:?}");
+        assert!(ran.err.starts_with(words), "{command}: {ran:?}");
+    }
+    for command in ["check rare.toml --quiet", "simulate rare.toml --quiet --overwrite"] {
+        place.run(command).good();
+    }
+    let document = place.run("check rare.toml --json").good().json();
+    assert_eq!(document["scenes"][0]["warnings"][0]["line"], 7);
+}
+
+/// The example of `docs/bodies.md` makes the body that it says, by NumPy where there is one, and else as it once did.
+#[test]
+fn a_mesh_written_with_numpy() {
+    let text = include_str!("../../docs/bodies.md");
+    let block = |language: &str| {
+        let start = text.find(&format!("```{language}\n")).expect("a block") + language.len() + 4;
+        &text[start..start + text[start..].find("```").expect("its end")]
+    };
+    let place = Place::new();
+    place.write("tube.toml", block("toml"));
+    let check = |bytes: &[u8]| {
+        std::fs::write(place.path("tube.npz"), bytes).unwrap();
+        let document = place.run("check tube.toml --json").good().json();
+        let scene = document["scenes"][0]["scene"].clone();
+        assert_eq!((&scene["nodes"], &scene["elements"][0]), (&264.into(), &"120 hexahedra".into()));
+        assert_eq!(scene["start"][0], serde_json::json!([-0.5, -0.25, -0.25]));
+        assert_eq!(scene["grips"][0], "24 nodes held from 0 s for good");
+    };
+    check(include_bytes!("tube.npz"));
+    if let Some(python) = numpy() {
+        python(&place.path("."), block("python"));
+        check(&std::fs::read(place.path("tube.npz")).unwrap());
+    }
 }
 
 #[cfg(unix)]

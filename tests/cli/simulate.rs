@@ -1,12 +1,13 @@
 //! `simulate`: diagnostics, summary and states.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES};
+use localshape::output::{Tags, encode};
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
 use std::io::Read;
 
 const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
-                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,status";
+                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,status";
 
 /// The rows of a table without its heads.
 fn rows(table: &str) -> Vec<Vec<&str>> {
@@ -34,7 +35,12 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().all(|row| (row[12] == "nan") == (row[0] == "Mass-spring")), "{table}");
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
     assert!(rows.iter().all(|row| digits(row[2]) == 17 && digits(row[3]) == 17), "{table}");
-    assert!(rows.iter().all(|row| row[16] == "ok"));
+    assert!(rows.iter().all(|row| row[17] == "ok"));
+    // The sum of all energies.
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let sum = |row: &[&str]| number(row[3]) + number(row[4]) + number(row[5]);
+    assert!(rows.iter().all(|row| number(row[16]) == sum(row)), "{table}");
+    assert!(rows.iter().any(|row| number(row[4]) > 0.0 && number(row[5]) > 0.0), "{table}");
 }
 
 /// Each number stands below its name.
@@ -195,14 +201,67 @@ fn a_run_that_diverges_is_a_result() {
     assert!(place.read("output/wild/diagnostics.csv").trim_end().ends_with(",diverged"));
 }
 
+/// What `docs/files.md` lists in the section of a file, from the first column of its table.
+fn documented(file: &str) -> Vec<String> {
+    let text = include_str!("../../docs/files.md");
+    let section = text.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
+    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
+    cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
+}
+
+#[test]
+fn everything_in_the_files_is_documented() {
+    let place = Place::new();
+    let own = "springs = \"edges+one-diagonal\" }\nstep = \"T/7\"";
+    place.write("small.toml", &SMALL.replace("springs = \"edges+one-diagonal\" }", own));
+    place.run("simulate small.toml --states").good();
+    let heads: Vec<_> = HEADS.split(',').collect();
+    assert_eq!(documented("diagnostics.csv"), heads);
+    // Every number but counts and ratios has a unit.
+    for head in heads.iter().filter(|head| !["run", "frame", "turned_over", "volume_ratio", "status"].contains(head)) {
+        let row = include_str!("../../docs/files.md").lines().find(|line| line.contains(&format!("`{head}`"))).unwrap();
+        assert!(!row.split('|').nth(2).unwrap().trim().is_empty(), "{row}");
+    }
+
+    let file = std::fs::File::open(place.path("output/small/states.npz")).unwrap();
+    let archive = zip::ZipArchive::new(file).unwrap();
+    let general = |name: &str| {
+        let name = name.trim_end_matches(".npy");
+        name.split_once('.').map_or(name.to_owned(), |(_, quantity)| format!("NAME.{quantity}"))
+    };
+    let mut arrays: Vec<_> = archive.file_names().map(|name| general(name.unwrap_or_default().as_ref())).collect();
+    let mut told = documented("states.npz");
+    told.sort();
+    arrays.sort();
+    arrays.dedup();
+    assert_eq!(told, arrays);
+
+    let run = place.json("output/small/run.json");
+    assert_eq!(documented("run.json"), run.as_object().unwrap().keys().cloned().collect::<Vec<_>>());
+
+    let (text, states) = (String::new, vec![(String::new(), String::new())]);
+    let tags = Tags { scene: text(), states, frame: 0, time: 0.0, version: text(), adapter: text() };
+    let picture = encode([1, 1], &[0; 3], &tags);
+    let names = picture.windows(11).enumerate().filter(|(_, bytes)| bytes == b"localshape:");
+    let name = |at: usize| picture[at..].split(|&byte| byte == 0).next().expect("a keyword").to_vec();
+    let names: Vec<_> = names.map(|(at, _)| String::from_utf8(name(at)).expect("a keyword")).collect();
+    assert_eq!(documented("frame_00000.png"), names);
+}
+
 /// One array of `states.npz`: its head and its numbers.
 fn array(place: &Place, file: &str, name: &str) -> (String, Vec<f64>) {
+    let (head, numbers) = raw(place, file, name);
+    (head, numbers.into_iter().map(f64::from_le_bytes).collect())
+}
+
+/// The same with eight bytes for each number.
+fn raw(place: &Place, file: &str, name: &str) -> (String, Vec<[u8; 8]>) {
     let file = std::fs::File::open(place.path(file)).expect("an archive");
     let mut archive = zip::ZipArchive::new(file).expect("a whole archive");
     let mut bytes = Vec::new();
     archive.by_name(&format!("{name}.npy")).expect("the array").read_to_end(&mut bytes).expect("its bytes");
     let length = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    let numbers = bytes[length..].chunks_exact(8).map(|number| f64::from_le_bytes(number.try_into().unwrap()));
+    let numbers = bytes[length..].chunks_exact(8).map(|number| number.try_into().unwrap());
     (String::from_utf8_lossy(&bytes[10..length]).trim_end().to_owned(), numbers.collect())
 }
 
@@ -224,6 +283,65 @@ fn states_of_every_frame() {
     assert_eq!(time, times);
     // The lowest nodes start on the floor.
     assert_eq!(position[..36].chunks(3).map(|node| node[1]).fold(f64::INFINITY, f64::min), 0.0);
+}
+
+/// Whoever has the states can draw them and knows their masses.
+#[test]
+fn states_come_with_their_body() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --states").good();
+    let file = "output/small/states.npz";
+    let (head, rest) = array(&place, file, "rest");
+    assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (12, 3), }");
+    assert_eq!((&rest[..3], &rest[33..]), (&[-0.1, 0.0, -0.05][..], &[0.1, 0.1, 0.05][..]));
+    let (head, mass) = array(&place, file, "mass");
+    assert_eq!((head.as_str(), mass), ("{'descr': '<f8', 'fortran_order': False, 'shape': (12,), }", vec![1.0; 12]));
+    let indices = |file: &str, name| {
+        let (head, numbers) = raw(&place, file, name);
+        (head, numbers.into_iter().map(i64::from_le_bytes).collect::<Vec<_>>())
+    };
+    let (head, elements) = indices(file, "elements");
+    assert_eq!(head, "{'descr': '<i8', 'fortran_order': False, 'shape': (2, 8), }");
+    assert_eq!(elements, [0, 1, 3, 4, 6, 7, 9, 10, 1, 2, 4, 5, 7, 8, 10, 11]);
+    // Ten faces bound the two cubes; the one between them does not.
+    let (head, faces) = indices(file, "faces");
+    assert_eq!(head, "{'descr': '<i8', 'fortran_order': False, 'shape': (10, 4), }");
+    let middle = [1, 4, 7, 10];
+    assert!(faces.chunks(4).all(|face| !middle.iter().all(|node| face.contains(node))), "{faces:?}");
+    let at = |node: i64, axis: usize| rest[3 * node as usize + axis];
+    for face in faces.chunks(4) {
+        // Counter-clockwise from outside: the area looks away from the middle of the body.
+        let edge = |from: usize, axis: usize| at(face[from + 1], axis) - at(face[from], axis);
+        let area = [0, 1, 2].map(|axis| {
+            let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+            edge(0, a) * edge(1, b) - edge(0, b) * edge(1, a)
+        });
+        let from_middle: f64 = (0..3).map(|axis| area[axis] * (at(face[0], axis) - [0.0, 0.05, 0.0][axis])).sum();
+        assert!(from_middle > 0.0, "{face:?}");
+    }
+
+    // Short rows end in -1; a body of bars has no faces.
+    let other =
+        SMALL.replace("lattice = { cells = [2, 1, 1], side = 0.1 }", "disc = { rings = 2, sectors = 3, radius = 0.1 }");
+    let other = other.replace("[0, -9.8, 0]", "[0, -9.8]").replace("[0, -2, 0]", "[0, -2]");
+    place.write("disc.toml", &other);
+    place.write(
+        "bars.toml",
+        &other.replace("disc = { rings = 2, sectors = 3, radius", "bars = { count = 2, direction = [1, 0], length"),
+    );
+    place.run("simulate disc.toml bars.toml --states -o both").good();
+    let (head, elements) = indices("both/disc/states.npz", "elements");
+    assert_eq!(head, "{'descr': '<i8', 'fortran_order': False, 'shape': (6, 4), }");
+    assert_eq!((&elements[..4], &elements[12..16]), (&[0, 1, 2, -1][..], &[1, 4, 5, 2][..]));
+    assert_eq!(array(&place, "both/disc/states.npz", "rest").1.len(), 7 * 3);
+    assert_eq!(indices("both/bars/states.npz", "elements").1, [0, 1, 1, 2]);
+    let (head, faces) = indices("both/bars/states.npz", "faces");
+    assert_eq!((head.as_str(), faces.len()), ("{'descr': '<i8', 'fortran_order': False, 'shape': (0, 3), }", 0));
+    if let Some(python) = crate::support::numpy() {
+        let script = "import numpy; a = numpy.load('both/disc/states.npz'); print(a['elements'].shape, a['mass'].sum(), a['Local shape.position'].shape)";
+        let output = python(place.path(".").as_path(), script);
+        assert_eq!(output, "(6, 4) 7.0 (7, 7, 3)\n");
+    }
 }
 
 #[test]
@@ -258,5 +376,5 @@ fn states_of_runs_with_steps_of_their_own() {
     place.run("simulate own.toml --states --only Mass-spring").good();
     assert_eq!(array(&place, file, "time").1, recorded);
     let archive = zip::ZipArchive::new(std::fs::File::open(place.path(file)).unwrap()).unwrap();
-    assert_eq!(archive.len(), 3, "it has no second time");
+    assert_eq!(archive.len(), 3 + 4, "it has no second time");
 }

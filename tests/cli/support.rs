@@ -223,3 +223,20 @@ impl Ran {
 pub(crate) fn skip(why: &str) {
     eprintln!("SKIPPED: {why}");
 }
+
+/// What runs a script in a folder by a Python that has NumPy, and returns what it prints; `None`, with a notice, if there is
+/// no such Python.
+pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
+    let run = |folder: &Path, script: &str| {
+        Command::new("python3").args(["-c", script]).current_dir(folder).stdin(Stdio::null()).output()
+    };
+    if !run(Path::new("."), "import numpy").is_ok_and(|output| output.status.success()) {
+        skip("there is no Python with NumPy");
+        return None;
+    }
+    Some(move |folder: &Path, script: &str| {
+        let output = run(folder, script).expect("Python starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).expect("text")
+    })
+}

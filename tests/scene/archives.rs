@@ -231,6 +231,177 @@ fn files_that_are_no_archives() {
     wrong(&damaged, &["`body.npz: nodes` cannot be read, the file is damaged or cut short"]);
 }
 
+/// A method of compression written into the heads of all entries, the local ones and those of the directory.
+fn said_to_be_compressed_by(method: u16, mut bytes: Vec<u8>) -> Vec<u8> {
+    for at in 0..bytes.len() - 12 {
+        match &bytes[at..at + 4] {
+            b"PK\x03\x04" => bytes[at + 8..at + 10].copy_from_slice(&method.to_le_bytes()),
+            b"PK\x01\x02" => bytes[at + 10..at + 12].copy_from_slice(&method.to_le_bytes()),
+            _ => {}
+        }
+    }
+    bytes
+}
+
+#[test]
+fn archives_of_other_compressions_are_not_called_damaged() {
+    for (method, name) in [(12, "bzip2"), (14, "lzma"), (93, "zstd")] {
+        let message = |array| {
+            format!(
+                "`body.npz: {array}` is compressed by {name}, which is not read; write it with numpy.savez or numpy.savez_compressed"
+            )
+        };
+        wrong(&said_to_be_compressed_by(method, with(|_| ())), &[&message("nodes"), &message("elements")]);
+    }
+}
+
+/// The head of an array may have any length, written with two bytes or with four.
+#[test]
+fn heads_of_every_length_and_version() {
+    let plain = good(&with(|_| ()), SCENE);
+    let in_archive = |nodes: &[u8]| {
+        let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        for (name, bytes) in [("nodes.npy", nodes), ("elements.npy", &square()[1].file())] {
+            zip.start_file(name, stored).unwrap();
+            zip.write_all(bytes).unwrap();
+        }
+        zip.finish().unwrap().into_inner()
+    };
+    // Padded to a length, and said to be as long as `told`.
+    let file = |version: u8, length: usize, told: u32| {
+        let Array { descr, shape, bytes, .. } = &square()[0];
+        let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
+        let mut file = vec![0x93, b'N', b'U', b'M', b'P', b'Y', version, 0];
+        match version {
+            1 => file.extend((told as u16).to_le_bytes()),
+            _ => file.extend(told.to_le_bytes()),
+        }
+        file.extend(format!("{head:<0$}\n", length - 1).bytes());
+        file.extend(bytes);
+        in_archive(&file)
+    };
+    for version in [1, 2, 3] {
+        for length in [70, 118, 255, 256, 300, 511, 1000, 4096] {
+            assert_eq!(good(&file(version, length, length as u32), SCENE).body, plain.body, "{version}, {length}");
+        }
+        // One that is a little shorter or longer than it says begins its numbers elsewhere.
+        for told in [117, 119, 126] {
+            wrong(&file(version, 118, told), &["`body.npz: nodes` has the shape (4, 2), which does not fit"]);
+        }
+        for (length, told) in [(118, 374), (118, 4097), (4097, 4097)] {
+            wrong(&file(version, length, told), &["`body.npz: nodes` has no whole head"]);
+        }
+    }
+    for version in [2, 3] {
+        // Longer than any file, by the third and the fourth byte alone.
+        for told in [118 + (1 << 16), 118 + (1 << 24)] {
+            wrong(&file(version, 118, told), &["`body.npz: nodes` has no whole head"]);
+        }
+    }
+    wrong(&file(4, 118, 118), &["`body.npz: nodes` is written in version 4 of NumPy's format; expected 1, 2 or 3"]);
+}
+
+#[test]
+fn meshes_get_a_hint_to_what_is_read() {
+    let place = Place::new(&[]);
+    for ending in ["obj", "STL", "ply", "msh", "vtk", "vtu", "gltf", "glb", "node", "ele", "3mf"] {
+        let name = format!("mesh.{ending}");
+        std::fs::write(place.path().with_file_name(&name), "PK? v 0 0 0").unwrap();
+        let error = place.load(&SCENE.replace("body.npz", &name), &Limits::default()).unwrap_err();
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        let ending = ending.to_lowercase();
+        assert_eq!(
+            mistake.message,
+            format!("`{name}` is a mesh (.{ending}), which is not read; expected a NumPy archive (.npz)")
+        );
+        let help = mistake.help.as_deref().unwrap_or_default();
+        assert!(["numpy.savez", "`nodes`", "`elements`", "docs/bodies.md"].iter().all(|word| help.contains(word)));
+    }
+    wrong(
+        b"solid mesh",
+        &["`body.npz` is no NumPy archive (.npz), as numpy.savez writes them write it with numpy.savez"],
+    );
+}
+
+/// Twelve unit cubes in a row, each with its corners in an order: places in bit order.
+fn row_of_cubes(order: impl Fn(usize) -> [usize; 8]) -> Vec<u8> {
+    let node = |x: usize, y: usize, z: usize| (4 * x + 2 * z + y) as i64;
+    let nodes: Vec<f64> = (0..13 * 4).flat_map(|at| [at / 4, at % 2, at / 2 % 2].map(|to| to as f64)).collect();
+    let elements =
+        (0..12).flat_map(|cube| order(cube).map(|corner| node(cube + (corner & 1), corner >> 1 & 1, corner >> 2)));
+    let elements: Vec<i64> = elements.collect();
+    let arrays = [doubles("nodes", "(52, 3)", &nodes), indices("elements", "(12, 8)", &elements)];
+    archive(&arrays, CompressionMethod::Stored)
+}
+
+#[test]
+fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
+    let right = [0, 1, 2, 3, 4, 5, 6, 7];
+    let turned = [4, 5, 6, 7, 0, 1, 2, 3];
+    let around = [0, 1, 3, 2, 4, 5, 7, 6];
+    assert_eq!(good(&row_of_cubes(|_| right), SCENE).body.elements.len(), 12);
+    wrong(
+        &row_of_cubes(|_| turned),
+        &["all 12 elements of `body.npz: elements` are turned inside out at rest write convex = true in [body] \
+           for nodes in any order, or reorder those of each: hexahedra as [4, 5, 6, 7, 0, 1, 2, 3] of what they are now"],
+    );
+    wrong(
+        &row_of_cubes(|_| around),
+        &[
+            "all 12 elements of `body.npz: elements` list their corners around their sides, as VTK, Gmsh and Abaqus do; \
+           expected bit order: x fastest, then y, then z reorder those of each: [0, 1, 3, 2, 4, 5, 7, 6] of what they are \
+           now; or write convex = true in [body]",
+        ],
+    );
+    wrong(
+        &row_of_cubes(|_| [0, 1, 2, 3, 4, 6, 5, 7]),
+        &["all 12 elements of `body.npz: elements` have no volume: their nodes are in planes, or not in their order \
+           write convex = true in [body] for nodes in any order"],
+    );
+    // What is said to help does.
+    for order in [turned, around] {
+        good(&row_of_cubes(|_| order), &SCENE.replace("file =", "convex = true\nfile ="));
+        assert_eq!(order.map(|place| order[place]), right);
+    }
+    // One that is right shows that the others are meant one by one.
+    let error = Place::new(&row_of_cubes(|cube| if cube == 3 { right } else { turned }))
+        .load(SCENE, &Limits::default())
+        .unwrap_err();
+    assert_eq!(error.mistakes().len(), 11, "{error}");
+    assert!(error.mistakes()[3].message.starts_with("`body.npz: elements[4]` is turned inside out"), "{error}");
+    wrong(
+        &with(|arrays| arrays[1] = indices("elements", "(2, 3)", &[0, 2, 1, 0, 3, 2])),
+        &[
+            "all 2 elements of `body.npz: elements` are clockwise; expected counter-clockwise list the nodes of each backwards",
+        ],
+    );
+}
+
+/// Parts of a ring have some volume of either sign in another program's order, so that turning them over would seem to help.
+#[test]
+fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
+    let ring = |order: [usize; 8]| {
+        let node = |to: usize| {
+            let angle = std::f64::consts::TAU * (to / 4) as f64 / 12.0;
+            let radius = [0.15, 0.25][to / 2 % 2];
+            [(to % 2) as f64, radius * angle.cos(), radius * angle.sin()]
+        };
+        let nodes: Vec<f64> = (0..48).flat_map(node).collect();
+        let corner = |part: usize, corner: usize| (4 * ((part + (corner >> 2)) % 12) + (corner & 3)) as i64;
+        let elements: Vec<i64> = (0..12).flat_map(|part| order.map(|place| corner(part, place))).collect();
+        archive(
+            &[doubles("nodes", "(48, 3)", &nodes), indices("elements", "(12, 8)", &elements)],
+            CompressionMethod::Stored,
+        )
+    };
+    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).body.elements.len(), 12);
+    for other in [[0, 1, 3, 2, 4, 5, 7, 6], [4, 5, 7, 6, 0, 1, 3, 2]] {
+        wrong(&ring(other), &["all 12 elements of `body.npz: elements` list their corners around their sides"]);
+    }
+    wrong(&ring([4, 5, 6, 7, 0, 1, 2, 3]), &["all 12 elements of `body.npz: elements` are turned inside out"]);
+}
+
 #[test]
 fn a_file_that_is_not_there() {
     let place = Place::new(&with(|_| ()));

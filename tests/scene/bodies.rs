@@ -78,6 +78,37 @@ fn every_rule_makes_the_body_that_it_says() {
 }
 
 #[test]
+fn every_rule_puts_the_body_where_it_is_said_to_be() {
+    for (body, start) in [
+        ("lattice = { cells = [6, 2, 3], side = 0.1 }", "between (-0.3, 0, -0.15) and (0.3, 0.2, 0.15) m"),
+        ("lattice = { cells = [3, 2], side = [0.1, 0.2] }", "between (-0.15, 0) and (0.15, 0.4) m"),
+        (
+            "lattice = { cells = [4, 4, 4], side = 0.1, irregular = 0.3 }",
+            "between (-0.2, 0, -0.2) and (0.2, 0.4, 0.2) m",
+        ),
+        ("polygon = { sides = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
+        ("fan = { sides = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
+        ("disc = { rings = 2, sectors = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
+        ("polygon = { sides = 3, radius = 1 }", "between (-0.866, 0) and (0.866, 1.5) m"),
+        ("bars = { count = 3, length = 0.1, direction = [0, -2] }", "between (0, -0.3) and (0, 0) m"),
+        ("bars = { count = 3, length = 0.1, direction = [-1, 0, 0] }", "between (-0.3, 0, 0) and (0, 0, 0) m"),
+        ("nodes = [[1, 2], [2, 2], [1, 3]]\nelements = [[0, 1, 2]]", "between (1, 2) and (2, 3) m"),
+        // A quarter turn about the mean of the nodes, a shift, and then the height.
+        (
+            "lattice = { cells = [6, 2], side = 0.1 }\nrotation.angle = 1.5707963267948966\noffset = [1, 7]\nlowest = 0.5",
+            "between (0.9, 0.5) and (1.1, 1.1) m",
+        ),
+        (
+            "lattice = { cells = [6, 2], side = 0.1 }\nrotation.angle = 1.5707963267948966",
+            "between (-0.1, -0.2) and (0.1, 0.4) m",
+        ),
+    ] {
+        let summary = good(&format!("{WORLD}[body]\n{body}")).summary().to_string();
+        assert!(summary.contains(&format!("\n  start     {start}\n")), "{body}: {start}\n{summary}");
+    }
+}
+
+#[test]
 fn a_lattice_has_the_same_nodes_however_it_is_cut() {
     let nodes =
         |more: &str| good(&world(&format!("lattice = {{ cells = [4, 3, 2], side = 0.1{more} }}"), Dimension::Space));
@@ -98,6 +129,60 @@ fn the_seed_chooses_the_body_and_one_is_the_default() {
     assert_eq!(rest(", seed = 1"), one);
     let two = rest(", seed = 2");
     assert!(two.0 != one.0 && two.1 != one.1 && two.2 != one.2);
+}
+
+/// The corners of an element: the node there and those that span its area or volume with it.
+fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
+    match (dimension, nodes) {
+        (Dimension::Plane, 4) => (0..4).map(|at| vec![at, (at + 1) % 4, (at + 3) % 4]).collect(),
+        // All nodes are seen from the first one.
+        (Dimension::Plane, _) => (2..nodes).map(|at| vec![0, at - 1, at]).collect(),
+        (Dimension::Space, 4) => vec![vec![0, 1, 2, 3]],
+        (Dimension::Space, 5) => (0..4).map(|at| vec![at, (at + 1) % 4, (at + 3) % 4, 4]).collect(),
+        (Dimension::Space, 6) => {
+            let triangle = |at: usize| at / 3 * 3;
+            (0..6).map(|at| vec![at, triangle(at) + (at + 1) % 3, triangle(at) + (at + 2) % 3, (at + 3) % 6]).collect()
+        }
+        _ => (0..8).map(|at| vec![at, at ^ 1, at ^ 2, at ^ 4]).collect(),
+    }
+}
+
+/// Where nodes that are moved at random would make an element flat or turn it inside out, they are moved less far: each
+/// corner keeps a tenth of what it spans in the regular block. By chance alone one in ten thousand corners does not.
+#[test]
+fn irregular_blocks_have_no_element_that_is_nearly_flat() {
+    for (cells, elements) in [
+        ("[100, 100]", "cells"),
+        ("[100, 100]", "triangles"),
+        ("[100, 100]", "mixed"),
+        ("[20, 20, 20]", "cells"),
+        ("[20, 20, 20]", "tetrahedra"),
+        ("[20, 20, 20]", "mixed"),
+    ] {
+        let mut moved_far = 0;
+        for seed in 1..=2 {
+            let block = |irregular: f64| {
+                let rule = format!("cells = {cells}, side = 1, elements = '{elements}', irregular = {irregular}");
+                good(&format!("body.lattice = {{ {rule}, seed = {seed} }}\n{WORLD}")).body
+            };
+            let (regular, moved) = (block(0.0), block(0.4));
+            assert_eq!(regular.elements, moved.elements);
+            for element in regular.elements.iter() {
+                for corner in corners(element.len(), regular.dimension) {
+                    let spanned = |rest: &[DVec3]| {
+                        let at =
+                            |place: usize| rest[element[corner[place]] as usize] - rest[element[corner[0]] as usize];
+                        let area = at(1).cross(at(2));
+                        if corner.len() == 3 { area.z } else { area.dot(at(3)) }
+                    };
+                    let left = spanned(&moved.rest) / spanned(&regular.rest);
+                    assert!(left >= 0.1, "{cells} {elements}, seed {seed}, element {element:?}: {left}");
+                }
+            }
+            moved_far += regular.rest.iter().zip(&moved.rest).filter(|(a, b)| a.distance(**b) > 0.25).count();
+        }
+        assert!(moved_far > 0, "{cells} {elements}: and yet they are irregular");
+    }
 }
 
 /// These very bits, on every machine: a stored result of an irregular body is worth nothing without them.

@@ -38,6 +38,53 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (2, 0.1, Theme::Light));
 }
 
+/// Warnings are for what is probably not meant.
+#[test]
+fn shipped_scenes_have_no_warnings() {
+    let mut read = 0;
+    for folder in ["scenes", "scenes/elements", "tests/golden/primitives", "examples/golden-tests/scenes"] {
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                let warnings = Scene::load(&path, &Limits::default()).unwrap().warnings;
+                assert_eq!(warnings, [], "{}", path.display());
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 30, "{read}");
+}
+
+#[test]
+fn times_that_are_probably_not_meant_are_told() {
+    let warnings = |time: &str| {
+        let body = "body.lattice = { cells = [1, 1, 1], side = 0.1 }";
+        let run = "name = 'one'\nmodel = { kind = 'shape-based', stiffness = 1e4 }";
+        let told = good(&format!("{body}\n[[run]]\n{run}\n[time]\n{time}")).warnings;
+        told.into_iter().map(|one| (one.line, one.column, one.message)).collect::<Vec<_>>()
+    };
+    let told = |line, column, message: &str| vec![(line, column, message.to_owned())];
+    assert_eq!(
+        warnings("duration = 2\nframes_per_second = 1e-300"),
+        told(7, 21, "at 1e-300 frames per second, 2 s have a single frame, the start")
+    );
+    assert_eq!(
+        warnings("duration = 0.005"),
+        told(5, 1, "at 60 frames per second, 0.005 s have a single frame, the start")
+    );
+    assert_eq!(
+        warnings("duration = 1e9\nstep = 0.01\nframes_per_second = 1e-6"),
+        told(6, 12, "100 000 000 000 steps of all runs × 1 element take about 7 hours on one processor")
+    );
+    assert_eq!(
+        warnings("duration = 1e12\nstep = 0.001\nframes_per_second = 1e-9"),
+        told(6, 12, "1 000 000 000 000 000 steps of all runs × 1 element take about 8 years on one processor")
+    );
+    for time in ["duration = 0", "duration = 100", "duration = 1e4\nstep = 0.01", "duration = 1\nframes_per_second = 1"]
+    {
+        assert_eq!(warnings(time), [], "{time}");
+    }
+}
+
 #[test]
 fn the_block_is_turned_about_its_middle_and_set_down_on_its_lowest_node() {
     let scene = good(&shipped("fig4b.toml"));
@@ -216,6 +263,7 @@ fn a_summary_says_what_a_scene_holds() {
         format!(
             "  scene     3×3×3 cubes dropped on a floor (test)
   body      64 nodes, 27 cubes, 0.3 × 0.3 × 0.3 m, 64 kg
+  start     between (-0.153, 0, -0.153) and (0.153, 0.3119, 0.153) m
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s

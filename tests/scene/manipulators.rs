@@ -111,6 +111,34 @@ fn motions_that_a_step_cannot_follow() {
     case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.5001 }]", &[(3, 39, "it would jump")]);
 }
 
+/// A path that one run can follow is not one that all can: the longest step counts, whichever run has it.
+#[test]
+fn motions_that_the_longest_of_several_steps_cannot_follow() {
+    let run = |name: &str, step: &str| {
+        format!("{{ name = '{name}', step = {step}, model = {{ kind = 'shape-based', stiffness = 1e4 }} }}")
+    };
+    let world = |steps: [&str; 2]| {
+        let runs = format!("run = [{}, {}]", run("one", steps[0]), run("other", steps[1]));
+        WORLD
+            .lines()
+            .map(|line| if line.starts_with("run") { format!("{runs}\n") } else { format!("{line}\n") })
+            .collect::<String>()
+    };
+    let path = sphere("path.keys = [{ time = 0 }, { time = 0.005, shift = [1, 0, 0] }]");
+    let hold = "[[hold]]\nnodes = [1]\nfrom = 0.5\nuntil = 0.505";
+    let grab = "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.505 }]";
+    let swing = sphere("swing = { period = 0.03, shift = [1, 0, 0] }");
+    for steps in [["1e-3", "1e-2"], ["1e-2", "1e-3"]] {
+        let world = world(steps);
+        case(&world, &path, &[(5, 37, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
+        case(&world, hold, &[(4, 9, "lasts 5.000e-3 s, but a time step takes 1.000e-2 s")]);
+        case(&world, grab, &[(3, 39, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
+        case(&world, &swing, &[(5, 20, "it would swing once in 0.03 s, but a time step takes 1.000e-2 s")]);
+    }
+    let short = world(["1e-3", "2e-3"]);
+    [path.as_str(), hold, grab, &swing].iter().for_each(|added| drop(good(&format!("{short}{added}"))));
+}
+
 #[test]
 fn an_obstacle_turns_about_its_middle_or_another_point() {
     let pendulum = sphere(
@@ -232,7 +260,16 @@ fn nodes_that_are_none() {
     case(
         WORLD,
         "[[hold]]\nnodes = { of = [9, 9, 9], within = 1 }",
-        &[(2, 9, "is a region without nodes at the start")],
+        &[(
+            2,
+            9,
+            "is a region without nodes at the start the body starts between [-0.1, 0.1, -0.05] and [0.1, 0.2, 0.05] m",
+        )],
+    );
+    case(
+        PLANE,
+        "[[grab]]\nnodes = { low = [-1, -1], high = [1, 0] }\npath.keys = [{ time = 0 }, { time = 1 }]",
+        &[(2, 9, "without nodes at the start the body starts between [-0.1, 0.1] and [0.1, 0.2] m")],
     );
     case(WORLD, "[[hold]]\nnodes = { of = [9, 9, 9] }", &[(2, 9, "has `of` but no `within`")]);
     case(
@@ -241,6 +278,8 @@ fn nodes_that_are_none() {
         &[(4, 9, "ends at 1 s, not later than it begins at 2 s")],
     );
     case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 1 }]", &[(3, 1, "has a single key")]);
+    let backwards = "[[grab]]\nnodes = [1]\npath.keys = [{ time = 1 }, { time = 0.5 }]";
+    case(WORLD, backwards, &[(3, 37, "`grab[0].path.keys[1]` is at 0.5 s, not later than the key before it at 1 s")]);
     case(
         WORLD,
         "[[grab]]\nnodes = [1]\npath = { repeat = true, keys = [{ time = 1 }, { time = 2 }] }",
@@ -257,6 +296,36 @@ fn regions_hold_the_nodes_that_start_in_them() {
     ));
     assert_eq!(scene.grips[0].nodes, [5, 8, 10, 11]);
     assert_eq!(scene.grips[1].nodes, [0, 6]);
+}
+
+/// A bar of 2 × 2 cells, which stands on y = 0.
+#[test]
+fn a_box_that_takes_a_part_of_a_layer_is_told() {
+    let world = WORLD.replace("[2, 1, 1]", "[6, 2, 2]").replace(", offset = [0, 0.1, 0]", "");
+    let warnings = |region: &str| good(&format!("{world}[[hold]]\nnodes = {{ {region} }}")).warnings;
+    let told = warnings("low = [-0.31, -0.15, -0.15], high = [-0.29, 0.15, 0.15]");
+    let [warning] = &told[..] else { panic!("{told:?}") };
+    assert_eq!((warning.line, warning.column), (5, 9));
+    assert_eq!(warning.message, "`hold[0].nodes` takes 6 of the 9 nodes at x = -0.3 m");
+    let help = "this layer of the body starts between [-0.3, 0, -0.1] and [-0.3, 0.2, 0.1] m";
+    assert_eq!(warning.help.as_deref(), Some(help));
+    for whole in [
+        "low = [-0.31, -1, -1], high = [-0.29, 1, 1]",
+        // Two layers and a part of each; an edge; a row; a corner.
+        "low = [-0.31, -1, -0.15], high = [-0.15, 0.15, 1]",
+        "low = [-0.31, -0.01, -1], high = [-0.29, 0.01, 1]",
+        "low = [-0.31, 0.09, -0.05], high = [1, 0.11, 0.05]",
+        "low = [-0.31, -0.01, -0.15], high = [-0.29, 0.01, -0.05]",
+        "of = [-0.3, 0, 0], within = 0.12",
+    ] {
+        assert_eq!(warnings(whole), [], "{whole}");
+    }
+    let plane = "[[grab]]\nnodes = { low = [-0.2, 0.1], high = [0.01, 0.1] }\npath.keys = [{ time = 0 }, { time = 1 }]";
+    let told = good(&format!("{PLANE}{plane}")).warnings;
+    assert_eq!(told[0].message, "`grab[0].nodes` takes 2 of the 3 nodes at y = 0.1 m");
+    // A turned body has no such layers.
+    let turned = PLANE.replace("offset", "rotation = { angle = 0.3 }, offset");
+    assert_eq!(good(&format!("{turned}[[hold]]\nnodes = {{ low = [-1, 0], high = [0, 1] }}")).warnings, []);
 }
 
 #[test]

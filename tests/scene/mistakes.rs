@@ -55,6 +55,30 @@ pub(crate) fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize,
     }
 }
 
+/// The limit is told before anything is compared with anything, however many there are.
+#[test]
+fn more_runs_than_there_may_be() {
+    let run = "[[run]]\nname = 'Local shape'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n";
+    let error = bad(&format!("{SPACE}{}", run.repeat(100_000)));
+    let [limit, rest @ ..] = error.mistakes() else { panic!("{error}") };
+    assert_eq!((limit.line, limit.message.as_str()), (6, "`run` has 100001 entries; expected 1 to 256"));
+    // Those that are within the limit are checked.
+    assert_eq!(rest.len(), 255, "{error}");
+    assert!(rest[254].message.starts_with("two runs are called"), "{error}");
+    let error = bad(&format!("{SPACE}{}", run.replace("name", "nam").repeat(100_000)));
+    assert_eq!(error.mistakes().len(), 1 + 255, "{error}");
+}
+
+/// Each would be compared with all that are known, for minutes, and a thousand are kept.
+#[test]
+fn very_many_unknown_keys_are_counted() {
+    let keys = |from: usize| (from..from + 300_000).map(|at| format!("key{at} = 1\n")).collect::<String>();
+    let error = bad(&format!("{}{SPACE}{}", keys(0), keys(300_000)));
+    let SceneError::Mistakes(mistakes) = &error else { panic!("{error}") };
+    assert_eq!((mistakes.found.len(), mistakes.total), (1000, 600_000));
+    assert!(error.to_string().ends_with("and 599980 more"));
+}
+
 #[test]
 fn unknown_keys() {
     // A misspelt key is not missing as well.
@@ -340,6 +364,11 @@ fn solids_turned_inside_out_or_flat() {
     // The order of many mesh formats, around each square.
     case(
         "[[0, 1, 3, 2, 4, 5, 7, 6]]",
+        "`body.elements[0]` lists its corners around its sides; expected bit order: x fastest, then y, then z \
+         write [0, 1, 2, 3, 4, 5, 6, 7]",
+    );
+    case(
+        "[[0, 1, 2, 3, 4, 6, 5, 7]]",
         "has no volume: its nodes are in a plane, or not in their order list the corners in bit order",
     );
     case("[[0, 2, 1, 4]]", "turned inside out at rest write [0, 1, 2, 4]");

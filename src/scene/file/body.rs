@@ -26,13 +26,15 @@ use serde::{Deserialize, Serialize};
     }
 ))]
 pub(in crate::scene) struct BodyFile {
-    /// A block of equal cubes, or of equal squares in the plane, whole or cut into other elements.
+    /// A block of equal cubes, or of equal squares in the plane, whole or cut into other elements. It stands on y = 0, and
+    /// its middle is at x = 0 and z = 0.
     pub(in crate::scene) lattice: Option<LatticeFile>,
-    /// One regular polygon in the plane as a single element, with a side down on the level of the origin.
+    /// One regular polygon in the plane as a single element. It stands with a side on y = 0, its middle above the origin.
     pub(in crate::scene) polygon: Option<PolygonFile>,
-    /// A regular polygon in the plane, cut into triangles around a node in its middle.
+    /// A regular polygon in the plane, cut into triangles around a node in its middle. It stands like a `polygon`.
     pub(in crate::scene) fan: Option<PolygonFile>,
-    /// A disc in the plane: triangles around its middle, and rings of quadrilaterals around them.
+    /// A disc in the plane: triangles around its middle, and rings of quadrilaterals around them. It stands like a
+    /// `polygon`.
     pub(in crate::scene) disc: Option<DiscFile>,
     /// Two-node elements end to end, beginning at the origin.
     pub(in crate::scene) bars: Option<BarsFile>,
@@ -73,7 +75,7 @@ pub(in crate::scene) struct BodyFile {
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
-    /// A turn about the mean of the nodes before the start.
+    /// A turn about the mean of the nodes before the start. Default: none.
     pub(in crate::scene) rotation: Option<RotationFile>,
     /// A shift after the turn (m). Default: none.
     pub(in crate::scene) offset: Option<Coordinates>,
@@ -151,8 +153,8 @@ pub(in crate::scene) struct SpinFile {
     pub(in crate::scene) rate: f64,
 }
 
-/// A block of equal cells standing on the level of the origin, its middle above (in the plane: at) the origin.
-/// Nodes are numbered with x fastest, then y, then z.
+/// A block of equal cells. It stands on y = 0, and its middle is at x = 0 and z = 0: six cells of 0.1 m along x reach from
+/// -0.3 m to 0.3 m. Nodes are numbered with x fastest, then y, then z.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct LatticeFile {
@@ -205,7 +207,7 @@ pub(in crate::scene) enum CellsFile {
     Mixed,
 }
 
-/// A regular polygon. Its lowest side lies on the level of the origin, its middle above it; its corners are numbered
+/// A regular polygon. Its lowest side lies on y = 0, its middle is above the origin; its corners are numbered
 /// counter-clockwise from the left end of that side, after the node in the middle if there is one.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

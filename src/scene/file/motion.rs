@@ -76,7 +76,7 @@ pub(in crate::scene) struct GrabFile {
     pub(in crate::scene) path: MotionFile,
 }
 
-/// Some nodes of a body: a list, or those in a region at the start.
+/// Some nodes of a body: a list, or those in a region at the start. `localshape check` prints where the body starts.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum NodesFile {

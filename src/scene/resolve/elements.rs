@@ -2,7 +2,7 @@
 
 use super::lists::{Lists, Place};
 use crate::scene::report::Report;
-use crate::scene::words::count;
+use crate::scene::words::{count, list};
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
@@ -21,6 +21,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let mut held = vec![false; node_count];
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
+    let mut disorder = Disorder::default();
     for (at, element) in elements.iter().enumerate() {
         if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
@@ -28,9 +29,10 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         }
         element.iter().for_each(|&node| held[node as usize] = true);
         if !repeated(place, "elements", at, element, &mut known, report) && !flawed {
-            lists.check_extent(at, element, solids, report);
+            lists.check_extent(at, element, solids, &mut disorder, report);
         }
     }
+    disorder.tell(lists, report);
     known.clear();
     for (at, spring) in springs.iter().flatten().enumerate() {
         if check_indices(place, "springs", at, spring, node_count, report) {
@@ -52,7 +54,14 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
 
 impl Lists {
     /// Reports an element without extent, inside out or clockwise.
-    fn check_extent(&self, at: usize, element: &[u32], solids: Solids, report: &mut Report<'_>) {
+    fn check_extent(
+        &self,
+        at: usize,
+        element: &[u32],
+        solids: Solids,
+        disorder: &mut Disorder,
+        report: &mut Report<'_>,
+    ) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
@@ -63,7 +72,7 @@ impl Lists {
             return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
         }
         let kind = topology::kind(self.dimension, solids, element.len());
-        let (whole, flat) = match kind {
+        let whole = match kind {
             // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
@@ -79,28 +88,143 @@ impl Lists {
                 }
                 return;
             }
-            ElementKind::Polygon => (size * size, "no area: its nodes are on a line, or its sides cross"),
-            _ => (size * size * size, "no volume: its nodes are in a plane, or not in their order"),
+            ElementKind::Polygon => size * size,
+            _ => size * size * size,
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
-        if measure.abs() <= FLAT * whole {
-            let help = match kind {
-                ElementKind::Polygon => None,
-                ElementKind::Hexahedron => Some("list the corners in bit order: x fastest, then y, then z".to_owned()),
-                _ => Some("write convex = true in [body] for nodes in any order".to_owned()),
-            };
-            tell(format!("`{name}` has {flat}"), help);
+        disorder.ordered += 1;
+        let around = || volume_by_faces(kind, &reordered(element, &AROUND), &self.nodes);
+        // A sound hexahedron read in the other order is wound into itself and has hardly any volume, of either sign.
+        if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
+            disorder.found.push((at, Wrong::Around, kind));
+        } else if measure.abs() <= FLAT * whole {
+            disorder.found.push((at, Wrong::Flat, kind));
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
             let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
             tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
-            let (what, turned) = mended(kind, element);
-            let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
-            tell(format!("`{name}` is {what}"), Some(help));
+            disorder.found.push((at, Wrong::Turned, kind));
         }
     }
 }
+
+/// The order in which other programs list the corners of a hexahedron, around one side and then around the other; and the
+/// way back.
+const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+fn reordered(nodes: &[u32], order: &[usize]) -> Vec<u32> {
+    order.iter().map(|&place| nodes[place]).collect()
+}
+
+/// What is wrong with the nodes of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wrong {
+    Flat,
+    Around,
+    Turned,
+}
+
+/// Elements whose nodes are probably not in the order that is expected of them.
+#[derive(Debug, Default)]
+struct Disorder {
+    /// How many elements there are of which an order is expected.
+    ordered: usize,
+    /// Place, what is wrong, and kind of each.
+    found: Vec<(usize, Wrong, ElementKind)>,
+}
+
+impl Disorder {
+    /// Reports each; all at once, if all elements have the same mistake: it is one of whatever wrote them.
+    fn tell(self, lists: &Lists, report: &mut Report<'_>) {
+        let place = &lists.place;
+        match self.common(lists) {
+            Some((message, help)) => place.tell(report, "elements", &[], message, help),
+            None => {
+                for (at, wrong, kind) in self.found {
+                    // There may be millions.
+                    if !report.only_counted() {
+                        let (message, help) = told(lists, at, wrong, kind);
+                        place.tell(report, "elements", &[at], message, help);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Message and help for all elements, if there are several and all have the same mistake.
+    fn common(&self, lists: &Lists) -> Option<(String, String)> {
+        let &(_, wrong, _) = self.found.first()?;
+        if self.ordered < 2 || self.found.len() < self.ordered || self.found.iter().any(|one| one.1 != wrong) {
+            return None;
+        }
+        let (what, help) = match (wrong, lists.dimension) {
+            // A polygon without area has no order in which it has one.
+            (Wrong::Flat, Dimension::Plane) => return None,
+            (Wrong::Turned, Dimension::Plane) => {
+                ("are clockwise; expected counter-clockwise", "list the nodes of each backwards".to_owned())
+            }
+            (Wrong::Flat, Dimension::Space) => {
+                ("have no volume: their nodes are in planes, or not in their order", CONVEX.to_owned())
+            }
+            (Wrong::Around, _) => (
+                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected bit order: x fastest, then y, then z",
+                format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}"),
+            ),
+            (Wrong::Turned, Dimension::Space) => {
+                let mut orders: Vec<String> = Vec::new();
+                for &(_, _, kind) in &self.found {
+                    let (name, nodes) = match kind {
+                        ElementKind::Tetrahedron => ("tetrahedra", 4),
+                        ElementKind::Pyramid => ("pyramids", 5),
+                        ElementKind::Wedge => ("wedges", 6),
+                        _ => ("hexahedra", 8),
+                    };
+                    let order = format!("{name} as {:?}", mended(kind, &Vec::from_iter(0..nodes)).1);
+                    if !orders.contains(&order) {
+                        orders.push(order);
+                    }
+                }
+                let orders = list(&orders, "and", str::to_owned);
+                let help = format!("{CONVEX}, or reorder those of each: {orders} of what they are now");
+                ("are turned inside out at rest", help)
+            }
+        };
+        let (count, name) = (count(self.ordered as u128), lists.place.name("elements", &[]));
+        Some((format!("all {count} elements of `{name}` {what}"), help))
+    }
+}
+
+/// What is wrong with one element, and what helps.
+fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
+    let (name, element) = (lists.place.name("elements", &[at]), &lists.elements[at]);
+    match (wrong, kind) {
+        (Wrong::Flat, ElementKind::Polygon) => {
+            (format!("`{name}` has no area: its nodes are on a line, or its sides cross"), None)
+        }
+        (Wrong::Flat, _) => {
+            let help = match kind {
+                ElementKind::Hexahedron => "list the corners in bit order: x fastest, then y, then z",
+                _ => CONVEX,
+            };
+            let message = format!("`{name}` has no volume: its nodes are in a plane, or not in their order");
+            (message, Some(help.to_owned()))
+        }
+        (Wrong::Around, _) => {
+            let expected = "expected bit order: x fastest, then y, then z";
+            let message = format!("`{name}` lists its corners around its sides; {expected}");
+            (message, Some(format!("write {:?}", reordered(element, &AROUND))))
+        }
+        (Wrong::Turned, _) => {
+            let (what, turned) = mended(kind, element);
+            let help = if turned.len() <= 12 { format!("write {turned:?}") } else { "list its nodes backwards".into() };
+            (format!("`{name}` is {what}"), Some(help))
+        }
+    }
+}
+
+/// What helps against every order.
+const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
 /// The most nodes of an element whose faces are those of its convex hull: finding them takes seconds from there on.
 const MOST_IN_HULL: usize = 10_000;

@@ -4,9 +4,13 @@ use super::body::ResolvedBody;
 use super::{motion, vector};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::report::{Report, Way, written};
+use crate::scene::summary::corners;
+use crate::scene::words::{count, short};
+use crate::sim::body::{Dimension, bounds};
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;
-use std::collections::HashMap;
+use glam::DVec3;
+use std::collections::{BTreeMap, HashMap};
 
 /// The grips, holds first, or `None` after reporting every mistake in them.
 pub(super) fn resolve(
@@ -42,7 +46,7 @@ pub(super) fn resolve(
         let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
         let [from, until] =
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
-        if until <= from {
+        if typed.path.keys.len() == 1 {
             let message =
                 format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be let go at once");
             report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are".to_owned());
@@ -80,13 +84,17 @@ fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_
     }
     for (second, (words, path, grip)) in named.iter().enumerate() {
         // One node says it all: others of the same two hands follow from the same mistake.
-        let clash = |first: usize| {
+        let mut clashes: BTreeMap<usize, u32> = BTreeMap::new();
+        for &node in &grip.nodes {
+            for &first in holders[&node].iter().take_while(|&&first| first < second) {
+                let other = &named[first].2;
+                if grip.from.max(other.from) < grip.until.min(other.until) {
+                    clashes.entry(first).or_insert(node);
+                }
+            }
+        }
+        for (first, node) in clashes {
             let other = &named[first].2;
-            let together = grip.from.max(other.from) < grip.until.min(other.until);
-            let shared = || grip.nodes.iter().find(|node| holders[node].contains(&first));
-            together.then(shared).flatten().map(|&node| (first, node, other))
-        };
-        for (first, node, other) in (0..second).filter_map(clash) {
             let (from, until) = (grip.from.max(other.from), grip.until.min(other.until));
             let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
             let message = format!("node {node} is {} and {words} at once, from {from} s {until}", named[first].0);
@@ -141,16 +149,51 @@ fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &m
                 report.at(&[path, &[Way::Key("low")]].concat(), message, None);
                 return None;
             }
-            let is_inside = |at: &glam::DVec3| at.cmpge(low).all() && at.cmple(high).all();
-            (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect()
+            let is_inside = |at: &DVec3| at.cmpge(low).all() && at.cmple(high).all();
+            let nodes: Vec<u32> = (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect();
+            warn_of_rest(&nodes, position, dimension, path, report);
+            nodes
         }
         // The structure of the file has been checked.
         _ => return None,
     };
     if nodes.is_empty() {
         let message = format!("`{}` is a region without nodes at the start", written(path));
-        report.at(path, message, "make it larger, or move it to where the body starts".to_owned());
+        let help = format!("the body starts {}", between(position, dimension));
+        report.at(path, message, help);
         return None;
     }
     Some(nodes)
+}
+
+/// Warns of a box that takes some nodes of a plane layer and leaves others, as one does that was typed for a body that
+/// stands elsewhere. Nodes in a row are not meant as a layer.
+fn warn_of_rest(nodes: &[u32], position: &[DVec3], dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) {
+    let axes = if dimension == Dimension::Plane { 2 } else { 3 };
+    let (low, high) = bounds(position);
+    let close = 1e-9 * (high - low).max_element();
+    let taken: Vec<DVec3> = nodes.iter().map(|&node| position[node as usize]).collect();
+    let (first, last) = bounds(&taken);
+    let mut flat = (0..axes).filter(|&axis| last[axis] - first[axis] <= close);
+    let (Some(axis), None) = (flat.next(), flat.next()) else { return };
+    let in_layer = |at: &&DVec3| (at[axis] - first[axis]).abs() <= close;
+    let layer: Vec<DVec3> = position.iter().filter(in_layer).copied().collect();
+    if taken.len() < layer.len() {
+        let message = format!(
+            "`{}` takes {} of the {} nodes at {} = {} m",
+            written(path),
+            count(taken.len() as u128),
+            count(layer.len() as u128),
+            ["x", "y", "z"][axis],
+            short(first[axis])
+        );
+        report.warn(path, message, format!("this layer of the body starts {}", between(&layer, dimension)));
+    }
+}
+
+/// The box around points in words.
+fn between(points: &[DVec3], dimension: Dimension) -> String {
+    let words = |corner: Vec<f64>| corner.into_iter().map(short).collect::<Vec<_>>().join(", ");
+    let [low, high] = corners(points, dimension).map(words);
+    format!("between [{low}] and [{high}] m")
 }

@@ -124,10 +124,16 @@ impl Lists {
             whole(report, message, similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
             return None;
         }
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if MESHES.contains(&ending.as_str()) {
+            let message = format!("is a mesh (.{ending}), which is not read; expected a NumPy archive (.npz)");
+            whole(report, message, Some(EXPECTED.to_owned()));
+            return None;
+        }
         let npz = match Npz::open(&path) {
             Ok(npz) => npz,
             Err(message) => {
-                whole(report, message, None);
+                whole(report, message, Some(EXPECTED.to_owned()));
                 return None;
             }
         };
@@ -178,6 +184,14 @@ impl Lists {
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
+
+/// Endings of files of meshes.
+const MESHES: [&str; 15] =
+    ["obj", "stl", "ply", "off", "msh", "mesh", "vtk", "vtu", "gltf", "glb", "node", "ele", "inp", "fbx", "3mf"];
+
+/// What to do about a file that is no archive.
+const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
+                        -1 behind short ones); docs/bodies.md has an example";
 
 /// The arrays that an archive may have, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];

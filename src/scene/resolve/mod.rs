@@ -22,7 +22,7 @@ use super::limits::Limits;
 use super::report::{Report, Way, written};
 use super::structure::Checked;
 use super::view::{Camera, FontFiles};
-use super::words::count;
+use super::words::{count, short};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
 use lists::Lists;
@@ -178,7 +178,7 @@ pub(super) fn resolve(
         return None;
     }
     let (time, body) = (parts.time.as_ref()?, body?);
-    Some(Scene {
+    let scene = Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
         file: None,
@@ -192,7 +192,46 @@ pub(super) fn resolve(
         obstacles: obstacles?,
         grips: grips?,
         view: view?,
-    })
+        warnings: Vec::new(),
+    };
+    warn_of_time(&scene, report);
+    Some(scene)
+}
+
+/// Warns of a scene that shows nothing but its start, and of one whose end nobody may want to wait for.
+fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
+    /// What a corner of an element takes in a step (s), as measured on one cube.
+    const CORNER: f64 = 3e-8;
+    const LONG: f64 = 7200.0;
+    let last = scene.last_frame();
+    if last == 0 && scene.duration > 0.0 {
+        let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
+        let message = format!("at {rate} frames per second, {duration} s have a single frame, the start");
+        report.warn(
+            &[Way::Key("time"), Way::Key("frames_per_second")],
+            message,
+            "1 / duration or more show more".into(),
+        );
+    }
+    let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
+    let corners = scene.body.elements.indices().len().max(8);
+    let seconds = steps as f64 * corners as f64 * CORNER;
+    if seconds > LONG {
+        let hours = seconds / 3600.0;
+        let long = match hours {
+            ..48.0 => format!("{hours:.0} hours"),
+            ..10_000.0 => format!("{:.0} days", hours / 24.0),
+            _ => format!("{:.0} years", hours / 8766.0),
+        };
+        let (steps, elements) = (count(steps.into()), scene.body.elements.len());
+        let message = format!(
+            "{steps} steps of all runs × {} element{} take about {long} on one processor",
+            count(elements as u128),
+            if elements == 1 { "" } else { "s" }
+        );
+        let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
+        report.warn(&[Way::Key("time"), Way::Key("duration")], message, help);
+    }
 }
 
 /// The camera that a scene has if its file says nothing of one.

@@ -95,6 +95,10 @@ impl Walk<'_, '_, '_> {
     }
 
     pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>) {
+        // There may be millions, and to find a similar name takes long.
+        if self.report.only_counted() {
+            return;
+        }
         let known = known(schema);
         let place = match &self.path[..] {
             [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
@@ -129,7 +133,7 @@ fn known(schema: &Json) -> Vec<&str> {
 fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
     let known = known(schema);
     let unknown = table.keys().map(|key| key.get_ref().as_ref()).filter(|key| !known.contains(key));
-    unknown.into_iter().any(|key| nearest(key, &known) == Some(name))
+    unknown.take(1000).any(|key| nearest(key, &known) == Some(name))
 }
 
 /// The tables in which a key is known, as written: `view.camera`. If there is one near the top, no deeper ones.

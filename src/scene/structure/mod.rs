@@ -44,7 +44,9 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
             }
             (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
                 walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                Json::Array(walk.entries(inner, items))
+                // What is beyond the limit has been refused as a whole.
+                let most = inner["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
+                Json::Array(walk.entries(inner, &items[..most]))
             }
             (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => walk.table(inner, table, value.span()),
             (Some(inner), _) => walk.guarded(inner, value),
