@@ -5,8 +5,17 @@ use super::resolve;
 use super::view::{View, Visible};
 use super::{Run, Scene};
 use crate::sim::body::{Body, State};
+use crate::sim::integrate::Integrator;
+use crate::sim::model::ElasticModel;
 use glam::DVec3;
 use std::sync::Arc;
+
+impl Run {
+    /// A run of a name that is unique in its scene, with a time step (s). Its lines have the colour of its place.
+    pub fn new(name: &str, model: Arc<dyn ElasticModel>, integrator: Integrator, step: f64) -> Self {
+        Self { name: name.into(), model, integrator, step, place: 0, colour: None }
+    }
+}
 
 impl Scene {
     /// A body made in code, at rest in its rest shape: a second of it at 60 frames per second, without gravity, obstacles
@@ -30,18 +39,14 @@ impl Scene {
     /// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     /// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
     /// let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
-    /// let run = Run {
-    ///     name: "Local shape".into(),
-    ///     model: Arc::new(ShapeBased {
-    ///         stiffness: 1e4,
-    ///         damping: 0.0,
-    ///         passes: 2,
-    ///         rotation: Default::default(),
-    ///         damping_of: Default::default(),
-    ///     }),
-    ///     integrator: Integrator::SemiImplicitEuler,
-    ///     step: 1e-3,
+    /// let model = ShapeBased {
+    ///     stiffness: 1e4,
+    ///     damping: 0.0,
+    ///     passes: 2,
+    ///     rotation: Default::default(),
+    ///     damping_of: Default::default(),
     /// };
+    /// let run = Run::new("Local shape", Arc::new(model), Integrator::SemiImplicitEuler, 1e-3);
     /// let mut scene = Scene::new("tetrahedron", body, vec![run]);
     /// scene.gravity = -9.8 * DVec3::Y;
     /// scene.initial.velocity.fill(DVec3::Y);
@@ -54,7 +59,8 @@ impl Scene {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn new(title: &str, body: Body, runs: Vec<Run>) -> Self {
+    pub fn new(title: &str, body: Body, mut runs: Vec<Run>) -> Self {
+        runs.iter_mut().enumerate().for_each(|(place, run)| run.place = place);
         let side = resolve::mean_edge(&body);
         let visible = Visible::usual(body.dimension, body.len());
         let (columns, clock) = (resolve::columns(runs.len()), ViewFile::default().clock);
