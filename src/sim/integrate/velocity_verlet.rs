@@ -47,9 +47,9 @@ pub(super) fn advance(
     }
     acting.commit();
     // The way, and the velocity at its end if the acceleration stays.
-    for node in 0..acceleration.len() {
+    for (node, &acceleration) in acceleration.iter().enumerate() {
         let (from, old) = (state.position[node], state.velocity[node]);
-        let predicted = old + acceleration[node] * step.step;
+        let predicted = old + acceleration * step.step;
         next.velocity[node] = predicted;
         next.position[node] = from + (old + predicted) * (0.5 * step.step);
     }
