@@ -249,6 +249,25 @@ fn the_energy_of_the_nodes_is_that_of_the_body() {
     });
 }
 
+/// Integrators that evaluate forces once where velocities do not count must be told the truth.
+#[test]
+fn forces_depend_on_velocities_if_and_only_if_the_model_says_so() {
+    for body in bodies() {
+        for (damping, Case { model, .. }) in [0.0, 7.0]
+            .into_iter()
+            .flat_map(|damping| cases(&body, damping).into_iter().map(move |case| (damping, case)))
+        {
+            let mut noise = Noise(31);
+            let rest = deformed(&body, 0.05, 8);
+            let velocity = body.rest.iter().map(|_| in_dimension(&body, noise.vector())).collect();
+            let moving = State { velocity, ..rest.clone() };
+            let depends = forces(&body, model.as_ref(), &rest) != forces(&body, model.as_ref(), &moving);
+            assert_eq!(depends, damping > 0.0, "{model:?}");
+            assert_eq!(model.prepare(&body, &rest).is_damped(), depends, "{model:?}");
+        }
+    }
+}
+
 /// Each node sums what acts on it in the order of the elements or springs, to the bit: so states do not depend on how the
 /// work is shared out, and goldens are the same for every version that keeps this order.
 #[test]

@@ -84,18 +84,23 @@ impl Placed<'_> {
     /// The velocity is the way that the obstacle's own point has gone in the last step, over the step: what the steps
     /// of the nodes call velocity, too.
     pub fn contact(&self, point: DVec3) -> Option<(Contact, DVec3)> {
-        self.within(point, |_| 0.0)
+        self.surface(point).filter(|(contact, _)| contact.depth > 0.0)
     }
 
-    /// The same for points that are less than `margin` outside, of the obstacle's own place of the point (m).
-    fn within(&self, point: DVec3, margin: impl FnOnce(DVec3) -> f64) -> Option<(Contact, DVec3)> {
-        let shape = &self.obstacle.shape;
-        let own = self.moving.as_ref().map_or(point, |moving| moving.now.undo(moving.pivot, point));
+    /// The same also for points on the surface, to round-off.
+    fn surface(&self, point: DVec3) -> Option<(Contact, DVec3)> {
+        let (shape, farthest) = (&self.obstacle.shape, point.abs().max_element());
+        let Some(moving) = &self.moving else {
+            let contact = shape.surface(point);
+            return (contact.depth > -shape.round_off(farthest)).then_some((contact, DVec3::ZERO));
+        };
+        let own = moving.now.undo(moving.pivot, point);
         let Contact { depth, normal } = shape.surface(own);
-        if depth <= -margin(own) {
+        // Both places are rounded, and so is the way between them.
+        let farthest = farthest + own.abs().max_element() + moving.pivot.abs().max_element();
+        if depth <= -shape.round_off(farthest) {
             return None;
         }
-        let Some(moving) = &self.moving else { return Some((Contact { depth, normal }, DVec3::ZERO)) };
         let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
         Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
     }
@@ -109,7 +114,7 @@ impl Placed<'_> {
             // Nearly every scene stands on one, and most of its nodes are far above: its shape is asked for only once.
             (None, shape @ &Shape::Floor { normal, height }) => nodes.for_each(|(node, (position, velocity))| {
                 let depth = height - normal.dot(*position);
-                if depth > -shape.round_off(*position) {
+                if depth > -shape.round_off(position.abs().max_element()) {
                     let contact = Contact { depth, normal };
                     self.obstacle.push_out(contact, DVec3::ZERO, acceleration(node), position, velocity);
                 }
@@ -121,7 +126,7 @@ impl Placed<'_> {
     /// The rebound of one node that has moved in the step with an acceleration (m/s²): mirrored out with restitution, its
     /// slip braked by friction. A node on the surface, to round-off, rebounds if it approaches.
     pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
-        if let Some((contact, own)) = self.within(*position, |place| self.obstacle.shape.round_off(place)) {
+        if let Some((contact, own)) = self.surface(*position) {
             self.obstacle.push_out(contact, own, acceleration, position, velocity);
         }
     }

@@ -87,8 +87,9 @@ impl Shape {
         Contact { depth, normal }
     }
 
-    /// By how much round-off may put a point that lies on the surface to one side of it (m).
-    pub(super) fn round_off(&self, point: DVec3) -> f64 {
+    /// By how much round-off may put a point that lies on the surface to one side of it (m), where the point is no farther
+    /// than `farthest` (m) from the origin along an axis.
+    pub(super) fn round_off(&self, farthest: f64) -> f64 {
         /// Roundings of a depth, and of the place of a node that was put on the surface, with a margin of two.
         const ROUNDINGS: f64 = 16.0;
         let size = match *self {
@@ -97,7 +98,7 @@ impl Shape {
                 self.middle().abs().max_element() + Some(self.reach()).filter(|reach| reach.is_finite()).unwrap_or(0.0)
             }
         };
-        ROUNDINGS * f64::EPSILON * (size + point.abs().max_element())
+        ROUNDINGS * f64::EPSILON * (size + farthest)
     }
 
     /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.

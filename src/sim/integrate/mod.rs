@@ -19,8 +19,8 @@ pub enum Integrator {
     /// Eqs. (2) and (3) as printed, the second with the old velocity. It gains energy without bound and is here for
     /// study: at ΔT = T/10 an oscillation grows by 18 % a step.
     ExplicitEuler,
-    /// Velocity Verlet: symplectic without damping, of second order. It evaluates the forces once a step, and twice with
-    /// damping.
+    /// Velocity Verlet: symplectic without damping and rebounds, of second order. It evaluates the forces once a step, and
+    /// twice with damping.
     VelocityVerlet,
 }
 
