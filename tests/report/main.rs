@@ -205,8 +205,15 @@ fn nothing_is_fetched_and_nothing_hostile_runs() {
 }
 
 #[test]
-fn it_works_by_keys() {
+fn it_works_by_keys_and_by_pointer() {
     let Some((mut browser, _)) = browser_with(&sequence(), "") else { return };
+    it_works_by_keys(&mut browser);
+    browser.open(&sequence().page(), "");
+    browser.until("the pictures", LOADED);
+    it_works_by_pointer(&mut browser);
+}
+
+fn it_works_by_keys(browser: &mut Browser) {
     assert_eq!(browser.text(NAME), "020.png", "the first failure is shown first");
     for (key, held, name) in [
         ("ArrowRight", PLAIN, "030.png"),
@@ -293,22 +300,29 @@ fn it_works_by_keys() {
     assert_eq!(browser.complaints(), [""; 0]);
 }
 
+/// Both in one browser, whose start takes longer than either.
 #[test]
-fn the_slider_uncovers_the_other_picture() {
+fn pictures_lie_over_each_other() {
     let Some((mut browser, _)) = browser_with(&sequence(), "#picture=030.png&mode=slider") else { return };
+    the_slider_uncovers_the_other_picture(&mut browser);
+    browser.open(&sequence().page(), "#picture=040.png&mode=blink");
+    the_blink_blinks(&mut browser);
+}
+
+fn the_slider_uncovers_the_other_picture(browser: &mut Browser) {
     assert_eq!((browser.text(NAME), browser.text(MODE)), ("030.png".into(), "slider".into()));
-    let places = squares(&mut browser);
+    let places = squares(browser);
     // Half and half: the expected square at the left, the actual one at the right.
-    until_seen(&mut browser, places, [true, true]);
+    until_seen(browser, places, [true, true]);
     let [left, top, width, height] = browser.place(".view");
     let at = |part: f64| [left + part * width, top + 0.9 * height];
     browser.drag(at(0.5), at(0.99));
-    until_seen(&mut browser, places, [true, false]);
+    until_seen(browser, places, [true, false]);
     browser.drag(at(0.99), at(0.01));
-    until_seen(&mut browser, places, [false, true]);
+    until_seen(browser, places, [false, true]);
     browser.tab_to("divider");
     browser.press("End", PLAIN);
-    until_seen(&mut browser, places, [true, false]);
+    until_seen(browser, places, [true, false]);
     // In a picture that is larger than its view it is taken hold of near the divider; elsewhere the picture is moved.
     (0..3).for_each(|_| browser.press("+", PLAIN));
     let [left, top, width, height] = browser.place(".view");
@@ -323,12 +337,10 @@ fn the_slider_uncovers_the_other_picture() {
     assert_eq!(browser.complaints(), [""; 0]);
 }
 
-#[test]
-fn the_blink_blinks() {
-    let Some((mut browser, _)) = browser_with(&sequence(), "#picture=040.png&mode=blink") else { return };
-    let places = squares(&mut browser);
+fn the_blink_blinks(browser: &mut Browser) {
+    let places = squares(browser);
     for wanted in [[true, false], [false, true], [true, false]] {
-        until_seen(&mut browser, places, wanted);
+        until_seen(browser, places, wanted);
     }
     // Stopped, it stays at what it says that it shows; by hand, the other one comes.
     browser.press("b", PLAIN);
@@ -339,7 +351,7 @@ fn the_blink_blinks() {
             "Expected" => [true, false],
             other => [false, other == "Actual"],
         };
-        until_seen(&mut browser, places, wanted);
+        until_seen(browser, places, wanted);
         browser.press(" ", PLAIN);
     }
     // Who asked for less motion starts it himself.
@@ -354,9 +366,7 @@ fn the_blink_blinks() {
     assert_eq!(browser.complaints(), [""; 0]);
 }
 
-#[test]
-fn it_works_by_pointer() {
-    let Some((mut browser, _)) = browser_with(&sequence(), "") else { return };
+fn it_works_by_pointer(browser: &mut Browser) {
     // The strip: numbers under the pointer, the nearest picture by a click.
     let [left, top, width, height] = browser.place("#strip");
     browser.point([left + width - 20.0, top + height / 2.0]);
