@@ -62,5 +62,6 @@ pub mod picture;
 pub mod render;
 pub mod scene;
 pub mod sequence;
+mod shell;
 pub mod sim;
 pub mod table;

@@ -14,7 +14,7 @@ use crate::golden::draw::{DrawError, Subject, Wish, draw, usual_gpu};
 use crate::golden::{BlessError, Blessed, Comparison, ComparisonError, Side};
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
-use crate::output::{FolderLock, folder_of, write_whole};
+use crate::output::{FolderLock, OutputError, folder_of, is_folder, write_whole};
 #[cfg(feature = "render")]
 use crate::scene::Limits;
 use clap::{Args, ValueHint};
@@ -250,6 +250,12 @@ impl Compare {
 
 /// That the page may have this name: one that nothing has, or an earlier page.
 fn replaceable(path: &Path) -> Result<(), Failure> {
+    is_folder(folder_of(path)).map_err(|error| match error {
+        OutputError::NoFolder { path, what } => {
+            Failure::files(format!("--report: {} is {what}, not a folder; name a file elsewhere", path.display()))
+        }
+        error => error.into(),
+    })?;
     let mut start = [0; PAGE.len()];
     let mut is_page = || {
         let mut file = std::fs::File::open(path).ok()?;

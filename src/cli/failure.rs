@@ -74,7 +74,7 @@ impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         let status = match &error {
             // Another folder is to be chosen, and nothing was touched.
-            OutputError::Occupied { .. } | OutputError::InUse { .. } => Status::Usage,
+            OutputError::Occupied { .. } | OutputError::NoFile { .. } | OutputError::InUse { .. } => Status::Usage,
             OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
         Self { status, message: Some(with_causes(&error)) }

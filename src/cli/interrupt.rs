@@ -10,9 +10,9 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Listens from now on.
 ///
-/// A second Ctrl-C ends the program at once, with nothing half-written under its own name. But what follows the first
-/// request within a moment is the same request twice, as `timeout` sends it. Other signals only ever ask, for they come
-/// from programs, which have SIGKILL when they are in a hurry.
+/// Ctrl-C a second or more after the first request, whatever that was, ends the program at once, with nothing half-written
+/// under its own name. What follows within that second is the same request twice, as `timeout` sends it. Other signals
+/// only ever ask, for they come from programs, which have SIGKILL when they are in a hurry.
 pub(super) fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -25,10 +25,10 @@ pub(super) fn listen() {
     });
 }
 
-/// Requests within this time are one.
+/// Requests within this time from the first are one.
 const MOMENT: Duration = Duration::from_secs(1);
 
-/// What a second Ctrl-C ends the program with.
+/// What Ctrl-C ends the program with at once.
 const ENDED: i32 = Status::Interrupted as i32;
 
 /// Calls `request` for each signal that asks to end the program, saying whether it is Ctrl-C, until it says that the

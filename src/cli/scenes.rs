@@ -3,9 +3,9 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::golden::shell_word;
 use crate::output::{Folder, Look, OutputError, Replace};
 use crate::scene::{Limits, Scene, SceneError};
+use crate::shell;
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -122,7 +122,7 @@ impl RunOptions {
 
 /// The same command with `--overwrite`, which stands where no other word is taken for its own.
 fn overwriting(words: &[OsString]) -> String {
-    let words: Vec<_> = words.iter().map(|word| shell_word(&word.to_string_lossy())).collect();
+    let words: Vec<_> = words.iter().map(|word| shell::word(&word.to_string_lossy())).collect();
     let (program, rest) = words.split_at(words.len().min(2));
     [program, &["--overwrite".to_owned()], rest].concat().join(" ")
 }

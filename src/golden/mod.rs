@@ -48,7 +48,7 @@ pub use bless::{BlessError, Blessed};
 pub use distance::{Count, Distance, Machines};
 pub use picture::{PictureError, Pixels};
 pub use record::RECORD_FILE;
-pub(crate) use side::{Side, shell_word};
+pub(crate) use side::Side;
 pub use states::{Change, Course, Displacement, Moment, Moved, Numbers, StepChange};
 #[cfg(feature = "render")]
 pub use suite::Suite;

@@ -6,6 +6,7 @@ use super::picture::{self, PictureError, Pixels};
 use super::record::{RECORD_FILE, Record};
 use super::states::{State, States, Step};
 use crate::output::{Label, SUMMARY_FILE};
+use crate::shell;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -191,16 +192,7 @@ impl Side {
         let path = self.origin.to_string_lossy();
         // A name that begins like an option is none behind this.
         let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
-        shell_word(&path)
-    }
-}
-
-/// A word as it can be pasted into a command line.
-pub(crate) fn shell_word(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
+        shell::word(&path)
     }
 }
 

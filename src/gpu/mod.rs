@@ -157,8 +157,10 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device on the adapter that fits `choice`. On Unix, complaints of its driver about the lack of a window are
-    /// held back meanwhile: they go to the standard error of the whole process.
+    /// Opens a device on the adapter that fits `choice`.
+    ///
+    /// On Unix, standard error is held back meanwhile, for the whole process: what any thread says there is said once the
+    /// device is open, without the complaints of drivers about the lack of a window. [`adapters`] does the same.
     ///
     /// # Errors
     /// No adapter at all, none that fits, or one that cannot be used.

@@ -39,6 +39,14 @@ pub enum OutputError {
         /// What it is.
         what: &'static str,
     },
+    /// Something that is no file has the name of one of ours.
+    #[error("{} is {what}, not a file; move it away, or choose another folder with -o", path.display())]
+    NoFile {
+        /// Where it is.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+    },
     /// The folder holds files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
     Occupied {

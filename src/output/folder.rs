@@ -64,7 +64,8 @@ impl Folder {
     /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
     ///
     /// A folder with files of another scene, or with files of others under the names of ours, is refused, unless these
-    /// are what may be replaced. Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
+    /// are what may be replaced. What has a name of ours and is no file, such as a folder, is refused in any case.
+    /// Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
     /// a scene can be drawn in parts. But if frames are to be drawn, those that are there must have the same `look`,
     /// or the folder would hold no sequence. A folder that another program writes in is refused in any case.
     ///
@@ -165,19 +166,24 @@ struct Found {
     other: Option<Owner>,
     /// Title of this scene.
     title: String,
-    /// Names of ours that others have; and what has them, if it is no file.
-    foreign: Vec<(String, Option<&'static str>)>,
+    /// Names of ours that files of others have.
+    foreign: Vec<String>,
 }
 
 impl Found {
     fn in_folder(path: &Path, scene: &Whose, look: Option<&Look>) -> Result<Self, OutputError> {
-        let digest = scene.digest.as_str();
+        // Scenes made in code have no digest, and so nothing tells them apart.
+        let is_own = |digest: &str| !digest.is_empty() && digest == scene.digest;
         let name = scene.file.as_ref().and_then(|file| Some(file.file_name()?.to_string_lossy().into_owned()));
         let mut found = Self { title: scene.title.clone(), file: name.unwrap_or_default(), ..Self::default() };
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
-        let is_same_file =
-            |owner: &Owner| owner.file.is_some() && owner.file.as_deref().map(Path::new) == scene.file.as_deref();
-        let earlier = owner.as_ref().filter(|owner| owner.digest != digest && is_same_file(owner));
+        // Whoever moves a project moves its scenes and their output.
+        let is_same_file = |owner: &Owner| {
+            let moved = owner.relative_file.as_ref().and_then(|file| path.join(file).canonicalize().ok());
+            let files = [owner.file.as_ref().map(PathBuf::from), moved];
+            scene.file.is_some() && files.contains(&scene.file)
+        };
+        let earlier = owner.as_ref().filter(|owner| !is_own(&owner.digest) && is_same_file(owner));
         for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
             let entry = entry.map_err(OutputError::reading(path))?;
             let name = entry.file_name();
@@ -186,12 +192,20 @@ impl Found {
             if !is_record && !names_frame(name) {
                 continue;
             }
-            let kind = fs::metadata(entry.path()).map_err(OutputError::reading(&entry.path()))?;
-            if !kind.is_file() {
-                found.foreign.push((name.to_owned(), Some(kind_of(&kind))));
-            } else if !is_record {
+            let path = entry.path();
+            match fs::metadata(&path) {
+                Ok(kind) if !kind.is_file() => return Err(OutputError::NoFile { path, what: kind_of(&kind) }),
+                Ok(_) => {}
+                // A link to nothing can be replaced as any file.
+                Err(_) if path.is_symlink() => {
+                    found.foreign.push(name.to_owned());
+                    continue;
+                }
+                Err(error) => return Err(OutputError::reading(&path)(error)),
+            }
+            if !is_record {
                 match read_frame(&entry.path())? {
-                    Some((size, tags)) if tags.scene == digest => {
+                    Some((size, tags)) if is_own(&tags.scene) => {
                         let runs = tags.states.into_iter().map(|(_, run)| run).collect();
                         let own = Look { size, runs };
                         if look.is_some_and(|look| *look != own) {
@@ -203,18 +217,18 @@ impl Found {
                         found.earlier_frames.push(entry.path());
                     }
                     Some(_) => found.frames.push(entry.path()),
-                    None => found.foreign.push((name.to_owned(), None)),
+                    None => found.foreign.push(name.to_owned()),
                 }
             } else {
                 match &owner {
-                    Some(owner) if owner.digest == digest => {
+                    Some(owner) if is_own(&owner.digest) => {
                         if name == STATES_FILE {
                             found.states = Some(entry.path());
                         }
                     }
                     Some(_) if earlier.is_some() => found.earlier_records.push(entry.path()),
                     Some(_) => found.records.push(entry.path()),
-                    None => found.foreign.push((name.to_owned(), None)),
+                    None => found.foreign.push(name.to_owned()),
                 }
             }
         }
@@ -222,7 +236,7 @@ impl Found {
         // The summary last, see `inspect`.
         found.records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
         found.earlier_records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
-        found.other = owner.filter(|owner| owner.digest != digest);
+        found.other = owner.filter(|owner| !is_own(&owner.digest));
         Ok(found)
     }
 
@@ -255,9 +269,8 @@ impl Found {
         };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
             (0, true, []) => self.earlier().filter(|_| !may_replace_earlier).or(unlike),
-            (0, true, [(name, None)]) => Some(format!("{name}, which was not written by localshape")),
-            (0, true, [(name, Some(kind))]) => Some(format!("{name}, which is {kind}")),
-            (0, true, [(name, _), others @ ..]) => {
+            (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
+            (0, true, [name, others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))
             }
             (0, false, _) => Some(format!("the results of {another}")),
@@ -273,6 +286,7 @@ struct Owner {
     digest: String,
     title: String,
     file: Option<String>,
+    relative_file: Option<String>,
 }
 
 impl Owner {
@@ -283,13 +297,43 @@ impl Owner {
         let text = |key: &str| summary["scene"][key].as_str().map(str::to_owned);
         let ours = summary.get("localshape").is_some();
         let title = text("title").unwrap_or_default();
-        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file: text("file") }))
+        let (file, relative_file) = (text("file"), text("relative_file"));
+        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file, relative_file }))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::Summary;
+    use crate::sim::body::{Body, Dimension, Solids};
+    use crate::sim::integrate::Integrator;
+    use crate::sim::model::shape_based::ShapeBased;
+    use glam::DVec3;
+
+    /// They have no digest that could tell them apart.
+    #[test]
+    fn scenes_made_in_code_are_never_taken_for_each_other() {
+        let scene = |title: &str, side: f64| {
+            let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|node| side * node).to_vec();
+            let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
+            let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
+            let (rotation, damping_of) = Default::default();
+            let model = ShapeBased { stiffness: 1e4, damping: 0.0, passes: 2, rotation, damping_of };
+            let run = crate::scene::Run::new("run", std::sync::Arc::new(model), Integrator::SemiImplicitEuler, 1e-3);
+            Scene::new(title, body, vec![run])
+        };
+        let (one, other) = (scene("one", 1.0), scene("other", 2.0));
+        let place = tempfile::tempdir().unwrap();
+        let inspect = |scene, replace| Folder::inspect(place.path(), scene, None, replace);
+        inspect(&one, Replace::Nothing).unwrap().prepare(false).unwrap();
+        Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
+        for replace in [Replace::Nothing, Replace::Earlier] {
+            let message = inspect(&other, replace).unwrap_err().to_string();
+            assert!(message.contains("the results of another scene (“one”)"), "{message}");
+        }
+        inspect(&other, Replace::All).unwrap();
+    }
 
     #[test]
     fn frame_names() {

@@ -2,10 +2,15 @@
 //!
 //! The folder itself is locked. Programs on other machines that share it do not see that.
 
+use super::OutputError;
 use super::atomic::remove_leftovers;
-use super::{OutputError, SUMMARY_FILE};
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// So long one who takes a folder for itself may hold it before it does so in earnest: looking for leftovers takes
+/// milliseconds.
+const MOMENT: Duration = Duration::from_secs(1);
 
 /// A folder that this program writes in, locked until this is dropped. Where folders cannot be locked, nobody is
 /// kept out.
@@ -30,15 +35,16 @@ impl FolderLock {
         Ok(lock)
     }
 
-    /// Locks a folder, which exists, for one who writes files of its own in it beside those of others. While nobody else
-    /// writes in it, what killed programs have left unfinished in it goes, if it can.
+    /// Locks a folder, which exists, for one who writes files of its own in it beside those of others. Leftovers stay,
+    /// for they may be others' work.
     pub fn beside_others(path: &Path) -> Self {
         let lock = Self::open(path);
-        if lock.take(true) {
-            let _ = remove_leftovers(path);
+        let started = Instant::now();
+        // Whoever writes alone may be about to remove leftovers. Who still does so later has removed them, and needs not
+        // be waited for.
+        while !lock.take(false) && started.elapsed() < MOMENT {
+            std::thread::sleep(Duration::from_millis(5));
         }
-        // Not to be had where somebody writes alone, who has tidied up already.
-        lock.take(false);
         lock
     }
 
@@ -50,8 +56,17 @@ impl FolderLock {
         if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
     }
 
+    #[cfg(unix)]
     fn open(path: &Path) -> Self {
-        Self { folder: File::open(path).ok() }
+        use rustix::fs::{Mode, OFlags, open};
+        // To open a pipe is to wait for ever.
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+        Self { folder: open(path, flags, Mode::empty()).ok().map(File::from) }
+    }
+
+    #[cfg(not(unix))]
+    fn open(_: &Path) -> Self {
+        Self { folder: None }
     }
 
     /// Takes the lock for one alone or beside others; `false` if somebody else keeps it.
@@ -74,13 +89,7 @@ impl FolderLock {
 /// What is said of a folder that somebody else writes in.
 fn in_use(path: &Path) -> OutputError {
     let process = holder(path).map_or("another process".to_owned(), |id| format!("process {id}"));
-    let title = fs::read(path.join(SUMMARY_FILE)).ok().and_then(|bytes| {
-        let summary: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
-        let title = summary["scene"]["title"].as_str()?;
-        (summary["outcome"] == "unfinished").then(|| format!(" “{title}”"))
-    });
-    let what = format!("{process} is writing{} there", title.unwrap_or_default());
-    OutputError::InUse { path: path.to_owned(), what: what.into() }
+    OutputError::InUse { path: path.to_owned(), what: format!("{process} is writing there").into() }
 }
 
 /// The process that has locked a folder, where the system tells.
@@ -88,14 +97,9 @@ fn holder(path: &Path) -> Option<u32> {
     #[cfg(target_os = "linux")]
     {
         use std::os::unix::fs::MetadataExt;
-        let inode = fs::metadata(path).ok()?.ino().to_string();
-        // Such as `1: FLOCK  ADVISORY  WRITE 16548 fe:00:5309211 0 EOF`.
-        let locks = fs::read_to_string("/proc/locks").ok()?;
-        locks.lines().find_map(|line| {
-            let words: Vec<_> = line.split_whitespace().collect();
-            let is_it = *words.get(1)? == "FLOCK" && words.get(5)?.rsplit(':').next() == Some(inode.as_str());
-            is_it.then(|| words[4].parse().ok())?
-        })
+        let found = std::fs::metadata(path).ok()?;
+        let (major, minor) = (rustix::fs::major(found.dev()), rustix::fs::minor(found.dev()));
+        holder_in(&std::fs::read_to_string("/proc/locks").ok()?, &format!("{major:02x}:{minor:02x}:{}", found.ino()))
     }
     #[cfg(not(target_os = "linux"))]
     {
@@ -104,9 +108,20 @@ fn holder(path: &Path) -> Option<u32> {
     }
 }
 
+/// The process that has locked a file, which is named as in `/proc/locks` by its device and number, such as
+/// `fe:00:5309211` in `1: FLOCK  ADVISORY  WRITE 16548 fe:00:5309211 0 EOF`.
+#[cfg(target_os = "linux")]
+fn holder_in(locks: &str, file: &str) -> Option<u32> {
+    locks.lines().find_map(|line| {
+        let words: Vec<_> = line.split_whitespace().collect();
+        (*words.get(1)? == "FLOCK" && *words.get(5)? == file).then(|| words[4].parse().ok())?
+    })
+}
+
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use crate::output::AtomicFile;
 
     #[test]
     fn one_alone_or_several_beside_each_other() {
@@ -127,15 +142,44 @@ mod tests {
     #[test]
     fn work_of_others_is_left_alone() {
         let folder = tempfile::tempdir().unwrap();
-        let leftover = folder.path().join(".localshape-abc123.partial");
-        for is_alone in [true, false] {
-            let path = folder.path();
-            let _lock = if is_alone { FolderLock::alone(path).unwrap() } else { FolderLock::beside_others(path) };
-            fs::write(&leftover, "").unwrap();
-            FolderLock::beside_others(path);
-            assert!(leftover.exists());
-        }
-        FolderLock::beside_others(folder.path());
+        let path = folder.path();
+        let leftover = path.join(".localshape-abc123.partial");
+        std::fs::write(&leftover, "").unwrap();
+        drop(FolderLock::beside_others(path));
+        assert!(leftover.exists());
+        drop(FolderLock::alone(path).unwrap());
         assert!(!leftover.exists());
+    }
+
+    /// However they come and go, nobody takes the file of another for a leftover.
+    #[test]
+    fn many_write_beside_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        std::thread::scope(|scope| {
+            for thread in 0..16 {
+                let path = folder.path();
+                scope.spawn(move || {
+                    for number in 0..100 {
+                        let _lock = FolderLock::beside_others(path);
+                        let mut file = AtomicFile::create(&path.join(format!("{thread}-{number}"))).unwrap();
+                        std::thread::yield_now();
+                        file.append(b"whole").unwrap();
+                        file.commit().unwrap();
+                    }
+                });
+            }
+            let path = folder.path();
+            // Somebody who is to write alone is kept out or comes between.
+            scope.spawn(move || (0..1000).for_each(|_| drop(FolderLock::alone(path))));
+        });
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1600);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_same_number_on_another_device_is_another_folder() {
+        let locks = "1: FLOCK  ADVISORY  WRITE 12 fe:01:99 0 EOF\n2: FLOCK  ADVISORY  WRITE 34 fe:00:99 0 EOF\n";
+        assert_eq!(holder_in(locks, "fe:00:99"), Some(34));
+        assert_eq!(holder_in(locks, "fe:02:99"), None);
     }
 }

@@ -4,7 +4,7 @@ use super::{OutputError, Timings, state_digest, write_whole};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Frame, Status};
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// The name of the file in its folder.
 pub const SUMMARY_FILE: &str = "run.json";
@@ -39,6 +39,9 @@ pub struct SceneSummary {
     pub title: String,
     /// Its file, as a full path; `null` if it was read from a text.
     pub file: Option<String>,
+    /// The same as seen from the folder of `run.json`; [`Summary::write`] finds it out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_file: Option<String>,
     /// Digest of its meaning.
     pub digest: String,
     /// The cycle T of the lightest node and the stiffest run (s), of which steps may be fractions.
@@ -134,6 +137,7 @@ impl Summary {
             scene: SceneSummary {
                 title: scene.title.clone(),
                 file: scene.file.as_ref().and_then(|file| Some(file.to_str()?.to_owned())),
+                relative_file: None,
                 digest: scene.digest.clone(),
                 cycle: scene.cycle(),
             },
@@ -171,8 +175,19 @@ impl Summary {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
-        let mut text = serde_json::to_string_pretty(self).expect("plain data");
+        let mut summary = self.clone();
+        summary.scene.relative_file = self.scene.file.as_ref().and_then(|file| relative(Path::new(file), folder));
+        let mut text = serde_json::to_string_pretty(&summary).expect("plain data");
         text.push('\n');
         write_whole(&folder.join(SUMMARY_FILE), text.as_bytes())
     }
+}
+
+/// The way from a folder to a file, which has a full path; `None` if there is none, as between disks on Windows.
+fn relative(file: &Path, folder: &Path) -> Option<String> {
+    let folder = folder.canonicalize().ok()?;
+    let shared = folder.components().zip(file.components()).take_while(|(one, other)| one == other).count();
+    let up = folder.components().skip(shared).map(|_| Component::ParentDir);
+    let way: PathBuf = up.chain(file.components().skip(shared)).collect();
+    way.to_str().filter(|_| shared > 0).map(str::to_owned)
 }

@@ -339,6 +339,14 @@ fn a_report_is_one_file() {
     let page = place.read("page.html");
     assert!(page.starts_with("<!doctype html>") && page.contains("--bless-state a.png c.png"), "{}", &page[..200]);
     place.run("compare a.png c.png --report none/page.html -q").bad(4, &["none/page.html"]);
+    place
+        .run("compare a.png c.png --report a.png/page.html -q")
+        .bad(4, &["error: --report: a.png is a file, not a folder; name a file elsewhere\n"]);
+    #[cfg(unix)]
+    {
+        run(std::process::Command::new("mkfifo").arg(place.path("pipe"))).good();
+        place.run("compare a.png c.png --report pipe/page.html -q").bad(4, &["pipe is a pipe, not a folder"]);
+    }
     // An earlier page is replaced, and nothing else.
     assert_eq!(place.run("compare a.png c.png --report page.html -q").status, Some(1));
     place.write("precious.toml", "body = 7");
@@ -461,9 +469,8 @@ fn what_is_no_file_of_a_picture_is_told_at_once() {
     large.set_len((1 << 29) + 1).unwrap();
     let mut wrong =
         vec![("large.png", "this file has 536870913 bytes; a picture that can be compared has at most 536870912")];
-    if cfg!(unix)
-        && std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().is_ok_and(|ran| ran.success())
-    {
+    if cfg!(unix) {
+        run(std::process::Command::new("mkfifo").arg(place.path("pipe.png"))).good();
         wrong.push(("pipe.png", "this is no PNG picture"));
     }
     for (name, words) in wrong {

@@ -70,11 +70,30 @@ fn a_folder_named_after_its_scene_follows_the_file() {
     // So is one of which nobody knows where it came from.
     place.write("small.toml", crate::support::SMALL);
     let summary = place.read("output/small/run.json");
-    let line = summary.lines().find(|line| line.contains("\"file\":")).unwrap();
-    place.write("output/small/run.json", &summary.replace(line, ""));
+    let nameless: String = summary.lines().filter(|line| !line.contains("file\":")).collect();
+    place.write("output/small/run.json", &nameless);
     let unknown = place.run("simulate small.toml");
     unknown
         .bad(2, &["another scene, or an earlier version of this one (“Two cubes”)", "simulate --overwrite small.toml"]);
+}
+
+#[test]
+fn a_project_that_has_moved_is_the_same() {
+    let place = Place::new();
+    place.write("before/small.toml", crate::support::SMALL);
+    let simulate = |project: &str| run(place.command(["simulate", "small.toml"]).current_dir(place.path(project)));
+    simulate("before").good();
+    assert_eq!(place.json("before/output/small/run.json")["scene"]["relative_file"], "../../small.toml");
+    std::fs::rename(place.path("before"), place.path("after")).unwrap();
+    place.write("after/small.toml", &lasting("0.05"));
+    let told = "output/small: replacing results made by an earlier version of small.toml\n";
+    assert!(simulate("after").good().out.starts_with(told));
+    // Where its results alone have moved, its full path tells.
+    place.run("simulate after/small.toml -o results").good();
+    std::fs::create_dir(place.path("below")).unwrap();
+    std::fs::rename(place.path("results"), place.path("below/results")).unwrap();
+    place.write("after/small.toml", &lasting("0.06"));
+    place.run("simulate after/small.toml -o below/results").bad(2, &["an earlier version of small.toml"]);
 }
 
 /// What was put aside with `-o` may be what later versions are compared with.
@@ -138,16 +157,51 @@ fn pipes_under_our_names_are_told_at_once() {
     };
     for name in ["frame_00000.png", "run.json", "diagnostics.csv", "states.npz"] {
         fifo(name);
-        let words = [&format!("out holds {name}, which is a pipe"), "--overwrite", "-o"];
-        place.run("simulate small.toml -o out --states").bad(2, &words);
-        assert_eq!(place.names("out"), [name]);
-        place.run("simulate small.toml -o out --states --overwrite").good();
+        for overwrite in ["", " --overwrite"] {
+            let ran = place.run(&format!("simulate small.toml -o out --states{overwrite}"));
+            ran.bad(
+                2,
+                &[&format!("out/{name} is a pipe, not a file; move it away, or choose another folder with -o\n")],
+            );
+            assert_eq!(place.names("out"), [name]);
+        }
     }
     fifo("table1.md");
     place.run("table table1 -o out").bad(2, &["out holds table1.md"]);
     if cfg!(feature = "render") {
         fifo("fig1.png");
         place.run("figure fig1 -o out").bad(2, &["out holds fig1.png"]);
+    }
+}
+
+/// No file can take the place of a folder.
+#[test]
+fn folders_under_our_names_are_told_at_once() {
+    for name in ["frame_00003.png", "run.json", "diagnostics.csv", "states.npz"] {
+        let place = Place::with_small();
+        place.write(&format!("out/{name}/notes.txt"), "mine");
+        for overwrite in ["", " --overwrite"] {
+            let ran = place.run(&format!("simulate small.toml -o out --states{overwrite}"));
+            ran.bad(2, &[&format!("out/{name} is a folder, not a file; move it away")]);
+            assert_eq!(place.names("out"), [name]);
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_a_file_of_others() {
+    let place = Place::with_small();
+    for name in ["frame_00001.png", "run.json"] {
+        let folder = format!("with-{name}");
+        std::fs::create_dir(place.path(&folder)).unwrap();
+        let link = place.path(&folder).join(name);
+        std::os::unix::fs::symlink("nowhere", &link).unwrap();
+        let words = [&format!("{folder} holds {name}, which was not written by localshape"), "--overwrite"];
+        place.run(&format!("simulate small.toml -o {folder}")).bad(2, &words);
+        place.run(&format!("simulate small.toml -o {folder} --overwrite")).good();
+        // Only what is written anew is replaced.
+        assert_eq!(link.is_symlink(), name != "run.json");
     }
 }
 
@@ -171,7 +225,7 @@ fn one_program_at_a_time() {
     place.write("long.toml", &lasting("100000"));
     place.write("other.toml", &lasting("0.05").replace("Two cubes", "Others"));
     let mut first = crate::interrupt::start(&place, "simulate long.toml -o out", "out/run.json");
-    let mut refused = vec!["out is in use: ".to_owned(), " is writing “Two cubes” there".into(), "-o".into()];
+    let mut refused = vec!["out is in use: ".to_owned(), " is writing there; ".into(), "-o".into()];
     if cfg!(target_os = "linux") {
         refused.push(format!("process {} ", first.id()));
     }

@@ -227,16 +227,19 @@ pub(crate) fn skip(why: &str) {
 /// What runs a script in a folder by a Python that has NumPy, and returns what it prints; `None`, with a notice, if there is
 /// no such Python.
 pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
-    let run = |folder: &Path, script: &str| {
-        Command::new("python3").args(["-c", script]).current_dir(folder).stdin(Stdio::null()).output()
+    // By way of a shell, which says so if there is no Python at all.
+    let python = |folder: &Path, script: &str| {
+        let mut command = Command::new("sh");
+        command.args(["-c", "exec python3 -c \"$0\"", script]).current_dir(folder).stdin(Stdio::null());
+        run(&mut command)
     };
-    if !run(Path::new("."), "import numpy").is_ok_and(|output| output.status.success()) {
+    if python(Path::new("."), "import numpy").status != Some(0) {
         skip("there is no Python with NumPy");
         return None;
     }
     Some(move |folder: &Path, script: &str| {
-        let output = run(folder, script).expect("Python starts");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8(output.stdout).expect("text")
+        let ran = python(folder, script);
+        assert_eq!(ran.status, Some(0), "{}", ran.err);
+        ran.out
     })
 }

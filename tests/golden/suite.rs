@@ -21,6 +21,11 @@ const SCENE: &str = "
 #[test]
 #[ignore = "started by the tests below"]
 fn of_another_project() {
+    // So that nobody waits for ever if it hangs.
+    std::thread::spawn(|| {
+        std::thread::sleep(std::time::Duration::from_secs(300));
+        std::process::abort();
+    });
     let mut goldens = Suite::new("goldens").reports("reports");
     for scene in std::env::var("SCENES").expect("set by the tests below").split(' ') {
         goldens.scene(scene);

@@ -1,0 +1,10 @@
+//! Command lines as they are told to users, to be pasted into a shell.
+
+/// A word, quoted where it must be, as it can be pasted into a command line.
+pub(crate) fn word(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
