@@ -4,6 +4,7 @@ use super::console;
 use super::failure::{Failure, Status, with_causes};
 #[cfg(feature = "render")]
 use super::{
+    failure::{warn, warn_of_figure},
     frames::FrameRanges,
     interrupt,
     render::{samples, size},
@@ -213,6 +214,11 @@ impl Compare {
             Status::Files => Failure::files(with_causes(&error)),
             _ => Failure::usage(error.to_string()),
         })?;
+        match &subject {
+            _ if self.quiet => {}
+            Subject::Scene(scene) => warn(path, scene),
+            Subject::Figure(figure) => warn_of_figure(figure),
+        }
         let Drawing { frames, size, samples, adapter } = &self.drawing;
         let frames = match (frames, &subject) {
             (None, _) => None,

@@ -1,6 +1,8 @@
 //! Exit statuses, and how a failure is told.
 
 use crate::output::OutputError;
+#[cfg(feature = "render")]
+use crate::scene::figure::Figure;
 use crate::scene::{Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -97,6 +99,14 @@ pub(super) fn warn(file: &Path, scene: &Scene) {
     if !scene.warnings.is_empty() {
         let (found, total) = (scene.warnings.clone(), scene.warnings.len());
         let _ = writeln!(std::io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
+    }
+}
+
+/// Tells of what is probably not meant in the scenes of a figure.
+#[cfg(feature = "render")]
+pub(super) fn warn_of_figure(figure: &Figure) {
+    for scene in figure.scenes() {
+        warn(scene.file.as_deref().unwrap_or(Path::new(&scene.name)), scene);
     }
 }
 

@@ -1,7 +1,7 @@
 //! `figure`: the paper's figures, and figures of a user's own.
 
 use super::console;
-use super::failure::{Failure, Status, with_causes};
+use super::failure::{Failure, Status, warn_of_figure, with_causes};
 use super::interrupt;
 use super::options::processors;
 use super::record;
@@ -74,7 +74,7 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Neither progress nor summary; only errors
+    /// Neither progress nor summary nor warnings; only errors
     #[arg(short, long)]
     quiet: bool,
 
@@ -101,6 +101,9 @@ impl FigureCommand {
             return Ok(Status::Done);
         }
         let mut figures = self.load()?;
+        if !self.quiet {
+            figures.iter().for_each(warn_of_figure);
+        }
         for figure in &mut figures {
             self.fit(figure)?;
         }

@@ -174,7 +174,7 @@ impl Side {
             }
             let cycle = scene["cycle"].as_f64()?;
             let step = |run: &serde_json::Value| {
-                Some((run["name"].as_str()?.to_owned(), Step { step: run["step"].as_f64()?, cycle }))
+                Some((run["name"].as_str()?.to_owned(), Step { step: run["time_step"].as_f64()?, cycle }))
             };
             summary["runs"].as_array()?.iter().map(step).collect()
         };

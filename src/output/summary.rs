@@ -83,7 +83,7 @@ pub struct RunSummary {
     /// Its name.
     pub name: String,
     /// Time step (s).
-    pub step: f64,
+    pub time_step: f64,
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
@@ -130,7 +130,7 @@ impl Summary {
     pub fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
-            RunSummary { name: run.name.clone(), step: run.step, status: RunStatus::Ok, last: None }
+            RunSummary { name: run.name.clone(), time_step: run.step, status: RunStatus::Ok, last: None }
         };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),

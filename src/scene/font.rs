@@ -1,6 +1,6 @@
 //! Reads the files of fonts.
 
-use super::beside::similar;
+use super::beside::{missing, similar};
 use super::file::FontFile;
 use super::limits::size;
 use super::report::{Report, Way};
@@ -40,7 +40,7 @@ fn plain(message: String) -> Mistake {
 fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
     if !path.exists() {
         let near = similar(path, &ENDINGS).map(|near| format!("did you mean {near:?}?"));
-        return Err((format!("is not there (looked for {})", path.display()), near));
+        return Err((missing(path), near));
     }
     if path.is_dir() {
         return Err(plain(format!("is a folder; {EXPECTED}")));

@@ -257,6 +257,16 @@ impl Array {
         matches!(self.number, Number::Signed(_) | Number::Unsigned(_))
     }
 
+    /// NumPy's name of the type of its numbers.
+    pub(crate) fn type_in_words(&self) -> String {
+        let kind = match self.number {
+            Number::Float64 | Number::Float32 => "float",
+            Number::Signed(_) => "int",
+            Number::Unsigned(_) => "uint",
+        };
+        format!("{kind}{}", 8 * self.number.bytes())
+    }
+
     /// Length of the numbers (bytes), if 64 bits can say it.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))

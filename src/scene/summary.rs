@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::view::Follow;
-use super::words::{count, list, short};
+use super::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -214,7 +214,8 @@ impl fmt::Display for Summary {
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         let [low, high] = &self.start;
-        line("start", &format!("between {} and {} m", vector(low), vector(high)))?;
+        let corner = |corner: &[f64]| corner.iter().copied().map(fine).collect::<Vec<_>>().join(", ");
+        line("start", &format!("between ({}) and ({}) m", corner(low), corner(high)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };

@@ -90,8 +90,17 @@ pub(super) fn count(number: u128) -> String {
 
 /// A number with up to four significant digits.
 pub(super) fn short(number: f64) -> String {
+    significant(number, 4)
+}
+
+/// A number with up to twelve significant digits: as a bound of a region it takes what lies there.
+pub(super) fn fine(number: f64) -> String {
+    significant(number, 12)
+}
+
+fn significant(number: f64, digits: usize) -> String {
     // Adding zero takes the sign off a negative one.
-    let rounded = rounded(number, 4) + 0.0;
+    let rounded = rounded(number, digits) + 0.0;
     if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 

@@ -69,6 +69,7 @@ fn warns_of_what_is_probably_not_meant() {
     }
     let document = place.run("check rare.toml --json").good().json();
     assert_eq!(document["scenes"][0]["warnings"][0]["line"], 7);
+    assert_eq!(document["scenes"][0]["warnings"][0]["help"], "at least 10 show its end");
 }
 
 /// The example of `docs/bodies.md` makes the body that it says, by NumPy where there is one, and else as it once did.

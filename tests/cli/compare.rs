@@ -201,7 +201,7 @@ fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
     let spring = "stiffness = 1e4, damping_ratio = 0.1, springs";
     place.write("stiffer.toml", &SMALL.replace(spring, &spring.replace("1e4", "2e4")));
     ["small", "stiffer"].into_iter().for_each(|name| put_scene(&place, name));
-    let step = |name: &str| place.json(&format!("{name}/run.json"))["runs"][0]["step"].as_f64().unwrap();
+    let step = |name: &str| place.json(&format!("{name}/run.json"))["runs"][0]["time_step"].as_f64().unwrap();
     let [before, after] = ["small", "stiffer"].map(step);
     assert!((before / after - 2_f64.sqrt()).abs() < 1e-12);
     let told = |folders: &str| place.run(&format!("compare {folders}")).out;

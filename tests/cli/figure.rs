@@ -1,6 +1,6 @@
 //! `figure`: the paper's figures and a user's own, as files and on standard output.
 use crate::render::can_draw;
-use crate::support::Place;
+use crate::support::{Place, SMALL};
 
 const SHEET: &str = r#"
 title = "Two cubes"
@@ -15,6 +15,21 @@ fn place() -> Place {
     let place = Place::with_small();
     place.write("mine.toml", SHEET);
     place
+}
+
+/// What is told of a scene by itself is told of it in a figure and beside a golden, too.
+#[test]
+fn scenes_are_warned_of() {
+    let place = place();
+    place.write("small.toml", &SMALL.replace("frames_per_second = 60", "frames_per_second = 1e-300"));
+    place.write("mine.toml", &SHEET.replace("[0.0, 0.1]", "[0.0]").replace("strips = [\"turned_over\"]", ""));
+    let words = "small.toml:7:21: at 1e-300 frames per second, 0.1 s have a single frame, the start\n";
+    for command in ["figure mine.toml", "compare golden/mine mine.toml", "compare golden/small small.toml"] {
+        let ran = place.run(command);
+        assert!(ran.err.starts_with("warning: ") && ran.err.contains(words), "{command}: {ran:?}");
+        let quiet = place.run(&format!("{command} --quiet"));
+        assert!(!quiet.err.contains("warning: "), "{command}: {quiet:?}");
+    }
 }
 
 #[test]
@@ -109,7 +124,7 @@ fn what_has_no_room_is_told() {
     }
     let place = place();
     let names: Vec<_> = (0..12).map(|at| format!("'{at}.toml'")).collect();
-    names.iter().for_each(|name| place.write(name.trim_matches('\''), crate::support::SMALL));
+    names.iter().for_each(|name| place.write(name.trim_matches('\''), SMALL));
     place.write("tall.toml", &format!("[forces]\nscenes = [{}]", names.join(", ")));
     place.run("figure tall.toml --size 320x200").bad(2, &["tall: at 320×200 there is no room"]);
     assert_eq!(place.names("output/figures"), [""; 0]);

@@ -1,9 +1,10 @@
 //! `simulate`: diagnostics, summary and states.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES};
-use localshape::output::{Tags, encode};
+use crate::support::{Place, SMALL, SMALL_FRAMES, documented};
+use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
+use serde_json::Value;
 use std::io::Read;
 
 const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
@@ -198,15 +199,29 @@ fn a_run_that_diverges_is_a_result() {
     let run = &place.json("output/wild/run.json")["runs"][1];
     assert_eq!(run["status"], "diverged");
     assert!(run["time"].as_f64().unwrap() > 0.0 && run["step"].as_u64().unwrap() > 0, "{run}");
+    assert!(run["time_step"].as_f64().unwrap() < 1.0, "{run}");
     assert!(place.read("output/wild/diagnostics.csv").trim_end().ends_with(",diverged"));
 }
 
-/// What `docs/files.md` lists in the section of a file, from the first column of its table.
-fn documented(file: &str) -> Vec<String> {
-    let text = include_str!("../../docs/files.md");
-    let section = text.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
-    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
-    cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
+/// The ways to all values in a document: `runs[].last.time`.
+fn ways(document: &Value, before: &str) -> Vec<String> {
+    match document {
+        Value::Object(table) if !table.is_empty() => {
+            let dot = if before.is_empty() { "" } else { "." };
+            table.iter().flat_map(|(key, value)| ways(value, &format!("{before}{dot}{key}"))).collect()
+        }
+        Value::Array(items) if items.iter().any(Value::is_object) => {
+            items.iter().flat_map(|item| ways(item, &format!("{before}[]"))).collect()
+        }
+        _ => vec![before.to_owned()],
+    }
+}
+
+/// The names of the text chunks of a picture.
+fn chunks(picture: &[u8]) -> Vec<String> {
+    let names = picture.windows(11).enumerate().filter(|(_, bytes)| bytes == b"localshape:");
+    let name = |at: usize| picture[at..].split(|&byte| byte == 0).next().expect("a keyword").to_vec();
+    names.map(|(at, _)| String::from_utf8(name(at)).expect("a keyword")).collect()
 }
 
 #[test]
@@ -236,16 +251,25 @@ fn everything_in_the_files_is_documented() {
     arrays.dedup();
     assert_eq!(told, arrays);
 
-    let run = place.json("output/small/run.json");
-    assert_eq!(documented("run.json"), run.as_object().unwrap().keys().cloned().collect::<Vec<_>>());
+    // A run that diverges says more, and so do times with pictures.
+    place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
+    place.run("simulate wild.toml").good();
+    let mut run = place.json("output/wild/run.json");
+    let spent = Some(Spent::default());
+    let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
+    run["times"] = serde_json::to_value(times).unwrap();
+    let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
+    found.sort();
+    found.dedup();
+    told.sort();
+    assert_eq!(told, found);
 
     let (text, states) = (String::new, vec![(String::new(), String::new())]);
-    let tags = Tags { scene: text(), states, frame: 0, time: 0.0, version: text(), adapter: text() };
-    let picture = encode([1, 1], &[0; 3], &tags);
-    let names = picture.windows(11).enumerate().filter(|(_, bytes)| bytes == b"localshape:");
-    let name = |at: usize| picture[at..].split(|&byte| byte == 0).next().expect("a keyword").to_vec();
-    let names: Vec<_> = names.map(|(at, _)| String::from_utf8(name(at)).expect("a keyword")).collect();
-    assert_eq!(documented("frame_00000.png"), names);
+    let tags = Tags { scene: text(), states: states.clone(), frame: 0, time: 0.0, version: text(), adapter: text() };
+    assert_eq!(documented("frame_00000.png"), chunks(&encode([1, 1], &[0; 3], &tags)));
+    let tags = FigureTags { figure: text(), scenes: vec![], states, version: text(), adapter: text() };
+    assert_eq!(documented("NAME.png"), chunks(&encode_figure([1, 1], &[0; 3], &tags)));
+    assert!(include_str!("../../README.md").contains("](docs/files.md)"));
 }
 
 /// One array of `states.npz`: its head and its numbers.

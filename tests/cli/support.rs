@@ -219,26 +219,38 @@ impl Ran {
     }
 }
 
+/// What `docs/files.md` lists in the section of a file, from the first column of its table.
+pub(crate) fn documented(file: &str) -> Vec<String> {
+    let text = include_str!("../../docs/files.md");
+    let section = text.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
+    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
+    cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
+}
+
 /// Says that a test did not do what it is for.
 pub(crate) fn skip(why: &str) {
     eprintln!("SKIPPED: {why}");
 }
 
 /// What runs a script in a folder by a Python that has NumPy, and returns what it prints; `None`, with a notice, if there is
-/// no such Python.
+/// no such Python. With `LOCALSHAPE_REQUIRE_NUMPY=1` there must be one.
 pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
     // By way of a shell, which says so if there is no Python at all.
-    let python = |folder: &Path, script: &str| {
+    let run_by = |python: &str, folder: &Path, script: &str| {
         let mut command = Command::new("sh");
-        command.args(["-c", "exec python3 -c \"$0\"", script]).current_dir(folder).stdin(Stdio::null());
+        command.args(["-c", "exec $0 -c \"$1\"", python, script]).current_dir(folder).stdin(Stdio::null());
         run(&mut command)
     };
-    if python(Path::new("."), "import numpy").status != Some(0) {
-        skip("there is no Python with NumPy");
+    let has_numpy = |python: &&str| run_by(python, Path::new("."), "import numpy").status == Some(0);
+    // The first may be one of the user's own, without the packages of the system.
+    let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_numpy) else {
+        let missing = "there is no Python with NumPy: `apt install python3-numpy`";
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_NUMPY").is_none_or(|value| value != "1"), "{missing}");
+        skip(missing);
         return None;
-    }
+    };
     Some(move |folder: &Path, script: &str| {
-        let ran = python(folder, script);
+        let ran = run_by(python, folder, script);
         assert_eq!(ran.status, Some(0), "{}", ran.err);
         ran.out
     })

@@ -1,6 +1,7 @@
 //! `table`: the paper's numbers beside ours, as files and on standard output.
 
-use crate::support::Place;
+use crate::support::{Place, documented};
+use localshape::table::ratio;
 
 const FILES: [&str; 3] = ["table1-orientations.csv", "table1.csv", "table1.md"];
 
@@ -50,6 +51,19 @@ fn table1_is_the_same_for_any_number_of_threads_and_can_be_read() {
         let (evaluations, step) = (course[10].parse::<f64>().unwrap(), course[4].parse::<f64>().unwrap());
         assert!((evaluations * step - 10.0).abs() <= step, "ten seconds");
     }
+}
+
+#[test]
+fn columns_are_documented() {
+    let place = Place::new();
+    place.run("table table1 --orientations 1").good();
+    let columns = |text: &str| text.lines().next().expect("heads").split(',').map(str::to_owned).collect::<Vec<_>>();
+    for file in ["table1.csv", "table1-orientations.csv"] {
+        assert_eq!(documented(file), columns(&place.read(&format!("output/table1/{file}"))), "{file}");
+    }
+    let protocol = ratio::Protocol { sides: vec![1], rounds: 1, turn: 1 };
+    let ratios = ratio::measure(&protocol, &|_| true).expect("nobody stops it");
+    assert_eq!(documented("ratio.csv"), columns(&ratios.files()[1]));
 }
 
 #[test]

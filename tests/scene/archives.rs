@@ -326,7 +326,11 @@ fn meshes_get_a_hint_to_what_is_read() {
 
 /// Twelve unit cubes in a row, each with its corners in an order: places in bit order.
 fn row_of_cubes(order: impl Fn(usize) -> [usize; 8]) -> Vec<u8> {
-    let node = |x: usize, y: usize, z: usize| (4 * x + 2 * z + y) as i64;
+    row_of_cubes_counted_from(0, order)
+}
+
+fn row_of_cubes_counted_from(first: usize, order: impl Fn(usize) -> [usize; 8]) -> Vec<u8> {
+    let node = |x: usize, y: usize, z: usize| (4 * x + 2 * z + y + first) as i64;
     let nodes: Vec<f64> = (0..13 * 4).flat_map(|at| [at / 4, at % 2, at / 2 % 2].map(|to| to as f64)).collect();
     let elements =
         (0..12).flat_map(|cube| order(cube).map(|corner| node(cube + (corner & 1), corner >> 1 & 1, corner >> 2)));
@@ -378,6 +382,14 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     );
 }
 
+#[test]
+fn nodes_counted_from_one_are_told_and_nothing_that_follows() {
+    wrong(
+        &row_of_cubes_counted_from(1, |_| [0, 1, 2, 3, 4, 5, 6, 7]),
+        &["`body.npz: elements[11][7]`: there is no node 52; the body has nodes 0 to 51 nodes are counted from 0"],
+    );
+}
+
 /// Parts of a ring have some volume of either sign in another program's order, so that turning them over would seem to help.
 #[test]
 fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
@@ -416,7 +428,8 @@ fn a_file_that_is_not_there() {
     assert!(load(".").contains("is a folder; expected a NumPy archive"));
     // A text lies in no folder: its file is looked for from the current one.
     let error = super::bad(SCENE).to_string();
-    assert!(error.contains("`body.npz` is not there (looked for body.npz)"), "{error}");
+    let full = std::env::current_dir().unwrap().join("body.npz");
+    assert!(error.contains(&format!("`body.npz` is not there (looked for {})", full.display())), "{error}");
     let absolute = place.path().with_file_name("body.npz");
     super::good(&SCENE.replace("body.npz", &absolute.display().to_string()));
 }
@@ -428,6 +441,15 @@ fn arrays_that_are_none() {
         &with(|arrays| arrays[1].name = "element"),
         &[
             "`body.npz: element` is no array that a body has did you mean `elements`?",
+            "`body.npz` has no array `elements`",
+        ],
+    );
+    wrong(
+        &with(|arrays| (arrays[0].name, arrays[1].name) = ("points", "cells")),
+        &[
+            "`body.npz: points` is no array that a body has did you mean `nodes`?",
+            "`body.npz: cells` is no array that a body has did you mean `elements`?",
+            "`body.npz` has no array `nodes`",
             "`body.npz` has no array `elements`",
         ],
     );
@@ -447,7 +469,10 @@ fn arrays_that_are_none() {
     wrong(&with(|arrays| arrays[0].descr = "'<c8'".into()), &["has numbers of the type \"<c8\"; expected float64"]);
     wrong(&with(|arrays| arrays[0].descr = "[('x', '<f8')]".into()), &["`body.npz: nodes` has rows of several fields"]);
     wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` holds Python objects"]);
-    wrong(&with(|arrays| arrays[1].descr = "'<f8'".into()), &["`body.npz: elements` has numbers with fractions"]);
+    wrong(
+        &with(|arrays| arrays[1].descr = "'<f8'".into()),
+        &["`body.npz: elements` is float64; expected integers, as by"],
+    );
     wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no whole head"]);
     wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no whole head"]);
     wrong(
@@ -531,7 +556,7 @@ fn lists_of_a_file_are_checked_like_those_of_a_scene() {
     let elements = |numbers: &'static [i64]| with(move |arrays| arrays[1] = indices("elements", "(2, 3)", numbers));
     wrong(
         &elements(&[0, 1, 2, 0, 2, 4]),
-        &["`body.npz: elements[1][2]`: there is no node 4; the body has nodes 0 to 3"],
+        &["`body.npz: elements[1][2]`: there is no node 4; the body has nodes 0 to 3 nodes are counted from 0"],
     );
     wrong(&elements(&[0, 1, 2, 0, 2, 2]), &["node 2 stands twice in `body.npz: elements[1]`"]);
     wrong(

@@ -263,7 +263,7 @@ fn a_summary_says_what_a_scene_holds() {
         format!(
             "  scene     3×3×3 cubes dropped on a floor (test)
   body      64 nodes, 27 cubes, 0.3 × 0.3 × 0.3 m, 64 kg
-  start     between (-0.153, 0, -0.153) and (0.153, 0.3119, 0.153) m
+  start     between (-0.152999571257, 0, -0.152999571257) and (0.152999571257, 0.311878295331, 0.152999571257) m
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s

@@ -298,6 +298,49 @@ fn regions_hold_the_nodes_that_start_in_them() {
     assert_eq!(scene.grips[1].nodes, [0, 6]);
 }
 
+/// Coordinates of a lattice are sums: its ends are at ±0.30000000000000004 m, and at thirds, which nobody types in full.
+#[test]
+fn nodes_on_the_border_of_a_region_are_in_it() {
+    let held = |body: &str, region: &str| {
+        let world = WORLD.replace("[2, 1, 1], side = 0.1 }, offset = [0, 0.1, 0]", body);
+        let scene = good(&format!("{world}[[hold]]\nnodes = {{ {region} }}"));
+        (scene.grips[0].nodes.len(), scene.summary().to_string(), scene.warnings)
+    };
+    let bar = "[6, 2, 2], side = 0.1 }";
+    assert_eq!(held(bar, "low = [-0.3, 0, -0.1], high = [-0.3, 0.2, 0.1]").0, 9);
+    assert_eq!(held(bar, "low = [-0.31, 0, -0.1], high = [-0.2, 0.2, 0.1]").0, 18);
+    assert_eq!(held(bar, "of = [0, 0.1, 0], within = 0.3").0, 7 + 4 * 5 + 4 * 5);
+    // What `check` prints takes the whole body.
+    let thirds = "[2, 2, 2], side = [0.3333333333333333, 0.7071067811865476, 1e-3] }, offset = [1e-3, 2, 3]";
+    let (_, summary, _) = held(thirds, "of = [0, 2, 3], within = 9");
+    let start = summary.lines().find_map(|line| line.trim().strip_prefix("start")).expect("where it starts");
+    let [low, high] = start
+        .trim()
+        .strip_prefix("between (")
+        .unwrap()
+        .strip_suffix(") m")
+        .unwrap()
+        .split(") and (")
+        .collect::<Vec<_>>()[..]
+    else {
+        panic!("{start}")
+    };
+    assert_eq!(held(thirds, &format!("low = [{low}], high = [{high}]")).0, 27);
+}
+
+/// Hands that come one after another, however many, and one that comes too early.
+#[test]
+fn many_hands_in_turn() {
+    let turns = 20_000;
+    let hold = |at: usize| format!("[[hold]]\nnodes = [1]\nfrom = {at}\nuntil = {}\n", at + 1);
+    let mut holds: Vec<String> = (0..turns).map(hold).collect();
+    assert_eq!(good(&format!("{WORLD}{}", holds.concat())).grips.len(), turns);
+    holds[7] = hold(7).replace("until = 8", "until = 9.5");
+    let told = "node 1 is held by `hold[7]` and held by `hold[8]` at once, from 8 s until 9 s";
+    let later = "node 1 is held by `hold[7]` and held by `hold[9]` at once, from 9 s until 9.5 s";
+    case(WORLD, &holds[..12].concat(), &[(34, 9, told), (38, 9, later)]);
+}
+
 /// A bar of 2 × 2 cells, which stands on y = 0.
 #[test]
 fn a_box_that_takes_a_part_of_a_layer_is_told() {
@@ -306,24 +349,39 @@ fn a_box_that_takes_a_part_of_a_layer_is_told() {
     let told = warnings("low = [-0.31, -0.15, -0.15], high = [-0.29, 0.15, 0.15]");
     let [warning] = &told[..] else { panic!("{told:?}") };
     assert_eq!((warning.line, warning.column), (5, 9));
-    assert_eq!(warning.message, "`hold[0].nodes` takes 6 of the 9 nodes at x = -0.3 m");
-    let help = "this layer of the body starts between [-0.3, 0, -0.1] and [-0.3, 0.2, 0.1] m";
+    assert_eq!(warning.message, "`hold[0].nodes` takes 6 of the 9 nodes of a layer of the body");
+    let help = "this layer starts between [-0.3, 0, -0.1] and [-0.3, 0.2, 0.1] m";
     assert_eq!(warning.help.as_deref(), Some(help));
+    let told = warnings("low = [-0.31, -0.15, -0.15], high = [-0.15, 0.15, 0.15]");
+    assert_eq!(told[0].message, "`hold[0].nodes` takes 12 of the 18 nodes of 2 layers of the body");
+    let help = "these layers start between [-0.3, 0, -0.1] and [-0.2, 0.2, 0.1] m";
+    assert_eq!(told[0].help.as_deref(), Some(help));
     for whole in [
         "low = [-0.31, -1, -1], high = [-0.29, 1, 1]",
-        // Two layers and a part of each; an edge; a row; a corner.
-        "low = [-0.31, -1, -0.15], high = [-0.15, 0.15, 1]",
+        "low = [-0.31, -1, -1], high = [-0.15, 1, 1]",
+        // The lower part of the whole bar and of most of it; an edge; a row; corners.
+        "low = [-1, -1, -1], high = [1, 0.15, 1]",
+        "low = [-1, -1, -1], high = [0.01, 0.15, 1]",
         "low = [-0.31, -0.01, -1], high = [-0.29, 0.01, 1]",
         "low = [-0.31, 0.09, -0.05], high = [1, 0.11, 0.05]",
         "low = [-0.31, -0.01, -0.15], high = [-0.29, 0.01, -0.05]",
+        "low = [-0.31, -0.01, -0.15], high = [-0.15, 0.01, -0.05]",
         "of = [-0.3, 0, 0], within = 0.12",
     ] {
         assert_eq!(warnings(whole), [], "{whole}");
     }
     let plane = "[[grab]]\nnodes = { low = [-0.2, 0.1], high = [0.01, 0.1] }\npath.keys = [{ time = 0 }, { time = 1 }]";
     let told = good(&format!("{PLANE}{plane}")).warnings;
-    assert_eq!(told[0].message, "`grab[0].nodes` takes 2 of the 3 nodes at y = 0.1 m");
-    // A turned body has no such layers.
+    assert_eq!(told[0].message, "`grab[0].nodes` takes 2 of the 3 nodes of a layer of the body");
+    // Layers turn with the body: here an upright one, whose lower end is cut.
+    let upright =
+        world.replace("side = 0.1 }", "side = 0.1 }, rotation = { axis = [0, 0, 1], angle = 1.5707963267948966 }");
+    let told =
+        good(&format!("{upright}[[hold]]\nnodes = {{ low = [-0.15, -0.21, -1], high = [0.05, -0.19, 1] }}")).warnings;
+    assert_eq!(told[0].message, "`hold[0].nodes` takes 6 of the 9 nodes of a layer of the body");
+    let help = "this layer starts between [-0.1, -0.2, -0.1] and [0.1, -0.2, 0.1] m";
+    assert_eq!(told[0].help.as_deref(), Some(help));
+    // A slanting cut is no layer's.
     let turned = PLANE.replace("offset", "rotation = { angle = 0.3 }, offset");
     assert_eq!(good(&format!("{turned}[[hold]]\nnodes = {{ low = [-1, 0], high = [0, 1] }}")).warnings, []);
 }

@@ -86,7 +86,8 @@ pub(in crate::scene) enum NodesFile {
     Region(RegionFile),
 }
 
-/// A region of space: a ball, or a box along the axes.
+/// A region of space: a ball, or a box along the axes. Nodes on its border belong to it, and so do those beyond it by no more
+/// than round-off (1e-9 of the body's longest side).
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["of", "within"] }, { "required": ["low", "high"] }]))]

@@ -21,18 +21,23 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let mut held = vec![false; node_count];
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
-    let mut disorder = Disorder::default();
+    let mut distinct = Vec::new();
     for (at, element) in elements.iter().enumerate() {
         if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(place, "elements", at, element, &mut known, report) && !flawed {
-            lists.check_extent(at, element, solids, &mut disorder, report);
+        if !repeated(place, "elements", at, element, &mut known, report) {
+            distinct.push(at);
         }
     }
-    disorder.tell(lists, report);
+    // Where some nodes are not those that were meant, others may not be either.
+    if sound {
+        let mut disorder = Disorder::default();
+        distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
+        disorder.tell(lists, report);
+    }
     known.clear();
     for (at, spring) in springs.iter().flatten().enumerate() {
         if check_indices(place, "springs", at, spring, node_count, report) {
@@ -270,7 +275,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        place.tell(report, key, &[at, entry], message, None);
+        place.tell(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
         sound = false;
     }
     sound

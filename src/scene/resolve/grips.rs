@@ -5,11 +5,12 @@ use super::{motion, vector};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::report::{Report, Way, written};
 use crate::scene::summary::corners;
-use crate::scene::words::{count, short};
-use crate::sim::body::{Dimension, bounds};
+use crate::scene::words::{count, fine};
+use crate::sim::body::{Body, Dimension};
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;
 use glam::DVec3;
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
 
 /// The grips, holds first, or `None` after reporting every mistake in them.
@@ -20,11 +21,12 @@ pub(super) fn resolve(
     report: &mut Report<'_>,
 ) -> Option<Vec<Grip>> {
     let mut named: Vec<(String, Vec<Way<'_>>, Grip)> = Vec::new();
+    let layers = OnceCell::new();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let path = vec![Way::Key("hold"), Way::Index(at)];
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = nodes(&typed.nodes, body, &path, report);
+        let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
             report.at(&[&path[..], &[Way::Key("until")]].concat(), message, None);
@@ -36,7 +38,7 @@ pub(super) fn resolve(
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let path = vec![Way::Key("grab"), Way::Index(at)];
-        let nodes = nodes(&typed.nodes, body, &path, report);
+        let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         let way = [&path[..], &[Way::Key("path")]].concat();
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be let go");
@@ -76,43 +78,48 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
 
 /// Reports nodes that two hands have at the same time.
 fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
-    let mut holders: HashMap<u32, Vec<usize>> = HashMap::new();
+    let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
-        for &node in &grip.nodes {
-            holders.entry(node).or_default().push(at);
-        }
+        grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
     }
-    for (second, (words, path, grip)) in named.iter().enumerate() {
-        // One node says it all: others of the same two hands follow from the same mistake.
-        let mut clashes: BTreeMap<usize, u32> = BTreeMap::new();
-        for &node in &grip.nodes {
-            for &first in holders[&node].iter().take_while(|&&first| first < second) {
-                let other = &named[first].2;
-                if grip.from.max(other.from) < grip.until.min(other.until) {
-                    clashes.entry(first).or_insert(node);
-                }
+    // One node says it all: others of the same two hands follow from the same mistake.
+    let mut clashes: BTreeMap<[usize; 2], u32> = BTreeMap::new();
+    for (node, mut hands) in holders {
+        let time = |hand: usize| (named[hand].2.from, named[hand].2.until);
+        hands.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
+        // A hand that comes before another lets go, comes before the last of all lets go.
+        let mut last = hands[0];
+        for &hand in &hands[1..] {
+            if time(hand).0 < time(last).1 {
+                clashes.entry([hand.max(last), hand.min(last)]).or_insert(node);
+            }
+            if time(hand).1 > time(last).1 {
+                last = hand;
             }
         }
-        for (first, node) in clashes {
-            let other = &named[first].2;
-            let (from, until) = (grip.from.max(other.from), grip.until.min(other.until));
-            let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
-            let message = format!("node {node} is {} and {words} at once, from {from} s {until}", named[first].0);
-            report.at(
-                &[&path[..], &[Way::Key("nodes")]].concat(),
-                message,
-                "leave each node to one of them at a time".to_owned(),
-            );
-        }
+    }
+    for ([second, first], node) in clashes {
+        let ((other, _, one), (words, path, two)) = (&named[first], &named[second]);
+        let (from, until) = (one.from.max(two.from), one.until.min(two.until));
+        let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
+        let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
+        let help = "leave each node to one of them at a time".to_owned();
+        report.at(&[&path[..], &[Way::Key("nodes")]].concat(), message, help);
     }
 }
 
 /// The nodes that are meant, in rising order.
-fn nodes(typed: &NodesFile, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+fn nodes(
+    typed: &NodesFile,
+    body: &ResolvedBody,
+    layers: &OnceCell<Vec<Layers>>,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Vec<u32>> {
     let path = [path, &[Way::Key("nodes")]].concat();
     match typed {
         NodesFile::List(list) => listed(list, body.body.len(), &path, report),
-        NodesFile::Region(region) => within(region, body, &path, report),
+        NodesFile::Region(region) => within(region, body, layers, &path, report),
     }
 }
 
@@ -132,14 +139,22 @@ fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>)
     (report.total() == before).then_some(nodes)
 }
 
-fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+fn within(
+    region: &RegionFile,
+    body: &ResolvedBody,
+    layers: &OnceCell<Vec<Layers>>,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Vec<u32>> {
     let dimension = body.body.dimension;
     let mut point = |typed, key| vector(typed, dimension, &[path, &[Way::Key(key)]].concat(), report);
     let position = &body.initial.position;
+    // An end of a lattice may be at -0.30000000000000004 m, and is typed as -0.3.
+    let close = ROUND_OFF * body.body.extent();
     let nodes: Vec<u32> = match region {
         RegionFile { of: Some(of), within: Some(within), .. } => {
             let middle = point(of, "of")?;
-            (0..).zip(position).filter(|(_, at)| at.distance(middle) <= *within).map(|(node, _)| node).collect()
+            (0..).zip(position).filter(|(_, at)| at.distance(middle) <= *within + close).map(|(node, _)| node).collect()
         }
         RegionFile { low: Some(low), high: Some(high), .. } => {
             let (low, high) = (point(low, "low"), point(high, "high"));
@@ -149,9 +164,10 @@ fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &m
                 report.at(&[path, &[Way::Key("low")]].concat(), message, None);
                 return None;
             }
-            let is_inside = |at: &DVec3| at.cmpge(low).all() && at.cmple(high).all();
+            let is_inside = |at: &DVec3| at.cmpge(low - close).all() && at.cmple(high + close).all();
             let nodes: Vec<u32> = (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect();
-            warn_of_rest(&nodes, position, dimension, path, report);
+            let layers = layers.get_or_init(|| layers_of(&body.body));
+            warn_of_rest(&nodes, layers, position, dimension, path, report);
             nodes
         }
         // The structure of the file has been checked.
@@ -166,34 +182,76 @@ fn within(region: &RegionFile, body: &ResolvedBody, path: &[Way<'_>], report: &m
     Some(nodes)
 }
 
-/// Warns of a box that takes some nodes of a plane layer and leaves others, as one does that was typed for a body that
-/// stands elsewhere. Nodes in a row are not meant as a layer.
-fn warn_of_rest(nodes: &[u32], position: &[DVec3], dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) {
-    let axes = if dimension == Dimension::Plane { 2 } else { 3 };
-    let (low, high) = bounds(position);
-    let close = 1e-9 * (high - low).max_element();
-    let taken: Vec<DVec3> = nodes.iter().map(|&node| position[node as usize]).collect();
-    let (first, last) = bounds(&taken);
-    let mut flat = (0..axes).filter(|&axis| last[axis] - first[axis] <= close);
-    let (Some(axis), None) = (flat.next(), flat.next()) else { return };
-    let in_layer = |at: &&DVec3| (at[axis] - first[axis]).abs() <= close;
-    let layer: Vec<DVec3> = position.iter().filter(in_layer).copied().collect();
-    if taken.len() < layer.len() {
+/// Closer than this part of the body's longest side coordinates are equal.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Nodes of equal coordinate along one axis at rest, as the layers of a lattice are.
+struct Layers {
+    /// The layer of each node.
+    of: Vec<u32>,
+    /// How many nodes each has.
+    sizes: Vec<usize>,
+}
+
+/// The layers of a body along each axis.
+fn layers_of(body: &Body) -> Vec<Layers> {
+    let close = ROUND_OFF * body.extent();
+    let along = |axis: usize| {
+        let at = |node: usize| body.rest[node][axis];
+        let mut order: Vec<usize> = (0..body.len()).collect();
+        order.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
+        let (mut of, mut sizes) = (vec![0; order.len()], Vec::new());
+        for layer in order.chunk_by(|&a, &b| at(b) - at(a) <= close) {
+            layer.iter().for_each(|&node| of[node] = sizes.len() as u32);
+            sizes.push(layer.len());
+        }
+        Layers { of, sizes }
+    };
+    (0..if body.dimension == Dimension::Plane { 2 } else { 3 }).map(along).collect()
+}
+
+/// Warns of a box that takes the same part of each layer at one end, as one does that was typed for a body that stands
+/// elsewhere. Such a box is thin along one axis: it takes less than half of the layers there, and at least half along the
+/// others. Rows and corners are thin along several.
+fn warn_of_rest(
+    nodes: &[u32],
+    layers: &[Layers],
+    position: &[DVec3],
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) {
+    let taken = layers.iter().map(|layers| {
+        let mut taken = vec![0; layers.sizes.len()];
+        nodes.iter().for_each(|&node| taken[layers.of[node as usize] as usize] += 1);
+        taken
+    });
+    let used = |taken: &[usize]| taken.iter().filter(|&&nodes| nodes > 0).count();
+    let is_thin = |taken: &[usize]| taken.len() > 1 && (used(taken) == 1 || 2 * used(taken) < taken.len());
+    let mut thin = layers.iter().zip(taken).filter(|(_, taken): &(_, Vec<usize>)| is_thin(taken));
+    let (Some((layers, taken)), None) = (thin.next(), thin.next()) else { return };
+    let is_used = |node: usize| taken[layers.of[node] as usize] > 0;
+    let whole: Vec<DVec3> = (0..position.len()).filter(|&node| is_used(node)).map(|node| position[node]).collect();
+    let mut parts = taken.iter().filter(|&&nodes| nodes > 0);
+    let first = parts.next();
+    if nodes.len() < whole.len() && parts.all(|part| Some(part) == first) {
+        let (what, these) = match used(&taken) {
+            1 => ("a layer".to_owned(), "this layer starts"),
+            several => (format!("{} layers", count(several as u128)), "these layers start"),
+        };
         let message = format!(
-            "`{}` takes {} of the {} nodes at {} = {} m",
+            "`{}` takes {} of the {} nodes of {what} of the body",
             written(path),
-            count(taken.len() as u128),
-            count(layer.len() as u128),
-            ["x", "y", "z"][axis],
-            short(first[axis])
+            count(nodes.len() as u128),
+            count(whole.len() as u128),
         );
-        report.warn(path, message, format!("this layer of the body starts {}", between(&layer, dimension)));
+        report.warn(path, message, format!("{these} {}", between(&whole, dimension)));
     }
 }
 
 /// The box around points in words.
 fn between(points: &[DVec3], dimension: Dimension) -> String {
-    let words = |corner: Vec<f64>| corner.into_iter().map(short).collect::<Vec<_>>().join(", ");
+    let words = |corner: Vec<f64>| corner.into_iter().map(fine).collect::<Vec<_>>().join(", ");
     let [low, high] = corners(points, dimension).map(words);
     format!("between [{low}] and [{high}] m")
 }

@@ -1,7 +1,7 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
 use super::vector;
-use crate::scene::beside::similar;
+use crate::scene::beside::{missing, similar};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::{Limits, size};
 use crate::scene::npz::{Array, Npz, Numbers};
@@ -120,8 +120,7 @@ impl Lists {
             report.at(&[Way::Key("body"), Way::Key("file")], format!("`{name}` {message}"), help);
         };
         if !path.exists() {
-            let message = format!("is not there (looked for {})", path.display());
-            whole(report, message, similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
+            whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
             return None;
         }
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -219,7 +218,9 @@ impl Reader<'_, '_> {
 
     fn lists(&mut self) -> Option<Lists> {
         for name in self.npz.names().iter().filter(|name| !ARRAYS.contains(&name.as_str())) {
-            let help = match nearest(name, &ARRAYS) {
+            // As `meshio` calls them.
+            let known = [("points", "nodes"), ("cells", "elements")].into_iter().find(|(other, _)| other == name);
+            let help = match known.map(|(_, ours)| ours).or_else(|| nearest(name, &ARRAYS)) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
@@ -369,7 +370,8 @@ impl Reader<'_, '_> {
             return None;
         }
         if !array.is_whole() {
-            self.say(key, &[], "has numbers with fractions; expected whole numbers, as by astype(\"<i4\")");
+            let kind = array.type_in_words();
+            self.say(key, &[], &format!("is {kind}; expected integers, as by astype(\"<i4\")"));
             return None;
         }
         Some(self.numbers(key, array)?.1)

@@ -210,7 +210,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         report.warn(
             &[Way::Key("time"), Way::Key("frames_per_second")],
             message,
-            "1 / duration or more show more".into(),
+            format!("at least {} show its end", short(1.0 / scene.duration)),
         );
     }
     let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
