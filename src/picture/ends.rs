@@ -4,7 +4,7 @@
 use super::Curve;
 use super::caption::Writer;
 use super::chart::{Chart, NUMBERS};
-use super::course::Line;
+use super::course::{Line, OWN};
 use super::layout::Scale;
 use super::narrow::narrow;
 use super::text::{Fonts, Weight};
@@ -13,6 +13,10 @@ use super::text::{Fonts, Weight};
 /// reference picture).
 const GAP: f64 = 14.0;
 pub(super) const APART: f64 = 15.0;
+/// Where there are more names than this, a sample of its line stands before each: its length, and the gap after it (px in
+/// the reference picture).
+const FEW: usize = 4;
+const SAMPLE: [f64; 2] = [30.0, 6.0];
 /// Free at both ends of a line that leads to a name, its width, its dots and gaps where it comes from a curve that ends
 /// early and must not look like its course (px in the reference picture), and its opacity.
 const FREE: f64 = 3.0;
@@ -27,37 +31,37 @@ const LEAST_ROOM: f64 = 3.0;
 /// The names of several curves.
 #[derive(Debug)]
 pub(super) struct Ends {
-    /// One for each curve, as far as it has room.
-    names: Vec<String>,
+    /// One for each curve, as far as it has room, and whether it is told from all others.
+    names: Vec<(String, bool)>,
+    /// What a sample before each takes, with its gap (px).
+    sample: f64,
     /// What they take right of the chart, with the gap (px).
     pub(super) width: f64,
 }
 
 impl Ends {
     /// The names of curves in a room of a width and a height (px). `None` for a single curve, which needs no name, and if
-    /// names could not be read, or not told from one another.
+    /// no name could be read, or be told from others.
     pub(super) fn new(fonts: &Fonts, lines: &[Line], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
         let size = NUMBERS * unit;
-        let shown: Vec<_> = lines.iter().filter(|line| !line.points.is_empty()).collect();
-        let room = width - GAP * unit;
-        let is_low = shown.len() as f64 * APART * unit > height;
-        if shown.len() < 2 || is_low || room < LEAST_ROOM * size || !Scale::legible(size) {
+        let shown = lines.iter().filter(|line| !line.points.is_empty()).count();
+        let sample = if shown > FEW { SAMPLE.iter().sum::<f64>() * unit } else { 0.0 };
+        let room = width - GAP * unit - sample;
+        if shown < 2 || fitting(height, unit) == 0 || room < LEAST_ROOM * size || !Scale::legible(size) {
             return None;
         }
         let names: Vec<_> =
             lines.iter().map(|line| fonts.shortened(&line.name, Weight::SemiBold, size, room)).collect();
-        let is_alike = |at: usize| {
-            lines[..at].iter().zip(&names).any(|(line, name)| names[at] == *name && line.name != lines[at].name)
-        };
-        if (0..names.len()).any(is_alike) {
-            return None;
-        }
+        let is_alike =
+            |at: usize| lines.iter().zip(&names).any(|(line, name)| names[at] == *name && line.name != lines[at].name);
+        let are_clear: Vec<_> = (0..names.len()).map(|at| !is_alike(at)).collect();
         let widest = names.iter().map(|name| fonts.width(name, Weight::SemiBold, size)).fold(0.0, f64::max);
-        Some(Self { names, width: GAP * unit + widest })
+        let width = GAP * unit + sample + widest;
+        are_clear.contains(&true).then(|| Self { names: names.into_iter().zip(are_clear).collect(), sample, width })
     }
 
     /// Writes them beside a chart, between two heights (px). `ends` are the ends of the curves (px), of those that have
-    /// any; the name of one run may be stronger than the others. Where not all have room, none is written.
+    /// any; the name of one run may be stronger than the others, and is always among those that have room.
     pub(super) fn write(
         &self,
         writer: &mut Writer<'_>,
@@ -68,10 +72,10 @@ impl Ends {
         [top, bottom]: [f64; 2],
     ) {
         let (unit, size) = (chart.unit, NUMBERS * chart.unit);
-        let mut order: Vec<_> = (0..lines.len()).filter_map(|at| Some((at, ends[at]?))).collect();
-        if order.len() as f64 * APART * unit > bottom - top {
-            return;
-        }
+        let own = lines.iter().position(|line| strong == Some(line.run));
+        let all = (0..lines.len()).filter(|&at| self.names[at].1 || own == Some(at));
+        let all: Vec<_> = all.filter_map(|at| Some((at, ends[at]?))).collect();
+        let mut order = farthest(all, own, fitting(bottom - top, unit));
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
         let heights: Vec<_> = order.iter().map(|&(_, [_, y])| y).collect();
         let half = 0.5 * APART * unit;
@@ -93,11 +97,45 @@ impl Ends {
                     alpha: narrow(LEADER_ALPHA),
                 });
             }
+            if self.sample > 0.0 {
+                let length = SAMPLE[0] * unit;
+                let dash = line.style.dash.iter().map(|length| narrow(length * chart.thickness()));
+                writer.curves.push(Curve {
+                    points: vec![[left, place].map(narrow), [left + length, place].map(narrow)],
+                    width: narrow(OWN * chart.thickness()),
+                    dash: dash.collect(),
+                    colour: line.style.colour,
+                    alpha: 1.0,
+                });
+            }
             let weight = if strong == Some(line.run) { Weight::SemiBold } else { Weight::Regular };
             let colour = writer.palette.text_like(line.style.colour);
-            writer.left(&self.names[at], weight, size, colour, left, place + 0.36 * size);
+            writer.left(&self.names[at].0, weight, size, colour, left + self.sample, place + 0.36 * size);
         }
     }
+}
+
+/// How many names fit above each other into a height (px).
+fn fitting(height: f64, unit: f64) -> usize {
+    (height / (APART * unit) + 1e-6) as usize
+}
+
+/// So many ends of curves at most: an own one, and then by turns the one that is farthest above or below all before.
+fn farthest(mut all: Vec<(usize, [f64; 2])>, own: Option<usize>, most: usize) -> Vec<(usize, [f64; 2])> {
+    if all.len() <= most || most == 0 {
+        all.truncate(most);
+        return all;
+    }
+    let first = all.iter().position(|&(at, _)| own == Some(at)).unwrap_or(0);
+    let mut chosen = vec![all.remove(first)];
+    while chosen.len() < most {
+        let apart = |(_, [_, y]): &(usize, [f64; 2])| {
+            chosen.iter().map(|(_, [_, other])| (y - other).abs()).fold(f64::INFINITY, f64::min)
+        };
+        let next = (0..all.len()).max_by(|&one, &other| apart(&all[one]).total_cmp(&apart(&all[other])));
+        chosen.extend(next.map(|next| all.remove(next)));
+    }
+    chosen
 }
 
 /// Places as near as possible to the given ones, which rise, at least so far apart and within two ends.
@@ -119,7 +157,17 @@ pub(super) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f
 
 #[cfg(test)]
 mod tests {
-    use super::spread;
+    use super::{farthest, spread};
+
+    #[test]
+    fn where_few_names_have_room_the_own_one_and_those_apart_are_chosen() {
+        let all: Vec<_> = [10.0, 11.0, 12.0, 50.0, 90.0].into_iter().map(|y| [0.0, y]).enumerate().collect();
+        let chosen = |own, most| farthest(all.clone(), own, most).iter().map(|one| one.0).collect::<Vec<_>>();
+        assert_eq!(chosen(Some(1), 1), [1]);
+        assert_eq!(chosen(Some(1), 3), [1, 4, 3]);
+        assert_eq!(chosen(None, 2), [0, 4]);
+        assert_eq!((chosen(Some(4), 5), chosen(Some(4), 0)), (vec![0, 1, 2, 3, 4], vec![]));
+    }
 
     #[test]
     fn places_part_as_little_as_they_must() {

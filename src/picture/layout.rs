@@ -52,8 +52,10 @@ const MOST_WORDS: f64 = 0.62;
 /// What a strip needs besides its chart (px in the reference picture), and the lowest chart (px).
 const LEAST_STRIP: f64 = 46.0;
 pub(super) const LEAST_CHART: f64 = 14.0;
-/// A strip takes at most this part of its panel.
+/// A strip takes at most this part of its panel, and where so many runs are shown, whose curves it names.
 const STRIP_SHARE: f64 = 0.34;
+const STRIP_SHARE_OF_MANY: f64 = 0.42;
+const MANY: usize = 5;
 
 /// Room above and below the body in a panel with and without words there (px in the reference picture).
 const WORDS_ABOVE: f64 = 95.0;
@@ -125,11 +127,12 @@ impl Layout {
         // The names at the ends of curves have room above each other.
         let names = if runs <= MOST_OTHERS + 1 { runs as f64 * APART } else { 0.0 };
         let strip_units = STRIP + (names - NAMES_HEIGHT).max(0.0);
+        let share = if runs < MANY { STRIP_SHARE } else { STRIP_SHARE_OF_MANY };
         let strip_height = |height: f64| match view.strip {
             Some(_) => {
                 let usual = strip_units * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
                 let more = (scale.like_margin(BELOW_STRIP) - BELOW_STRIP) * scale.unit;
-                (usual + more).min(STRIP_SHARE * height).round()
+                (usual + more).min(share * height).round()
             }
             None => 0.0,
         };

@@ -20,7 +20,7 @@ const ABOVE: f64 = 26.0;
 /// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
 /// Where there are more other runs than this, they would only be a thicket, and take their time.
-pub(super) const MOST_OTHERS: usize = 8;
+pub(super) const MOST_OTHERS: usize = 15;
 /// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
 const OTHER: f64 = 1.4;
 const FAINT: f64 = 0.55;
@@ -92,8 +92,8 @@ impl Strips {
         let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
         let between = [chart.top - NAMES_ABOVE * unit, top_of_all + height];
         let few = self.lines.len() <= MOST_OTHERS + 1;
-        let names =
-            Ends::new(writer.fonts, &self.lines, unit, [NAMES * width, between[1] - between[0]]).filter(|_| few);
+        let room = [NAMES * width, between[1] - between[0]];
+        let names = few.then(|| Ends::new(writer.fonts, &self.lines, unit, room)).flatten();
         let taken = names.as_ref().map_or(0.0, |names| names.width);
         let chart = Chart { left: (left + indent).round(), right: (chart.right - taken).round(), ..chart };
         if chart.right - chart.left < LEAST_WIDTH {

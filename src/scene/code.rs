@@ -11,7 +11,8 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Run {
-    /// A run of a name that is unique in its scene, with a time step (s). Its lines have the colour of its place.
+    /// A run of a name that is unique in its scene, with a time step (s). Its lines get their
+    /// look from [`Scene::framed`].
     pub fn new(name: &str, model: Arc<dyn ElasticModel>, integrator: Integrator, step: f64) -> Self {
         Self { name: name.into(), model, integrator, step, place: 0, colour: None }
     }
@@ -59,8 +60,7 @@ impl Scene {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn new(title: &str, body: Body, mut runs: Vec<Run>) -> Self {
-        runs.iter_mut().enumerate().for_each(|(place, run)| run.place = place);
+    pub fn new(title: &str, body: Body, runs: Vec<Run>) -> Self {
         let side = resolve::mean_edge(&body);
         let visible = Visible::usual(body.dimension, body.len());
         let (columns, clock) = (resolve::columns(runs.len()), ViewFile::default().clock);
@@ -85,8 +85,9 @@ impl Scene {
     }
 
     /// The same scene with the camera that it has if a file says nothing of one: it shows the body and what comes near it.
-    /// It follows from the body, its start, obstacles, grips and duration.
+    /// It follows from the body, its start, obstacles, grips and duration. Each run has its colour and dashes.
     pub fn framed(mut self) -> Self {
+        self.place_runs();
         self.view.camera = resolve::camera(&self);
         self
     }

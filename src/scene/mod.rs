@@ -103,14 +103,21 @@ pub struct Run {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
-    /// Its place among the runs of its scene, which says what its lines look like ([`Palette::line`]). In a figure of
-    /// several scenes, runs of one name have one place.
-    pub place: usize,
-    /// A colour of its own for its lines.
+    /// Its place in the palette, which says what its lines look like ([`Palette::line`]). In a figure of several scenes,
+    /// runs of one name have one place.
+    pub(crate) place: usize,
+    /// A colour of its own for its lines. Those of other runs keep away from it.
     pub colour: Option<Colour>,
 }
 
 impl Scene {
+    /// Gives the runs their places.
+    fn place_runs(&mut self) {
+        let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();
+        let places = self.view.look.palette.places(&chosen);
+        self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
+    }
+
     /// The number of the last frame, `round(duration · frames_per_second)`; frame 0 is the start.
     pub fn last_frame(&self) -> u64 {
         (self.duration * self.frames_per_second).round() as u64

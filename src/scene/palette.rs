@@ -4,7 +4,7 @@
 use super::Run;
 use super::file::{ColoursFile, TypedColour};
 use super::view::Theme;
-use crate::colour::{Colour, Oklab, best_of, contrast, from_oklab, mixed, oklab, readable};
+use crate::colour::{Colour, Oklab, Sight, best_of, contrast, difference, from_oklab, mixed, oklab, readable};
 
 /// The colours of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,6 +134,28 @@ impl Palette {
         }
     }
 
+    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others leave out
+    /// colours that look like a chosen one, as far as there are any left.
+    pub(super) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
+        let (colours, dashes) = (self.runs.len(), DASHES.len());
+        let seen = |colour| readable(colour, self.halo, LINE_CONTRAST);
+        let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
+        let is_free = self.runs.map(|own| !chosen.iter().flatten().any(|other| is_like(own, other)));
+        let keeps = |at: usize| chosen[at].is_some() || is_free[at % colours];
+        let is_taken = |colour: usize| (colour..chosen.len()).step_by(colours).any(|at| chosen[at].is_none());
+        let free = || (0..colours).filter(|&colour| is_free[colour]);
+        let mut others = free().filter(|&colour| !is_taken(colour)).chain(free().cycle());
+        let place = |at: usize| {
+            if keeps(at) {
+                return at;
+            }
+            let dash = (at + at / colours) % dashes;
+            // The place of this colour that has these dashes.
+            others.next().map_or(at, |colour| colour + colours * ((dash + dashes - colour) % dashes))
+        };
+        (0..chosen.len()).map(place).collect()
+    }
+
     /// A colour in which words can be read on the background: the nearest to a given one.
     pub fn text_like(&self, colour: Colour) -> Colour {
         readable(colour, self.halo, LEAST_CONTRAST)
@@ -235,6 +257,8 @@ impl Palette {
 
 /// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
 pub(super) const LEAST_CONTRAST: f64 = 4.5;
+/// How different the colours of two runs look at the least, to anybody (CIEDE2000).
+const RUNS_APART: f64 = 15.0;
 /// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
 const GOOD_CONTRAST: f64 = 5.0;
 /// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
@@ -261,6 +285,11 @@ fn hatch(alarm: Colour, theme: &Palette) -> Colour {
         return from_oklab(Oklab([lightness + LIGHTER_HATCH, a, b]));
     }
     like(alarm, theme.alarm, theme.alarm_line)
+}
+
+/// How different two colours look at the least, to all eyes.
+fn least_difference(one: Colour, other: Colour) -> f64 {
+    Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
 }
 
 /// The contrast of black or white, whichever has more, with a ground; never less than 4.58.
@@ -365,7 +394,7 @@ const DARK: Palette = Palette {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Lab, Sight, cie76, ciede2000, difference, encoded, lab, linear, seen_by};
+    use crate::colour::{Lab, cie76, ciede2000, encoded, lab, linear, seen_by};
 
     const WHITE: Colour = [255; 3];
 
@@ -466,11 +495,6 @@ mod tests {
         println!("as they are, lit, just behind, deep inside: {least:.1?}");
     }
 
-    /// How different two colours look at the least, to all eyes.
-    fn least_difference(one: Colour, other: Colour) -> f64 {
-        Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
-    }
-
     #[test]
     fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
         for theme in [LIGHT, DARK] {
@@ -481,7 +505,7 @@ mod tests {
                 assert!(found >= 20.0, "{colour:x?} and turned-over elements differ by {found:.1}");
                 for other in &theme.runs[..at] {
                     let found = least_difference(colour, *other);
-                    assert!(found >= 15.0, "{colour:x?} and {other:x?} differ by {found:.1}");
+                    assert!(found >= RUNS_APART, "{colour:x?} and {other:x?} differ by {found:.1}");
                 }
             }
         }

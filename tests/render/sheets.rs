@@ -343,7 +343,19 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
                     let name =
                         names.min_by(|one, other| (one.baseline - y).abs().total_cmp(&(other.baseline - y).abs()));
                     let name = name.unwrap_or_else(|| panic!("{} is named right of chart {chart} of {runs}", run.name));
-                    assert!(name.span[0] - x < 40.0, "{name:?}");
+                    // It stands beside the curve, or where there are many, beside a sample of its line.
+                    let sample = picture.curves.iter().find(|sample| match sample.points[..] {
+                        [[left, y], [right, same]] => {
+                            left > x && right < name.span[0] && y == same && (y - name.baseline).abs() < 20.0
+                        }
+                        _ => false,
+                    });
+                    assert_eq!(
+                        sample.map(|sample| (sample.colour, &sample.dash)),
+                        (runs > 4).then_some((curve.colour, &curve.dash))
+                    );
+                    let before = sample.map_or(name.span[0], |sample| sample.points[0][0]);
+                    assert!(before - x < 40.0, "{name:?}");
                     (y, name.baseline)
                 })
                 .collect();
@@ -364,6 +376,16 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
         ["k = 1500", "k = 1000", "k = 2000"]
     );
     let palette = &figure.look.palette;
+    // Those that the first scene lacks have lines of their own.
+    let text = "[sheet]\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n\
+                [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";
+    let (lacking, _) = of_alike(4, text);
+    let [few, all] = lacking.scenes() else { panic!("two scenes") };
+    assert_eq!((few.runs.len(), all.runs.len()), (3, 4));
+    let lines: Vec<_> = all.runs.iter().map(|run| palette.line(run)).collect();
+    for (at, line) in lines.iter().enumerate() {
+        assert!(lines[..at].iter().all(|other| other.colour != line.colour && other.dash != line.dash), "{lines:?}");
+    }
     for run in &second.runs {
         let same = first.runs.iter().find(|same| same.name == run.name).expect("a run of that name");
         assert_eq!(palette.line(run), palette.line(same), "{}", run.name);

@@ -331,6 +331,37 @@ fn eight_runs_of_one_model_are_told_apart() {
     }
 }
 
+/// At the usual sizes and in the usual columns each strip shows all curves, and names its own and others.
+#[test]
+fn strips_of_many_runs_name_their_curves() {
+    for size in [[1280, 720], [1600, 1000]] {
+        for runs in 2..=12 {
+            let text = alike(runs, "light").replace("[1600, 900]", &format!("{size:?}")).replace("panels = 'grid'", "");
+            let scene = Scene::parse(&text, "alike.toml", &Limits::default()).expect("sound");
+            let all: Vec<_> = (0..runs).collect();
+            let picture = compose(&scene, &Sequence::new(&scene, &all).frame(scene.last_frame()));
+            let case = format!("{runs} runs in {size:?}");
+            assert_eq!(picture.curves.iter().filter(|curve| curve.alpha == 0.55).count(), runs * (runs - 1), "{case}");
+            for (run, panel) in scene.runs.iter().zip(&picture.panels) {
+                let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+                let row = size[1] as f32 / runs.div_ceil(scene.view.columns) as f32;
+                let is_here = |name: &str| {
+                    picture.words.iter().any(|word| {
+                        let [x, _, right, bottom] = word.bounds();
+                        let below = top + height < bottom && bottom < top + row;
+                        word.text == name && left + 0.5 * width < x && right < left + width && below
+                    })
+                };
+                assert!(is_here(&run.name), "{} is not named in its strip, {case}", run.name);
+                let named = scene.runs.iter().filter(|run| is_here(&run.name)).count();
+                assert!(named >= runs.min(4), "{named} of {case}");
+            }
+            let overlapping = super::words::overlapping(&picture);
+            assert_eq!(overlapping.map(|two| two.map(|word| word.text.clone())), None, "{case}");
+        }
+    }
+}
+
 #[test]
 fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     let scene = Scene::parse(&alike(64, "light"), "alike.toml", &Limits::default()).expect("sound");

@@ -1,7 +1,7 @@
 //! Scenes made in code, as the author of another crate would make them.
 
 use localshape::glam::DVec3;
-use localshape::scene::{Limits, Scene, View};
+use localshape::scene::{Limits, Run, Scene, View};
 
 fn parse(text: &str) -> Scene {
     Scene::parse(text, "scene.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -27,5 +27,21 @@ fn a_body_made_in_code_is_looked_at_as_one_in_a_file() {
         assert_eq!((scene.title.as_str(), scene.last_frame()), ("scene", 60));
         assert_eq!((&scene.initial, scene.gravity), (&file.initial, DVec3::ZERO));
         assert_ne!(scene.view.camera, View::default().camera);
+    }
+}
+
+/// Runs that are put beside others have colours and dashes of their own, as in a file.
+#[test]
+fn runs_made_in_code_are_told_apart() {
+    let run = "[[run]]\nname = 'One'\nmodel = { kind = 'shape-based', stiffness = 1.0 }\n";
+    let file = parse(&format!("time.duration = 1\nbody.lattice = {{ cells = [1, 1, 1], side = 1 }}\n{run}"));
+    let one = || Run::new("One", file.runs[0].model.clone(), file.runs[0].integrator, 1e-3);
+    let mut scene = Scene::new("scene", (*file.body).clone(), vec![one()]);
+    scene.runs.extend([one(), one()]);
+    scene.runs[1].colour = Some([0, 128, 128]);
+    scene = scene.framed();
+    let lines: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run)).collect();
+    for (at, line) in lines.iter().enumerate() {
+        assert!(lines[..at].iter().all(|other| other.colour != line.colour && other.dash != line.dash), "{lines:?}");
     }
 }

@@ -52,9 +52,11 @@ fn runs_have_their_places_colours_or_their_own() {
         let palette = scene.view.look.palette;
         let lines: Vec<_> = scene.runs.iter().map(|run| palette.line(run)).collect();
         let own = [65, 105, 225];
+        // On light ground the first colour is like royal blue and steps aside for the second, which is free.
+        let first = if theme == "light" { 1 } else { 0 };
         assert_eq!(
             lines.iter().map(|line| line.colour).collect::<Vec<_>>(),
-            [palette.runs[0], own, palette.runs[2], own]
+            [palette.runs[first], own, palette.runs[2], own]
         );
         // Of one colour, but not of one dash.
         assert_ne!(lines[1].dash, lines[3].dash);
@@ -71,6 +73,40 @@ fn runs_have_their_places_colours_or_their_own() {
     let digest = |said: &str| good(&of_runs("", &[said])).digest;
     assert_eq!(digest("colour = 'royalblue'"), digest("colour = '#4169E1'"));
     assert_ne!(digest("colour = 'royalblue'"), digest(""));
+}
+
+/// How different the colours of a scene's runs look at the least, to anybody, without those of two runs of one choice.
+fn least_apart(scene: &Scene) -> f64 {
+    let colours: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).colour).collect();
+    let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
+    let seen = pairs.flat_map(|two| Sight::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
+    seen.map(|([one, other], sight)| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn colours_of_runs_step_aside_for_chosen_ones() {
+    for theme in ["light", "dark"] {
+        let view = format!("theme = '{theme}'");
+        // What each place of the palette has, chosen for another run.
+        for colour in Palette::of(if theme == "light" { Theme::Light } else { Theme::Dark }).runs {
+            let [red, green, blue] = colour;
+            let chosen = format!("colour = '#{red:02x}{green:02x}{blue:02x}'");
+            for at in 0..8 {
+                let mut said = [""; 8];
+                said[at] = &chosen;
+                let scene = good(&of_runs(&view, &said));
+                assert!(least_apart(&scene) >= 15.0, "{chosen} of run {at}: {}", least_apart(&scene));
+                let dashes: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).dash).collect();
+                assert!((0..8).all(|at| !dashes[..at].contains(&dashes[at])), "{dashes:?}");
+            }
+        }
+    }
+    let scene = good(&of_runs("", &["", "colour = 'teal'", ""]));
+    assert!(least_apart(&scene) >= 15.0, "{}", least_apart(&scene));
+    // Nothing is left where all are like a chosen one, and then dashes say it.
+    let scene = good(&of_runs("colours.arrow = 'navy'", &["", "colour = 'navy'", ""]));
+    let lines: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).dash).collect();
+    assert!(lines[0] != lines[1] && lines[1] != lines[2] && lines[0] != lines[2]);
 }
 
 #[test]

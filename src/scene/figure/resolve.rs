@@ -305,13 +305,21 @@ impl Scenes<'_, '_, '_> {
     }
 }
 
-/// Runs of one name have the same colour in all scenes: that of the first scene.
+/// Runs of one name have the same line in all scenes, that of the first scene which has them, and others have others.
 fn share_lines(scenes: &mut [Scene]) {
-    let Some((first, others)) = scenes.split_first_mut() else { return };
-    for run in others.iter_mut().flat_map(|scene| &mut scene.runs) {
-        if let Some(same) = first.runs.iter().find(|same| same.name == run.name) {
-            (run.place, run.colour) = (same.place, same.colour);
-        }
+    let Some(first) = scenes.first() else { return };
+    let palette = first.view.look.palette;
+    let (mut numbers, mut chosen) = (HashMap::new(), Vec::new());
+    for run in scenes.iter().flat_map(|scene| &scene.runs) {
+        numbers.entry(run.name.clone()).or_insert_with(|| {
+            chosen.push(run.colour);
+            chosen.len() - 1
+        });
+    }
+    let places = palette.places(&chosen);
+    for run in scenes.iter_mut().flat_map(|scene| &mut scene.runs) {
+        let number = numbers[&run.name];
+        (run.place, run.colour) = (places[number], chosen[number]);
     }
 }
 

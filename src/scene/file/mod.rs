@@ -119,7 +119,7 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) integrator: Option<Integrator>,
     /// The colour of its curves and arrows, and of the line beside its name: digits such as `"#0072b2"`, or a name of CSS
     /// such as `"teal"`. With the background it has a contrast of at least 3, and it is at least 20 (CIEDE2000) from
-    /// turned-over elements, also to colour-blind eyes. Default: one for each of the first eight runs. Dashes differ
-    /// in any case, so several runs may have one colour.
+    /// turned-over elements, also to colour-blind eyes. Default: one for each of the first eight runs, other than
+    /// those chosen for other runs. Dashes differ in any case, so several runs may have one colour.
     pub(in crate::scene) colour: Option<TypedColour>,
 }

@@ -314,7 +314,7 @@ fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
 }
 
 /// Mean length of all elements' edges at rest (m); the size of the body if they have none.
-pub(super) fn mean_edge(body: &Body) -> f64 {
+pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for element in 0..body.elements.len() {
         for [a, b] in body.topology().edges_of(element) {

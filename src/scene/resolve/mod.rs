@@ -23,7 +23,8 @@ use super::report::{Report, Way, written};
 use super::structure::Checked;
 use super::view::{Camera, FontFiles};
 use super::words::{count, short};
-use crate::sim::body::{Body, Dimension};
+use crate::sim::body::Dimension;
+pub(super) use elements::mean_edge;
 use glam::DVec3;
 use lists::Lists;
 use serde::de::DeserializeOwned;
@@ -31,6 +32,7 @@ use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
+pub(super) use view::columns;
 
 /// The parts of a scene file without those that have a mistake in their structure.
 #[derive(Debug)]
@@ -178,7 +180,7 @@ pub(super) fn resolve(
         return None;
     }
     let (time, body) = (parts.time.as_ref()?, body?);
-    let scene = Scene {
+    let mut scene = Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
         file: None,
@@ -194,6 +196,7 @@ pub(super) fn resolve(
         view: view?,
         warnings: Vec::new(),
     };
+    scene.place_runs();
     warn_of_time(&scene, report);
     Some(scene)
 }
@@ -248,16 +251,6 @@ pub(super) fn camera(scene: &Scene) -> Camera {
         runs: &scene.runs,
     };
     view::camera(&CameraFile::default(), None, scene.view.explode, &around)
-}
-
-/// How many panels stand beside each other of so many, if the file says nothing of it.
-pub(super) fn columns(runs: usize) -> usize {
-    view::columns(runs)
-}
-
-/// Mean length of all elements' edges at rest (m); the size of the body if they have none.
-pub(super) fn mean_edge(body: &Body) -> f64 {
-    elements::mean_edge(body)
 }
 
 fn check_frames(time: &TimeFile, report: &mut Report<'_>) {

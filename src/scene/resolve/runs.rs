@@ -63,7 +63,7 @@ pub(super) fn resolve(
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
         let colour = run.colour.map(|colour| colour.0);
-        runs.push(Run { name: run.name.clone(), model, integrator, step, place: at, colour });
+        runs.push(Run { name: run.name.clone(), model, integrator, step, place: 0, colour });
     }
     Some(runs)
 }

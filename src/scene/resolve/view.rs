@@ -174,7 +174,7 @@ pub(super) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
 }
 
 /// How many panels stand beside each other of so many, unless a scene says so.
-pub(super) fn columns(runs: usize) -> usize {
+pub(in crate::scene) fn columns(runs: usize) -> usize {
     COLUMNS.min(runs.max(1))
 }
 
