@@ -42,6 +42,8 @@
 //! program. Without the feature `render` (on by
 //! default) the crate simulates and needs no graphics library.
 
+#[cfg(feature = "render")]
+pub mod animation;
 pub mod cli;
 pub mod colour;
 pub mod golden;
