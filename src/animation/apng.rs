@@ -1,4 +1,4 @@
-//! Animated PNG: every frame as it is, but only the rectangle in which it differs from the one before.
+//! Animated PNG: every frame as it is, but only what differs from the one before is stored.
 
 use super::order::{Kept, in_order};
 use super::timeline::fraction;
@@ -9,7 +9,7 @@ const ANIMATION_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"acTL")
 const FRAME_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"fcTL");
 const FRAME_DATA: png::chunk::ChunkType = png::chunk::ChunkType(*b"fdAT");
 
-/// A rectangle of a frame, compressed.
+/// The part of a frame that is new, compressed.
 struct Patch {
     place: [u32; 4],
     data: Vec<u8>,
@@ -19,7 +19,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let shots = animation.timeline.shots();
     let [width, height] = animation.reel.size();
     let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.add_itxt_chunk("Comment".to_owned(), animation.comment.to_owned()).map_err(failed)?;
@@ -51,25 +51,28 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
 }
 
 impl Patch {
+    /// What is as before is clear, for that takes next to no room.
     fn new(image: &Image, before: Option<&Image>) -> Self {
         let [width, height] = image.size;
         let pixel = |image: &Image, at: usize| [0, 1, 2].map(|channel| image.pixels[3 * at + channel]);
-        let place = match before {
-            Some(before) => changed(image.size, |at| pixel(image, at) != pixel(before, at)),
-            None => [0, 0, width, height],
-        };
+        let is_new = |at: usize| before.is_none_or(|before| pixel(image, at) != pixel(before, at));
+        let place = if before.is_some() { changed(image.size, is_new) } else { [0, 0, width, height] };
         let [left, top, wide, high] = place.map(|number| number as usize);
-        let rows = (top..top + high).map(|y| 3 * (y * width as usize + left));
-        let pixels: Vec<u8> = rows.flat_map(|start| &image.pixels[start..start + 3 * wide]).copied().collect();
+        let places = (top..top + high).flat_map(|y| (0..wide).map(move |x| y * width as usize + left + x));
+        let mut pixels = Vec::with_capacity(4 * wide * high);
+        for at in places {
+            let [r, g, b] = pixel(image, at);
+            pixels.extend_from_slice(&if is_new(at) { [r, g, b, 255] } else { [0; 4] });
+        }
         Self { place, data: compressed([place[2], place[3]], &pixels) }
     }
 
-    /// What stands before its data: it stays where it is put, and covers what was there.
+    /// What stands before its data: it stays where it is put, and what was there shows through where it is clear.
     fn control(&self, sequence: u32, duration: f64) -> Vec<u8> {
         let [left, top, width, height] = self.place;
         let numbers = [sequence, width, height, left, top].map(u32::to_be_bytes).concat();
         let delay = fraction(duration, u16::MAX.into()).map(|part| (part as u16).to_be_bytes()).concat();
-        [numbers.as_slice(), &delay, &[0, 0]].concat()
+        [numbers.as_slice(), &delay, &[0, 1]].concat()
     }
 }
 
@@ -77,9 +80,26 @@ impl Patch {
 fn compressed([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
     let mut file = Vec::with_capacity(pixels.len() / 8);
     let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
+    if let Ok(c) = std::env::var("LSA_L") {
+        let (l, f) = c.split_once(',').unwrap();
+        encoder.set_deflate_compression(png::DeflateCompression::Level(l.parse().unwrap()));
+        encoder.set_filter(match f {
+            "n" => png::Filter::NoFilter,
+            "s" => png::Filter::Sub,
+            "u" => png::Filter::Up,
+            "p" => png::Filter::Paeth,
+            "m" => png::Filter::MinEntropy,
+            _ => png::Filter::Adaptive,
+        });
+    } else {
+        encoder.set_compression(match std::env::var("LSA_C").as_deref() {
+            Ok("b") => png::Compression::Balanced,
+            Ok("h") => png::Compression::High,
+            _ => png::Compression::Fast,
+        });
+    }
     let mut writer = encoder.write_header().expect("a picture into memory");
     writer.write_image_data(pixels).expect("a picture of the right length into memory");
     writer.finish().expect("a picture into memory");

@@ -1,8 +1,8 @@
 //! GIF: one palette for all frames, so that nothing flickers, found in a first pass over them. Each frame is stored where
 //! it differs from the one before.
 
-use super::order::{Kept, in_order};
-use super::palette::Counts;
+use super::order::in_order;
+use super::palette::{Counts, Numbers, Palette};
 use super::{Animation, AnimationError, Written, changed};
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::io::{self, Write};
@@ -19,7 +19,7 @@ const COMMENT: AnyExtension = AnyExtension(0xfe);
 const FIRST: f64 = 0.4;
 
 pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
-    let ticks = animation.timeline.ticks(RATE, LEAST);
+    let ticks = animation.timeline.at_most(RATE / LEAST as f64).ticks(RATE, LEAST);
     let size @ [width, height] = animation.reel.size();
     let [Ok(wide), Ok(high)] = [width, height].map(u16::try_from) else {
         return Err(AnimationError::Wrong(format!(
@@ -50,13 +50,10 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     }
     encoder.write_raw_extension(COMMENT, &[animation.comment.as_bytes()]).map_err(failed)?;
 
-    let numbered = Kept::new(animation.threads, |frame| Ok(palette.numbers(&animation.reel.image(frame)?)));
-    let frame = |at: usize| {
-        let numbers = numbered.get(ticks[at].0)?;
-        let before = at.checked_sub(1).map(|before| numbered.get(ticks[before].0)).transpose()?;
-        Ok(frame(size, &numbers, before.as_deref().map(Vec::as_slice)))
-    };
-    in_order(ticks.len(), animation.threads, frame, |at, mut frame| {
+    let numbers = |at: usize| Ok(palette.numbers(&animation.reel.image(ticks[at].0)?));
+    let mut shown: Option<Vec<u8>> = None;
+    in_order(ticks.len(), animation.threads, numbers, |at, numbers| {
+        let mut frame = frame(size, &palette, numbers, &mut shown);
         // What lasts longer than a delay can say stays for several.
         let mut left = ticks[at].1;
         while left > 0 {
@@ -71,31 +68,33 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     Ok(Written { pictures: ticks.len(), duration })
 }
 
-/// The part of a picture that differs from the one before, compressed.
-fn frame(size: [u32; 2], numbers: &[u8], before: Option<&[u8]>) -> Frame<'static> {
-    let [left, top, width, height] = match before {
-        Some(before) => changed(size, |at| numbers[at] != before[at]),
-        None => [0, 0, size[0], size[1]],
-    }
-    .map(|number| number as usize);
-    let mut buffer = Vec::with_capacity(width * height);
-    for y in top..top + height {
-        let start = y * size[0] as usize + left;
-        let row = &numbers[start..start + width];
-        match before {
-            Some(before) => {
-                let same = row.iter().zip(&before[start..start + width]);
-                buffer.extend(same.map(|(&now, &then)| if now == then { SAME } else { now }));
+/// The part of a picture that differs from what is shown, compressed. A pixel whose colour is as good as the one shown
+/// stays as it is.
+fn frame(size: [u32; 2], palette: &Palette, numbers: Numbers, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
+    let (place, buffer) = match shown {
+        None => ([0, 0, size[0], size[1]], shown.insert(numbers.best).clone()),
+        Some(shown) => {
+            let mut new = vec![SAME; shown.len()];
+            for (at, shown) in shown.iter_mut().enumerate() {
+                if !palette.may_stay(&numbers, at, *shown) {
+                    new[at] = numbers.best[at];
+                    *shown = new[at];
+                }
             }
-            None => buffer.extend_from_slice(row),
+            let place @ [left, top, width, height] = changed(size, |at| new[at] != SAME);
+            let start = |y: u32| (y * size[0] + left) as usize;
+            let rows = (top..top + height).map(|y| &new[start(y)..start(y) + width as usize]);
+            (place, rows.flatten().copied().collect())
         }
-    }
+    };
+    let is_first = place[2..] == size && buffer.iter().all(|&number| number != SAME);
+    let [left, top, width, height] = place.map(|number| number as u16);
     let mut frame = Frame {
-        left: left as u16,
-        top: top as u16,
-        width: width as u16,
-        height: height as u16,
-        transparent: before.is_some().then_some(SAME),
+        left,
+        top,
+        width,
+        height,
+        transparent: (!is_first).then_some(SAME),
         dispose: DisposalMethod::Keep,
         buffer: buffer.into(),
         ..Frame::default()

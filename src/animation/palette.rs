@@ -18,11 +18,16 @@ const ROUNDS: usize = 6;
 const POWER: f64 = 0.4;
 /// Colours that are as near as this in Oklab look the same side by side, and are not dithered.
 const NEAR: f64 = 0.012;
+/// What is shown already stays while the colour that is meant is as near as this in Oklab.
+const STAY: f64 = 0.02;
 /// How much a mixture is disliked for its two colours being apart: its grain shows.
 const GRAIN: f64 = 0.15;
 /// Steps of a mixture.
 const LEVELS: f64 = 64.0;
 
+fn par(name: &str, usual: f64) -> f64 {
+    std::env::var(name).map_or(usual, |v| v.parse().unwrap())
+}
 /// Where the colour of a pixel is counted.
 fn cell(pixel: [u8; 3]) -> usize {
     let [r, g, b] = pixel.map(|byte| usize::from(byte >> (8 - BITS)));
@@ -76,14 +81,24 @@ impl Counts {
         let cells: Vec<Cell> = filled
             .map(|(at, &[count, r, g, b])| {
                 let mean = [r, g, b].map(|sum| ((2 * sum + count) / (2 * count)) as u8);
-                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, POWER) }
+                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, par("LSA_POWER", POWER)) }
             })
             .collect();
         let colours = chosen(&cells);
         let labs: Vec<Oklab> = colours.iter().map(|&colour| oklab(colour)).collect();
         let mut mixtures = vec![Mixture::default(); CELLS];
-        cells.iter().for_each(|cell| mixtures[cell.at] = Mixture::of(cell.lab, &labs));
-        Palette { colours, mixtures }
+        let mut near = Vec::with_capacity(cells.len());
+        for (row, cell) in (0..).zip(&cells) {
+            mixtures[cell.at] = Mixture { row, ..Mixture::of(cell.lab, &labs) };
+            let mut bits = [0; 4];
+            for (number, &other) in labs.iter().enumerate() {
+                if square(cell.lab, other) < par("LSA_STAY", STAY).powi(2) {
+                    bits[number / 64] |= 1_u64 << (number % 64);
+                }
+            }
+            near.push(bits);
+        }
+        Palette { colours, mixtures, near }
     }
 }
 
@@ -188,13 +203,15 @@ struct Mixture {
     other: u8,
     /// How many of 64 pixels have the other.
     share: u8,
+    /// Where it is said which colours are near it.
+    row: u32,
 }
 
 impl Mixture {
     fn of(colour: Oklab, palette: &[Oklab]) -> Self {
         let one = nearest_of(colour, palette);
         let mut best = (square(colour, palette[one]), one, 0.0);
-        if best.0 > NEAR * NEAR {
+        if best.0 > par("LSA_NEAR", NEAR).powi(2) {
             for (other, &to) in palette.iter().enumerate() {
                 let apart = square(palette[one], to);
                 if apart == 0.0 {
@@ -206,14 +223,14 @@ impl Mixture {
                 let share = (along / apart).clamp(0.0, 0.5);
                 let from = palette[one].0;
                 let mixed = Oklab(std::array::from_fn(|axis| from[axis] + share * (to.0[axis] - from[axis])));
-                let error = square(colour, mixed) + GRAIN * share * (1.0 - share) * apart;
+                let error = square(colour, mixed) + par("LSA_GRAIN", GRAIN) * share * (1.0 - share) * apart;
                 if error < best.0 {
                     best = (error, other, share);
                 }
             }
         }
         let (_, other, share) = best;
-        Self { one: one as u8, other: other as u8, share: (share * LEVELS).round() as u8 }
+        Self { one: one as u8, other: other as u8, share: (share * LEVELS).round() as u8, row: 0 }
     }
 }
 
@@ -243,22 +260,40 @@ const ORDER: [[u8; 8]; 8] = {
 pub(super) struct Palette {
     pub(super) colours: Vec<Colour>,
     mixtures: Vec<Mixture>,
+    /// For each cell that is not empty, a bit for each colour that is near it.
+    near: Vec<[u64; 4]>,
+}
+
+/// A picture as numbers of colours.
+pub(super) struct Numbers {
+    /// For each pixel the colour that stands for its own.
+    pub(super) best: Vec<u8>,
+    /// For each pixel where it is said which other colours are near it.
+    rows: Vec<u32>,
 }
 
 impl Palette {
+    /// Whether a colour that is shown already may stay for a pixel.
+    pub(super) fn may_stay(&self, numbers: &Numbers, at: usize, shown: u8) -> bool {
+        shown == numbers.best[at]
+            || self.near[numbers.rows[at] as usize][usize::from(shown / 64)] >> (shown % 64) & 1 == 1
+    }
+
     /// A picture as numbers of colours. Which of two colours a pixel takes depends on its place: so the grain of a
     /// mixture stands still, whatever moves.
-    pub(super) fn numbers(&self, image: &Image) -> Vec<u8> {
+    pub(super) fn numbers(&self, image: &Image) -> Numbers {
         let width = image.size[0] as usize;
-        let mut numbers = Vec::with_capacity(image.pixels.len() / 3);
-        for (y, row) in image.pixels.chunks_exact(3 * width).enumerate() {
+        let all = image.pixels.len() / 3;
+        let (mut best, mut rows) = (Vec::with_capacity(all), Vec::with_capacity(all));
+        for (y, line) in image.pixels.chunks_exact(3 * width).enumerate() {
             let order = &ORDER[y % 8];
-            numbers.extend(row.chunks_exact(3).enumerate().map(|(x, pixel)| {
-                let Mixture { one, other, share } = self.mixtures[cell([pixel[0], pixel[1], pixel[2]])];
-                if order[x % 8] < share { other } else { one }
-            }));
+            for (x, pixel) in line.chunks_exact(3).enumerate() {
+                let Mixture { one, other, share, row } = self.mixtures[cell([pixel[0], pixel[1], pixel[2]])];
+                best.push(if order[x % 8] < share { other } else { one });
+                rows.push(row);
+            }
         }
-        numbers
+        Numbers { best, rows }
     }
 }
 
@@ -285,7 +320,7 @@ mod tests {
         let image = Image { size: [3, 1], pixels: vec![252, 252, 250, 20, 30, 40, 252, 252, 250] };
         let palette = palette(&image);
         let numbers = palette.numbers(&image);
-        let back: Vec<u8> = numbers.iter().flat_map(|&number| palette.colours[usize::from(number)]).collect();
+        let back: Vec<u8> = numbers.best.iter().flat_map(|&number| palette.colours[usize::from(number)]).collect();
         assert_eq!(back, image.pixels);
     }
 
@@ -299,12 +334,12 @@ mod tests {
         assert!(palette.colours.len() <= MOST);
         let numbers = palette.numbers(&image);
         let mut sum = 0.0;
-        for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers) {
+        for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers.best) {
             let [one, other] =
                 [[pixel[0], pixel[1], pixel[2]], palette.colours[usize::from(number)]].map(|colour| oklab(colour));
             sum += one.distance(other);
         }
-        let mean = sum / numbers.len() as f64;
+        let mean = sum / numbers.best.len() as f64;
         assert!(mean < 0.03, "{mean}");
     }
 }

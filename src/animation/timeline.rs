@@ -66,10 +66,39 @@ impl Timeline {
 
     /// The same with a fixed number of pictures a second, each of which shows the frame of its moment.
     pub fn at_rate(mut self, rate: f64) -> Self {
-        let ticks = self.ticks(rate, 1);
-        self.shots = ticks.into_iter().map(|(frame, ticks)| Shot { frame, duration: ticks as f64 / rate }).collect();
+        // Sums of thirds may end a hair beyond a whole number.
+        let tick = |time: f64| (time * rate - 1e-6).ceil().max(0.0) as u64;
+        let mut starts: Vec<(usize, u64)> = Vec::new();
+        let mut time = 0.0;
+        for shot in &self.shots {
+            match starts.last_mut() {
+                Some((frame, start)) if *start == tick(time) => *frame = shot.frame,
+                _ => starts.push((shot.frame, tick(time))),
+            }
+            time += shot.duration;
+        }
+        let ends: Vec<u64> = starts.iter().skip(1).map(|(_, start)| *start).chain([tick(time)]).collect();
+        let shots = starts.iter().zip(ends).filter(|((_, start), end)| start < end);
+        self.shots =
+            shots.map(|(&(frame, start), end)| Shot { frame, duration: (end - start) as f64 / rate }).collect();
         self.rate = Some(rate);
         self
+    }
+
+    /// The same with at most so many pictures a second: halved as often as it takes, so that what is left is evenly
+    /// spaced.
+    pub(super) fn at_most(&self, most: f64) -> Self {
+        let own = self.own_rate();
+        let mut rate = own;
+        while rate > most * 1.001 {
+            rate /= 2.0;
+        }
+        if rate < own { self.clone().at_rate(rate) } else { self.clone() }
+    }
+
+    /// The same for a film: as many pictures a second as screens show, unless somebody has chosen more.
+    pub(super) fn for_screens(&self) -> Self {
+        if self.rate.is_some() { self.clone() } else { self.at_most(MOST_RATE) }
     }
 
     /// The last frame longer by so much (s).
@@ -92,15 +121,15 @@ impl Timeline {
         self
     }
 
-    /// Pictures a second with which every frame can be shown at its time, as numerator and denominator.
-    pub(super) fn rate(&self, for_screens: bool) -> [u32; 2] {
+    /// Pictures a second of the shortest shot.
+    fn own_rate(&self) -> f64 {
         let shortest = self.shots.iter().map(|shot| shot.duration).fold(f64::INFINITY, f64::min);
-        let mut rate = self.rate.unwrap_or(1.0 / shortest);
-        // Halved, so that what is left is evenly spaced.
-        while for_screens && self.rate.is_none() && rate > MOST_RATE * 1.001 {
-            rate /= 2.0;
-        }
-        fraction(rate, 1 << 20)
+        self.rate.unwrap_or(1.0 / shortest)
+    }
+
+    /// Pictures a second with which every frame can be shown at its time, as numerator and denominator.
+    pub(super) fn rate(&self) -> [u32; 2] {
+        fraction(self.own_rate(), 1 << 20)
     }
 
     /// The shots in whole ticks of a clock, `rate` a second, each `least` at least: every one begins at the tick nearest
@@ -166,28 +195,26 @@ mod tests {
         let stray = |number: u64| (number, number as f64 / 60.0 + if number % 3 == 1 { 1e-3 } else { 0.0 });
         let timeline = Timeline::of(&(0..=180).map(stray).collect::<Vec<_>>());
         assert!(timeline.shots().iter().all(|shot| (shot.duration - 1.0 / 60.0).abs() < 1e-12));
-        assert_eq!(timeline.rate(true), [60, 1]);
-        assert_eq!(even(5, 25.0).faster(0.5).rate(true), [25, 2]);
-        assert_eq!(even(5, 60.0).faster(2.0).rate(true), [60, 1]);
-        assert_eq!(even(5, 60.0).faster(2.0).rate(false), [120, 1]);
+        assert_eq!(timeline.rate(), [60, 1]);
+        assert_eq!(even(5, 25.0).faster(0.5).rate(), [25, 2]);
+        assert_eq!(even(5, 60.0).faster(2.0).for_screens().rate(), [60, 1]);
+        assert_eq!(even(5, 60.0).faster(2.0).rate(), [120, 1]);
         let tenth = Timeline::of(&[(0, 0.0), (10, 10.0 / 60.0), (20, 20.0 / 60.0)]);
-        assert_eq!(tenth.rate(true), [6, 1]);
+        assert_eq!(tenth.rate(), [6, 1]);
     }
 
     #[test]
     fn hundredths_carry_their_errors_on() {
-        let ticks = even(61, 60.0).ticks(100.0, 2);
-        assert!(ticks.iter().all(|(_, delay)| (2..=3).contains(delay)), "{ticks:?}");
-        assert_eq!(ticks.iter().map(|(_, delay)| delay).sum::<u64>(), 102);
-        assert_eq!((ticks[0].0, ticks.last().unwrap().0), (0, 60), "the first and the last are shown");
-        let mut start = 0;
-        for (frame, delay) in ticks {
-            assert!((start as f64 / 100.0 - frame as f64 / 60.0).abs() < 0.017, "{frame} at {start}");
-            start += delay;
-        }
         let ticks = even(31, 30.0).ticks(100.0, 2);
         assert_eq!(ticks.len(), 31);
-        assert_eq!(ticks.iter().take(3).map(|(_, delay)| *delay).collect::<Vec<_>>(), [3, 4, 3]);
+        assert_eq!(ticks.iter().take(4).map(|(_, delay)| *delay).collect::<Vec<_>>(), [3, 4, 3, 3]);
+        let mut start = 0;
+        for (frame, delay) in ticks {
+            assert!((start as f64 / 100.0 - frame as f64 / 30.0).abs() < 0.0051, "{frame} at {start}");
+            start += delay;
+        }
+        let uneven = Timeline::of(&[(0, 0.0), (1, 0.001), (2, 0.5), (3, 0.501)]);
+        assert_eq!(uneven.ticks(100.0, 2), [(0, 50), (3, 2)], "the first and the last are shown");
     }
 
     #[test]
@@ -199,7 +226,10 @@ mod tests {
         let held = even(3, 10.0).holding(1.0);
         assert!((held.duration() - 1.3).abs() < 1e-12);
         assert_eq!(held.ticks(10.0, 1), [(0, 1), (1, 1), (2, 11)]);
-        assert_eq!(frames(&even(8, 60.0).at_rate(30.0)), [0, 2, 4, 7]);
+        assert_eq!(frames(&even(8, 60.0).at_rate(30.0)), [0, 2, 4, 6]);
+        assert_eq!(frames(&even(9, 60.0).at_rate(10.0)), [0, 6]);
+        assert_eq!(frames(&even(9, 60.0).at_most(50.0)), [0, 2, 4, 6, 8]);
+        assert_eq!(even(9, 50.0).at_most(50.0), even(9, 50.0));
         assert_eq!(even(4, 10.0).at_rate(20.0).ticks(20.0, 1), [(0, 2), (1, 2), (2, 2), (3, 2)]);
     }
 

@@ -7,7 +7,7 @@ use std::io::Write;
 
 pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
     let [width, height] = animation.reel.size();
-    let [rate, of] = animation.timeline.rate(false);
+    let [rate, of] = animation.timeline.rate();
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = animation.timeline.ticks(rate_each, 1);
     // A parameter ends at a blank.
