@@ -1,7 +1,7 @@
 //! Films that `ffmpeg` makes: pictures go to it through a pipe.
 
 use super::order::in_order;
-use super::{Animation, AnimationError, Format, Written};
+use super::{Animation, AnimationError, Format, Image, Written};
 use crate::output::AtomicFile;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, ErrorKind, Write};
@@ -11,24 +11,41 @@ use std::thread::JoinHandle;
 /// Lines of what it says that are told when it fails.
 const LINES: usize = 5;
 
+/// Looks whether it is there.
+pub(super) fn look(format: Format) -> Result<(), AnimationError> {
+    let mut command = Command::new("ffmpeg");
+    let status = command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    match status {
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(AnimationError::NoFfmpeg(ending(format))),
+        _ => Ok(()),
+    }
+}
+
+fn ending(format: Format) -> &'static str {
+    if format == Format::WebM { ".webm" } else { ".mp4" }
+}
+
 pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile) -> Result<Written, AnimationError> {
     let timeline = animation.timeline.for_screens();
     let [rate, of] = timeline.rate();
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = timeline.ticks(rate_each, 1);
-    let [width, height] = animation.reel.size();
-    // Found missing before the first frame is made.
+    // H.264 and VP9 keep one sample of colour for four pixels, so sides are even: the background goes on there.
+    let even @ [width, height] = animation.reel.size().map(|side| side.next_multiple_of(2));
+    let ground = animation.reel.image(ticks[0].0)?.corner();
+    let padded = |image: Image| {
+        if image.size == even {
+            return image;
+        }
+        let mut padded = Image::plain(even, ground);
+        padded.paste(&image, [0, 0]);
+        padded
+    };
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
     command.args(["-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", &format!("{width}x{height}")]);
     command.args(["-framerate", &format!("{rate}/{of}"), "-i", "pipe:0", "-an"]);
-    let [red, green, blue] = animation.reel.image(ticks[0].0)?.corner();
-    // H.264 and VP9 keep one sample of colour for four pixels, so sides are even: the background goes on there.
-    let filter = format!(
-        "pad=ceil(iw/2)*2:ceil(ih/2)*2:0:0:0x{red:02x}{green:02x}{blue:02x},\
-         scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p"
-    );
-    command.args(["-vf", &filter]);
+    command.args(["-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p"]);
     // Both look ahead less far than usual, which takes a third of the memory away and no quality.
     command.args(match format {
         Format::WebM => {
@@ -40,12 +57,12 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
     command.args(["-metadata", &format!("comment={}", animation.comment)]);
     command.args(["-f", if format == Format::WebM { "webm" } else { "mp4" }]).arg(file.hidden_path());
-    let mut film = Film::start(&mut command, if format == Format::WebM { ".webm" } else { ".mp4" })?;
+    let mut film = Film::start(&mut command, ending(format))?;
     let mut pictures = 0;
     in_order(
         ticks.len(),
         animation.threads,
-        |at| animation.reel.image(ticks[at].0),
+        |at| animation.reel.image(ticks[at].0).map(padded),
         |at, image| {
             for _ in 0..ticks[at].1 {
                 film.write(&image.pixels)?;

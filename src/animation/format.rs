@@ -1,5 +1,6 @@
 //! Kinds of files.
 
+use super::AnimationError;
 use std::path::Path;
 
 /// A kind of file, chosen by the ending of its name.
@@ -45,6 +46,19 @@ impl Format {
                 path.display()
             )
         })
+    }
+}
+
+impl Format {
+    /// Looks whether what the format needs is there.
+    ///
+    /// # Errors
+    /// If it needs `ffmpeg` and that is missing.
+    pub fn look(self) -> Result<(), AnimationError> {
+        match self {
+            Self::Mp4 | Self::WebM => super::ffmpeg::look(self),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -14,6 +14,7 @@ mod order;
 mod palette;
 mod resize;
 mod sheet;
+mod spool;
 mod timeline;
 mod y4m;
 
@@ -21,9 +22,11 @@ pub use error::AnimationError;
 pub use format::Format;
 pub use resize::resized;
 pub use sheet::Sheet;
+pub use spool::Spool;
 pub use timeline::{Shot, Timeline};
 
 use crate::colour::Colour;
+use crate::golden::Pixels;
 use crate::output::AtomicFile;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -55,6 +58,20 @@ impl Image {
             let start = 3 * ((y as usize + line) * self.size[0] as usize + x as usize);
             self.pixels[start..start + row].copy_from_slice(source);
         }
+    }
+}
+
+/// What is clear is put in front of white.
+impl From<Pixels> for Image {
+    fn from(picture: Pixels) -> Self {
+        let over = |byte: u8, opacity: u8| {
+            let [byte, opacity] = [byte, opacity].map(u32::from);
+            ((byte * opacity + 255 * (255 - opacity) + 127) / 255) as u8
+        };
+        let opaque = |pixel: &[u8]| [0, 1, 2].map(|channel| over(pixel[channel], pixel[3]));
+        let Pixels { size, channels, bytes, .. } = picture;
+        let pixels = if channels == 4 { bytes.chunks_exact(4).flat_map(opaque).collect() } else { bytes };
+        Self { size, pixels }
     }
 }
 

@@ -38,7 +38,7 @@ impl Timeline {
         let interval = (end - start) / (last - first) as f64;
         let even = |number: u64| start + (number - first) as f64 * interval;
         let is_even = moments.iter().all(|&(number, time)| (time - even(number)).abs() < interval / 2.0);
-        let unit = 1.0 / snapped(1.0 / interval);
+        let unit = 1.0 / likely_rate(1.0 / interval, last - first);
         let duration = |pair: &[(u64, f64)]| {
             if is_even { (pair[1].0 - pair[0].0) as f64 * unit } else { pair[1].1 - pair[0].1 }
         };
@@ -156,9 +156,16 @@ impl Timeline {
     }
 }
 
-/// A rate, or the whole number that it is but for the strays of its ends.
-fn snapped(rate: f64) -> f64 {
-    if rate >= 1.0 && (rate - rate.round()).abs() < 0.002 * rate { rate.round() } else { rate }
+/// Pictures a second that people choose.
+const USUAL: [f64; 10] = [60.0, 30.0, 50.0, 25.0, 100.0, 120.0, 24.0, 20.0, 15.0, 10.0];
+/// How far the ends of steps are taken to stray from the moments of frames, in parts of the time between two frames.
+const STRAY: f64 = 0.15;
+
+/// The rate that was meant by one measured over `count` frames: a usual one or a whole number, if it may be that.
+fn likely_rate(rate: f64, count: u64) -> f64 {
+    let is_near = |other: &f64| (rate - other).abs() <= STRAY / count as f64 * other;
+    let mut candidates = USUAL.into_iter().chain([rate.round()]).filter(|candidate| *candidate >= 1.0);
+    candidates.find(is_near).unwrap_or(rate)
 }
 
 /// The simplest fraction that is a number to within a ten-millionth of it, or the nearest with numerator and denominator up
@@ -199,6 +206,8 @@ mod tests {
         assert_eq!(even(5, 25.0).faster(0.5).rate(), [25, 2]);
         assert_eq!(even(5, 60.0).faster(2.0).for_screens().rate(), [60, 1]);
         assert_eq!(even(5, 60.0).faster(2.0).rate(), [120, 1]);
+        let few = Timeline::of(&[(0, 0.0), (1, 1.0 / 30.0 + 1e-3), (2, 2.0 / 30.0), (3, 3.0 / 30.0 + 1e-3)]);
+        assert_eq!(few.rate(), [30, 1]);
         let tenth = Timeline::of(&[(0, 0.0), (10, 10.0 / 60.0), (20, 20.0 / 60.0)]);
         assert_eq!(tenth.rate(), [6, 1]);
     }

@@ -163,24 +163,27 @@ impl Animate {
     }
 
     fn tell(&self, [width, height]: [u32; 2], frames: usize, written: &Written) -> Result<(), Failure> {
-        let path = self.out.display();
-        let bytes = self.out.metadata().map_or(0, |found| found.len());
-        let Written { pictures, duration } = *written;
         if self.json {
+            let bytes = self.out.metadata().map_or(0, |found| found.len());
+            let Written { pictures, duration } = *written;
             let file = self.out.to_string_lossy();
             return console::print_json(&json!({
                 "file": file, "size": [width, height], "frames": frames, "pictures": pictures, "duration": duration,
                 "bytes": bytes,
             }));
         }
-        if self.quiet {
-            return Ok(());
-        }
-        let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
-        let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
-        let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
-        console::print(&format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes)))
+        if self.quiet { Ok(()) } else { console::print(&summary(&self.out, [width, height], frames, written)) }
     }
+}
+
+/// What was made, on a line.
+pub(super) fn summary(path: &Path, [width, height]: [u32; 2], frames: usize, written: &Written) -> String {
+    let bytes = path.metadata().map_or(0, |found| found.len());
+    let (path, Written { pictures, duration }) = (path.display(), *written);
+    let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
+    let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
+    let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
+    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes))
 }
 
 /// Steps of a progress bar.
@@ -324,24 +327,16 @@ impl Folders {
     /// One frame of one folder, which is still what it was when it was looked at.
     fn read(&self, path: &Path, number: u64) -> Result<Image, AnimationError> {
         let picture = |source| AnimationError::Picture { path: path.to_owned(), source };
-        let Pixels { size, channels, bytes, label } = Pixels::read(path).map_err(picture)?;
-        let is_same = size == self.own && matches!(&label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
+        let found = Pixels::read(path).map_err(picture)?;
+        let is_it = matches!(&found.label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
+        let is_same = found.size == self.own && is_it;
         if !is_same {
             let told =
                 format!("{} has become another picture meanwhile; try again when nobody writes there", path.display());
             return Err(AnimationError::Wrong(told));
         }
-        Ok(Image { size, pixels: if channels == 4 { on_white(&bytes) } else { bytes } })
+        Ok(found.into())
     }
-}
-
-/// Pixels with opacities in front of white.
-fn on_white(bytes: &[u8]) -> Vec<u8> {
-    let over = |byte: u8, opacity: u8| {
-        let [byte, opacity] = [byte, opacity].map(u32::from);
-        ((byte * opacity + 255 * (255 - opacity) + 127) / 255) as u8
-    };
-    bytes.chunks_exact(4).flat_map(|pixel| [0, 1, 2].map(|channel| over(pixel[channel], pixel[3]))).collect()
 }
 
 impl Reel for Folders {

@@ -24,6 +24,8 @@ pub use digest::state_digest;
 pub use error::OutputError;
 pub(crate) use error::{is_folder, read_file};
 pub use folder::{Claimed, FRAME_FILES, Folder, Look, frame_file_name, frame_files};
+#[cfg(feature = "render")]
+pub(crate) use frames::Tap;
 pub use frames::{FrameWriter, PixelFrame};
 pub use lock::FolderLock;
 pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
