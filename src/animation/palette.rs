@@ -19,15 +19,12 @@ const POWER: f64 = 0.4;
 /// Colours that are as near as this in Oklab look the same side by side, and are not dithered.
 const NEAR: f64 = 0.012;
 /// What is shown already stays while the colour that is meant is as near as this in Oklab.
-const STAY: f64 = 0.02;
+const STAY: f64 = 0.015;
 /// How much a mixture is disliked for its two colours being apart: its grain shows.
 const GRAIN: f64 = 0.15;
 /// Steps of a mixture.
 const LEVELS: f64 = 64.0;
 
-fn par(name: &str, usual: f64) -> f64 {
-    std::env::var(name).map_or(usual, |v| v.parse().unwrap())
-}
 /// Where the colour of a pixel is counted.
 fn cell(pixel: [u8; 3]) -> usize {
     let [r, g, b] = pixel.map(|byte| usize::from(byte >> (8 - BITS)));
@@ -81,7 +78,7 @@ impl Counts {
         let cells: Vec<Cell> = filled
             .map(|(at, &[count, r, g, b])| {
                 let mean = [r, g, b].map(|sum| ((2 * sum + count) / (2 * count)) as u8);
-                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, par("LSA_POWER", POWER)) }
+                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, POWER) }
             })
             .collect();
         let colours = chosen(&cells);
@@ -92,7 +89,7 @@ impl Counts {
             mixtures[cell.at] = Mixture { row, ..Mixture::of(cell.lab, &labs) };
             let mut bits = [0; 4];
             for (number, &other) in labs.iter().enumerate() {
-                if square(cell.lab, other) < par("LSA_STAY", STAY).powi(2) {
+                if square(cell.lab, other) < STAY * STAY {
                     bits[number / 64] |= 1_u64 << (number % 64);
                 }
             }
@@ -211,7 +208,7 @@ impl Mixture {
     fn of(colour: Oklab, palette: &[Oklab]) -> Self {
         let one = nearest_of(colour, palette);
         let mut best = (square(colour, palette[one]), one, 0.0);
-        if best.0 > par("LSA_NEAR", NEAR).powi(2) {
+        if best.0 > NEAR * NEAR {
             for (other, &to) in palette.iter().enumerate() {
                 let apart = square(palette[one], to);
                 if apart == 0.0 {
@@ -223,7 +220,7 @@ impl Mixture {
                 let share = (along / apart).clamp(0.0, 0.5);
                 let from = palette[one].0;
                 let mixed = Oklab(std::array::from_fn(|axis| from[axis] + share * (to.0[axis] - from[axis])));
-                let error = square(colour, mixed) + par("LSA_GRAIN", GRAIN) * share * (1.0 - share) * apart;
+                let error = square(colour, mixed) + GRAIN * share * (1.0 - share) * apart;
                 if error < best.0 {
                     best = (error, other, share);
                 }

@@ -27,8 +27,8 @@ Examples:
 
 The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
 (H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \
-hundredths of a second, and players want two of them for each picture: so it shows at most 50 frames a second and \
-leaves out the others.";
+hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
+every second one.";
 
 /// What stands at the beginning of each comment, by which a file is known as one of ours.
 const MARK: &str = "made by localshape ";

@@ -1,6 +1,6 @@
 //! `animate`: what other decoders make of the files, and what is said of frames that do not fit.
 
-use crate::support::{Place, Ran, run, skip};
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, run, skip};
 use localshape::output::{Tags, encode};
 use std::path::Path;
 use std::process::Command;
@@ -134,10 +134,10 @@ fn a_gif_looks_like_its_frames_and_keeps_their_times() {
     assert_eq!(delays, [3, 4, 3, 3, 4, 3, 3, 4, 3, 3, 4, 3]);
     // Twice as fast there are more frames than hundredths allow.
     let ran = place.run("animate in -o out.gif --speed 2").good();
-    assert!(ran.out.contains("8 pictures of 12 frames in 0.20 s"), "{}", ran.out);
+    assert!(ran.out.contains("6 pictures of 12 frames in 0.20 s"), "{}", ran.out);
     let (frames, repeat) = decode_gif(&place.path("out.gif"));
     assert!(frames.iter().all(|(_, delay)| *delay >= 2) && repeat == gif::Repeat::Infinite);
-    assert!(difference(&frames.last().unwrap().0, &pixels(COUNT - 1, SIZE)) < 1.0, "the last frame is shown");
+    assert!(difference(&frames.last().unwrap().0, &pixels(COUNT - 2, SIZE)) < 1.0, "every second one is shown");
     assert!(std::fs::read(place.path("out.gif")).unwrap().windows(8).any(|part| part == b"scene 5c"));
 }
 
@@ -175,23 +175,42 @@ fn any_number_of_threads_makes_the_same_bytes() {
     let place = with_frames();
     for ending in ["gif", "apng", "y4m", "png"] {
         let made = |threads: u32| {
-            let out = format!("{threads}.{ending}");
-            // The command is written into the file, so it is the same one each time.
-            place.run(&format!("animate in -o out.{ending} --threads 1")).good();
-            std::fs::rename(place.path(format!("out.{ending}")), place.path(&out)).unwrap();
-            std::fs::read(place.path(&out)).unwrap()
-        };
-        let one = made(1);
-        let many = {
-            let mut command = place.command(["animate", "in", "-o", &format!("out.{ending}"), "--threads", "5"]);
-            run(&mut command).good();
+            place.run(&format!("animate in -o out.{ending} --threads {threads}")).good();
             std::fs::read(place.path(format!("out.{ending}"))).unwrap()
         };
+        let [one, many] = [made(1), made(5)];
         assert_eq!(one.len(), many.len(), "{ending}");
+        // The file says by which command it was made, and PNG has a checksum of that.
         let unlike = one.iter().zip(&many).filter(|(a, b)| a != b).count();
-        // The digit of `--threads`, and where PNG has a checksum of it.
         assert!(unlike <= 5, "{ending}: {unlike}");
     }
+}
+
+/// The same frames go into the animation whether they are kept or not.
+#[test]
+fn rendering_makes_animations_meanwhile() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    let ran = place.run("render small.toml --samples 1 --animate a.gif --animate a.apng").good();
+    for line in ["a.gif  96×64, 4 pictures of 7 frames in 0.13 s", "a.apng  96×64, 7 pictures in 0.12 s"] {
+        assert!(ran.out.contains(line), "{line}: {}", ran.out);
+    }
+    place.run("animate output/small -o b.apng").good();
+    place.run("render small.toml --samples 1 --animate c.apng --no-frames -o numbers").good();
+    assert_eq!(place.names("numbers"), ["diagnostics.csv", "run.json"]);
+    let (frames, _) = decode_apng(&place.path("a.apng"));
+    assert_eq!(frames.len(), SMALL_FRAMES);
+    assert!(frames == decode_apng(&place.path("b.apng")).0 && frames == decode_apng(&place.path("c.apng")).0);
+    assert_eq!(decode_gif(&place.path("a.gif")).0.len(), 4);
+
+    place.write("other.toml", SMALL);
+    place.run("render small.toml other.toml --animate d.gif").bad(2, &["--animate", "one at a time"]);
+    place.run("render small.toml --animate d.avi").bad(2, &[".avi", ".gif"]);
+    place.run("render small.toml --animate absent/d.gif").bad(2, &["there is no folder absent"]);
+    assert_eq!(place.run("render small.toml --no-frames").status, Some(2));
+    assert!(place.names(".").iter().all(|name| !name.starts_with("d.")));
 }
 
 #[test]
