@@ -47,6 +47,8 @@
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;
 
+#[cfg(feature = "render")]
+pub mod animation;
 pub mod cli;
 pub mod colour;
 pub mod golden;

@@ -4,6 +4,8 @@
 //! difference; 2 wrong usage or a wrong scene; 3 no usable graphics adapter; 4 reading or writing failed;
 //! 130 interrupted.
 
+#[cfg(feature = "render")]
+mod animate;
 mod check;
 mod compare;
 mod completions;
@@ -59,6 +61,7 @@ Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
   localshape simulate scenes/fig4b.toml        the same without pictures
   localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape animate output/fig4b -o fig4b.gif frames as an animation
   localshape figure all                        the paper's figures in output/figures/
   localshape table                             the paper's numbers beside ours";
 
@@ -77,6 +80,8 @@ enum Command {
     Simulate(simulate::Simulate),
     #[cfg(feature = "render")]
     Figure(figure::FigureCommand),
+    #[cfg(feature = "render")]
+    Animate(animate::Animate),
     Check(check::Check),
     Compare(compare::Compare),
     Table(table::Table),
@@ -110,6 +115,8 @@ impl Command {
             Self::Simulate(simulate) => simulate.run(words),
             #[cfg(feature = "render")]
             Self::Figure(figure) => figure.run(),
+            #[cfg(feature = "render")]
+            Self::Animate(animate) => animate.run(words),
             Self::Check(check) => check.run(),
             Self::Compare(compare) => compare.run(),
             Self::Table(table) => table.run(),

@@ -37,8 +37,8 @@ pub(super) trait Pictures {
 
 /// What makes pictures of scenes.
 pub(super) trait Studio {
-    /// Begins the pictures of a scene in a folder.
-    fn begin<'s>(&self, scene: &'s Scene, folder: &Path) -> Result<Box<dyn Pictures + 's>, Failure>;
+    /// Begins the pictures of some frames of a scene in a folder.
+    fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
 }
 
 /// Runs all scenes, one after the other, and reports on each.
@@ -97,7 +97,7 @@ fn record(
     let Job { scene, runs, frames, folder } = job;
     let begin = || -> Result<_, Failure> {
         let folder = folder.prepare(options.states)?;
-        let pictures = studio.map(|studio| studio.begin(&scene, folder.path())).transpose()?;
+        let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };
     let result = begin().and_then(|(folder, pictures)| {

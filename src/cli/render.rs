@@ -1,25 +1,32 @@
 //! `render`: frames, diagnostics and a summary.
 
+use super::animate::{comment, replaceable, summary};
+use super::console;
 use super::failure::{Failure, Status};
+use super::interrupt;
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
+use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::history::History;
-use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Timings};
+use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of};
 use crate::picture::Composer;
 use crate::render::{RenderError, Renderer};
 use crate::scene::Scene;
 use crate::sim::snapshot::Frame;
-use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 
 const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml                      all frames into output/fig4b/
   localshape render scenes/fig4b.toml --frames 0-180x10    every tenth
   localshape render scenes/*.toml -o pictures --size 640x360 --samples 1
+  localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
 
 The folder then holds frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, \
@@ -55,6 +62,15 @@ pub(super) struct Render {
     #[arg(long, value_name = "ADAPTER", default_value = "auto")]
     adapter: AdapterChoice,
 
+    /// Also make an animation of the frames, or a sheet of them; the ending of FILE chooses the format, as with `localshape
+    /// animate`, which knows more options. May be given several times
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    animate: Vec<PathBuf>,
+
+    /// Do not keep the frames that the animation is made of
+    #[arg(long, requires = "animate")]
+    no_frames: bool,
+
     /// Also tell how long each stage took
     #[arg(long)]
     timings: bool,
@@ -66,7 +82,8 @@ impl Render {
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }
-        let jobs = self.options.jobs(scenes, true, words)?;
+        let films = self.films(scenes.len())?;
+        let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
         for job in &jobs {
@@ -79,8 +96,37 @@ impl Render {
             }
         }
         let writers = self.options.threads().min(MOST_WRITERS);
-        let device = Device { gpu, samples: self.samples, writers };
-        record::run_all(jobs, &self.options, words, self.timings, Some(&device))
+        let shared =
+            (!films.is_empty()).then(|| Shared { films, words: words.to_vec(), threads: self.options.threads() });
+        let device =
+            Device { gpu, samples: self.samples, writers, keep: !self.no_frames, shared, made: Mutex::default() };
+        let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
+        if !self.options.quiet && !self.options.json {
+            let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
+            made.iter().try_for_each(|line| console::print(line))?;
+        }
+        result
+    }
+
+    /// The animations that are asked for, if they can be made.
+    fn films(&self, scenes: usize) -> Result<Vec<(Format, PathBuf)>, Failure> {
+        if scenes > 1 && !self.animate.is_empty() {
+            return Err(Failure::usage("--animate makes a file of one scene; render the scenes one at a time"));
+        }
+        let film = |path: &PathBuf| {
+            let format = Format::of(path).map_err(Failure::usage)?;
+            format.look()?;
+            if !self.options.overwrite {
+                replaceable(path)?;
+            }
+            let folder = folder_of(path);
+            if folder.is_dir() {
+                Ok((format, path.clone()))
+            } else {
+                Err(Failure::usage(format!("{}: there is no folder {}", path.display(), folder.display())))
+            }
+        };
+        self.animate.iter().map(film).collect()
     }
 }
 
@@ -89,17 +135,104 @@ struct Device {
     gpu: Gpu,
     samples: u32,
     writers: usize,
+    /// Whether frames stay.
+    keep: bool,
+    /// What animations are made of, if any are.
+    shared: Option<Shared>,
+    /// What is told of animations in the end.
+    made: Mutex<Vec<String>>,
+}
+
+/// What animations of one scene share.
+struct Shared {
+    films: Vec<(Format, PathBuf)>,
+    words: Vec<OsString>,
+    threads: usize,
+}
+
+/// Animations on their way, on threads of their own.
+struct Films<'a> {
+    spool: Arc<Spool>,
+    frames: usize,
+    threads: Vec<(PathBuf, JoinHandle<Result<Written, AnimationError>>)>,
+    made: &'a Mutex<Vec<String>>,
+}
+
+impl<'a> Films<'a> {
+    fn start(shared: &Shared, made: &'a Mutex<Vec<String>>, spool: Spool, scene: &Scene, frames: &[u64]) -> Self {
+        let spool = Arc::new(spool);
+        let moments: Vec<_> = frames.iter().map(|&frame| (frame, scene.frame_time(frame))).collect();
+        let comment = comment(&shared.words, &[scene.digest.clone()]);
+        let threads = shared.films.iter().map(|(format, path)| {
+            let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
+            let (format, path, threads) = (*format, path.clone(), shared.threads);
+            let name = path.clone();
+            let thread = std::thread::spawn(move || {
+                let sheet = Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
+                let timeline = Timeline::of(&moments);
+                let progress = |_| !interrupt::requested();
+                Animation {
+                    reel: spool.as_ref(),
+                    timeline: &timeline,
+                    plays: 0,
+                    sheet: &sheet,
+                    comment: &comment,
+                    threads,
+                    progress: &progress,
+                }
+                .write(format, &path)
+            });
+            (name, thread)
+        });
+        let threads = threads.collect();
+        Self { spool, frames: frames.len(), threads, made }
+    }
+
+    /// Waits for all. Those of frames that were not made are not there.
+    fn finish(mut self, size: [u32; 2]) -> Result<(), Failure> {
+        self.spool.end();
+        let mut result = Ok(());
+        for (path, thread) in self.threads.drain(..) {
+            match thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
+                Ok(written) => {
+                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+                    made.push(summary(&path, size, self.frames, &written));
+                }
+                // Told by what has stopped it.
+                Err(AnimationError::Stopped) => {}
+                Err(error) => result = result.and(Err(error.into())),
+            }
+        }
+        result
+    }
+}
+
+/// However it ends, nobody waits for frames that do not come.
+impl Drop for Films<'_> {
+    fn drop(&mut self) {
+        self.spool.end();
+    }
 }
 
 impl Studio for Device {
-    fn begin<'s>(&self, scene: &'s Scene, folder: &Path) -> Result<Box<dyn Pictures + 's>, Failure> {
+    fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let transparent = scene.view.look.transparent;
+        let films = match &self.shared {
+            Some(shared) => Some(Films::start(shared, &self.made, Spool::new(folder, scene.view.size)?, scene, frames)),
+            None => None,
+        };
+        let tap = films.as_ref().map(|films| -> Tap {
+            let (spool, frames) = (Arc::clone(&films.spool), frames.to_vec());
+            // Animations count the frames that there are.
+            Arc::new(move |frame, bytes| frames.binary_search(&frame).map_or(Ok(()), |at| spool.put(at, bytes)))
+        });
         Ok(Box::new(Drawing {
             scene,
             composer: if transparent { Composer::on_ground(scene, [255; 3]) } else { Composer::new(scene) },
             on_black: transparent.then(|| Composer::on_ground(scene, [0; 3])),
             renderer: Renderer::new(&self.gpu, scene.view.size, self.samples).map_err(failed)?,
-            writer: FrameWriter::start(folder, self.writers),
+            writer: FrameWriter::start_with(self.keep.then_some(folder), self.writers, tap),
+            films,
             adapter: self.gpu.description().to_string(),
             samples: self.samples,
             compose: Spent::default(),
@@ -117,6 +250,7 @@ struct Drawing<'a> {
     on_black: Option<Composer<'a>>,
     renderer: Renderer,
     writer: FrameWriter,
+    films: Option<Films<'a>>,
     adapter: String,
     samples: u32,
     compose: Spent,
@@ -157,9 +291,11 @@ impl Pictures for Drawing<'_> {
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
         let (written, encode, result) = self.writer.finish();
+        let filmed = self.films.map_or(Ok(()), |films| films.finish(self.scene.view.size));
         summary.frames.written = Some(written);
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
-        Ok(result?)
+        result?;
+        filmed
     }
 }
 

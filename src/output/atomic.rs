@@ -35,6 +35,11 @@ impl AtomicFile {
         &self.path
     }
 
+    /// The name that it has until then, for programs that write it themselves.
+    pub(crate) fn hidden_path(&self) -> &Path {
+        self.temporary.path()
+    }
+
     /// The open file.
     pub fn file(&mut self) -> &mut File {
         self.temporary.as_file_mut()

@@ -21,6 +21,27 @@ fn names_frame(name: &str) -> bool {
     digits.is_some_and(|digits| digits.parse().is_ok_and(|index| frame_file_name(index) == name))
 }
 
+/// The numbers and paths of all frames in a folder by their names, rising.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+    let mut frames = Vec::new();
+    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
+        let entry = entry.map_err(OutputError::reading(folder))?;
+        let name = entry.file_name();
+        if let Some(index) = name
+            .to_str()
+            .filter(|name| names_frame(name))
+            .and_then(|name| name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok())
+        {
+            frames.push((index, entry.path()));
+        }
+    }
+    frames.sort_unstable();
+    Ok(frames)
+}
+
 /// What frames must have in common to be one sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Look {

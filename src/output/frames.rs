@@ -1,7 +1,7 @@
 //! Compressing and writing frames on threads of their own, so that drawing need not wait.
 
 use super::{Clock, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -16,6 +16,9 @@ pub struct PixelFrame {
     /// What it shows.
     pub tags: Tags,
 }
+
+/// Who is handed the files of frames besides the disk: their numbers and bytes, in any order.
+pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
 
 /// Threads that compress and write frames. Memory is bounded: when they are all behind, [`Self::write`] waits.
 #[derive(Debug)]
@@ -36,11 +39,16 @@ struct Written {
 impl FrameWriter {
     /// Starts `threads` (at least one) threads that write into `folder`, which exists.
     pub fn start(folder: &Path, threads: usize) -> Self {
+        Self::start_with(Some(folder), threads, None)
+    }
+
+    /// The same, also handing each file to `tap` with the number of its frame; without a folder only that.
+    pub(crate) fn start_with(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
         let (queue, frames) = sync_channel(threads);
         let frames = Arc::new(Mutex::new(Some(frames)));
         let thread = |_| {
-            let (folder, frames) = (folder.to_owned(), Arc::clone(&frames));
-            std::thread::spawn(move || write_frames(&folder, &frames))
+            let (folder, frames, tap) = (folder.map(Path::to_owned), Arc::clone(&frames), tap.clone());
+            std::thread::spawn(move || write_frames(folder.as_deref(), &frames, tap.as_ref()))
         };
         let threads = (0..threads.max(1)).map(thread).collect();
         Self { queue: Some(queue), threads, written: Written::default() }
@@ -81,17 +89,19 @@ impl FrameWriter {
 }
 
 /// Writes frames until there are no more or one fails. After a failure the queue is gone: nobody waits for it.
-fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>) -> Written {
+fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>>>, tap: Option<&Tap>) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = Written::default();
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let path: PathBuf = folder.join(frame_file_name(frame.tags.frame));
-        let result = write_whole(&path, &encode(frame.size, &frame.pixels, &frame.tags));
+        let bytes = encode(frame.size, &frame.pixels, &frame.tags);
+        let index = frame.tags.frame;
+        let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
+        let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
         written.spent += clock.spent();
         match result {
-            Ok(()) => written.frames += 1,
+            Ok(()) => written.frames += usize::from(folder.is_some()),
             Err(failure) => {
                 written.failure = Some(failure);
                 *lock() = None;

@@ -23,11 +23,13 @@ pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub use digest::state_digest;
 pub use error::OutputError;
 pub(crate) use error::{is_folder, read_file};
-pub use folder::{Claimed, FRAME_FILES, Folder, Look, Replace, frame_file_name};
+pub use folder::{Claimed, FRAME_FILES, Folder, Look, Replace, frame_file_name, frame_files};
+#[cfg(feature = "render")]
+pub(crate) use frames::Tap;
 pub use frames::{FrameWriter, PixelFrame};
 pub use lock::FolderLock;
-pub(crate) use png::encode_plain;
 pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
+pub(crate) use png::{encode_commented, encode_plain};
 pub use sheets::SheetFiles;
 pub use states::{STATES_FILE, StatesWriter};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};

@@ -141,6 +141,15 @@ pub(crate) fn encode_plain(size: [u32; 2], pixels: &[u8]) -> Vec<u8> {
     encode_with(size, pixels, &[], png::Compression::High)
 }
 
+/// A picture of 8-bit red, green and blue as a PNG file in sRGB with a comment, as small as can be had.
+///
+/// # Panics
+/// As [`encode`].
+#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only what draws makes such pictures"))]
+pub(crate) fn encode_commented(size: [u32; 2], pixels: &[u8], comment: &str) -> Vec<u8> {
+    encode_with(size, pixels, &[("comment", comment.to_owned())], png::Compression::High)
+}
+
 /// Whether a file is a figure that this crate drew.
 ///
 /// # Errors

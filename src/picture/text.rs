@@ -204,7 +204,7 @@ impl Fonts {
     }
 
     /// Lays out one line that begins at `left` (px).
-    pub(super) fn lay_out(
+    pub(crate) fn lay_out(
         &self,
         text: &str,
         weight: Weight,

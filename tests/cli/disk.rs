@@ -66,3 +66,34 @@ fn frames_on_a_full_disk() {
     assert!(ran.out.lines().all(|name| !name.starts_with('.')), "{ran:?}");
     assert!(ran.out.contains("frame_00000.png") && ran.out.contains("run.json"), "{ran:?}");
 }
+
+#[cfg(feature = "render")]
+#[test]
+fn animations_on_a_full_disk() {
+    use localshape::output::{Tags, encode};
+    let place = Place::new();
+    for number in 0..4 {
+        // Noise, which takes room.
+        let noise = (0..3 * 320 * 240_u32).map(|at| (at.wrapping_add(number).wrapping_mul(2_654_435_761) >> 21) as u8);
+        let tags = Tags {
+            scene: "5c".repeat(32),
+            states: vec![("ab".repeat(32), "Shape".to_owned())],
+            frame: number.into(),
+            time: f64::from(number) / 30.0,
+            version: String::new(),
+            adapter: String::new(),
+        };
+        place.write(&format!("in/frame_{number:05}.png"), "");
+        std::fs::write(
+            place.path(format!("in/frame_{number:05}.png")),
+            encode([320, 240], &noise.collect::<Vec<_>>(), &tags),
+        )
+        .unwrap();
+    }
+    for name in ["a.gif", "a.apng", "a.y4m"] {
+        let arguments = format!("animate in -o out/{name}");
+        let Some(ran) = on_small_disk(&place, "64k", &arguments, "ls -A out") else { return };
+        let ran = ran.bad(4, &[&format!("cannot write out/{name}"), "disk is full"]);
+        assert_eq!(ran.out, "", "{name}: nothing is left");
+    }
+}

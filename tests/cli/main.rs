@@ -1,5 +1,7 @@
 //! Every command as a user runs it: the program itself, its files, its words and its exit status.
 
+#[cfg(feature = "render")]
+mod animate;
 mod check;
 mod compare;
 mod disk;

@@ -1,0 +1,55 @@
+//! Why there is no animation.
+
+use crate::golden::PictureError;
+use crate::output::OutputError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why an animation could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum AnimationError {
+    /// A picture cannot be read, or is none.
+    #[error("{}", path.display())]
+    Picture {
+        /// Where it is.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: PictureError,
+    },
+    /// What was asked for cannot be, or a frame is not what it should be.
+    #[error("{0}")]
+    Wrong(String),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] OutputError),
+    /// What the animation is written to takes no more.
+    #[error("cannot write the animation")]
+    Out(#[source] io::Error),
+    /// A program that the format needs is not there.
+    #[error(
+        "there is no `ffmpeg` on this machine, which {0} files are made with. Install it (apt install ffmpeg; brew install \
+         ffmpeg; winget install ffmpeg), or choose a file that is made without it: .gif, .apng, .y4m, or .png for a sheet"
+    )]
+    NoFfmpeg(&'static str),
+    /// That program failed.
+    #[error("ffmpeg failed ({status}){told}")]
+    Ffmpeg {
+        /// How it ended.
+        status: String,
+        /// What it said last, on lines of its own.
+        told: String,
+    },
+    /// The user wanted it to stop.
+    #[error("interrupted")]
+    Stopped,
+}
+
+impl AnimationError {
+    /// Names the file that was being written.
+    pub(super) fn in_file(self, path: &Path) -> Self {
+        match self {
+            Self::Out(source) => OutputError::writing(path)(source).into(),
+            other => other,
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Kinds of files.
+
+use super::AnimationError;
+use std::path::Path;
+
+/// A kind of file, chosen by the ending of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Animated PNG: every pixel as it is.
+    Apng,
+    /// GIF with one palette of 255 colours.
+    Gif,
+    /// YUV4MPEG2: uncompressed, for other programs.
+    Y4m,
+    /// MP4 with H.264, made by `ffmpeg`.
+    Mp4,
+    /// WebM with VP9, made by `ffmpeg`.
+    WebM,
+    /// A still picture with frames side by side.
+    Sheet,
+}
+
+impl Format {
+    /// All endings with what they stand for.
+    const ENDINGS: [(&str, Self); 6] = [
+        ("gif", Self::Gif),
+        ("apng", Self::Apng),
+        ("mp4", Self::Mp4),
+        ("webm", Self::WebM),
+        ("y4m", Self::Y4m),
+        ("png", Self::Sheet),
+    ];
+
+    /// What the name of a file says.
+    ///
+    /// # Errors
+    /// With the endings that there are, if it has none of them.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let known = Self::ENDINGS.iter().find(|(known, _)| *known == ending);
+        known.map(|(_, format)| *format).ok_or_else(|| {
+            let found = if ending.is_empty() { "no ending".to_owned() } else { format!("the ending .{ending}") };
+            format!(
+                "{} has {found}; the ending says what to make: .gif, .apng, .mp4 or .webm (both need ffmpeg), .y4m, \
+                 or .png for a sheet of still pictures",
+                path.display()
+            )
+        })
+    }
+}
+
+impl Format {
+    /// Looks whether what the format needs is there.
+    ///
+    /// # Errors
+    /// If it needs `ffmpeg` and that is missing.
+    pub fn look(self) -> Result<(), AnimationError> {
+        match self {
+            Self::Mp4 | Self::WebM => super::ffmpeg::look(self),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_choose() {
+        assert_eq!(Format::of(Path::new("a/b.GIF")), Ok(Format::Gif));
+        assert_eq!(Format::of(Path::new("sheet.png")), Ok(Format::Sheet));
+        let unknown = Format::of(Path::new("film.avi")).unwrap_err();
+        for ending in [".gif", ".apng", ".mp4", ".webm", ".y4m", ".png", "the ending .avi"] {
+            assert!(unknown.contains(ending), "{unknown}");
+        }
+        assert!(Format::of(Path::new("film")).unwrap_err().contains("no ending"));
+    }
+}

@@ -1,0 +1,111 @@
+//! GIF: one palette for all frames, so that nothing flickers, found in a first pass over them. Each frame is stored where
+//! it differs from the one before.
+
+use super::order::in_order;
+use super::palette::{Counts, Numbers, Palette};
+use super::{Animation, AnimationError, Written, changed};
+use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+use std::io::{self, Write};
+
+/// Units of time a second.
+const RATE: f64 = 100.0;
+/// The shortest delay that players keep to; shorter ones they take for a tenth of a second.
+const LEAST: u64 = 2;
+/// The number that stands for what was there before.
+const SAME: u8 = 255;
+/// The kind of block that holds a comment.
+const COMMENT: AnyExtension = AnyExtension(0xfe);
+/// How much of the work the first pass is.
+const FIRST: f64 = 0.4;
+
+pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
+    let ticks = animation.timeline.at_most(RATE / LEAST as f64).ticks(RATE, LEAST);
+    let size @ [width, height] = animation.reel.size();
+    let [Ok(wide), Ok(high)] = [width, height].map(u16::try_from) else {
+        return Err(AnimationError::Wrong(format!(
+            "{width}×{height} is too large for a GIF: it has 65535 pixels a side"
+        )));
+    };
+    let stage = |done: f64| if (animation.progress)(done) { Ok(()) } else { Err(AnimationError::Stopped) };
+    let share = |at: usize| (at + 1) as f64 / ticks.len() as f64;
+
+    let mut counts = Counts::new();
+    let mut frames: Vec<usize> = ticks.iter().map(|(frame, _)| *frame).collect();
+    frames.sort_unstable();
+    frames.dedup();
+    let count = |at: usize| animation.reel.image(frames[at]).map(|image| Counts::of(&image));
+    in_order(frames.len(), animation.threads, count, |at, more| {
+        counts.add(&more);
+        stage(FIRST * (at + 1) as f64 / frames.len() as f64)
+    })?;
+    let palette = counts.palette();
+    drop(counts);
+
+    let mut encoder = Encoder::new(out, wide, high, &palette.colours.concat()).map_err(failed)?;
+    // The file counts how often it is played again.
+    match animation.plays {
+        0 => encoder.set_repeat(Repeat::Infinite).map_err(failed)?,
+        1 => {}
+        plays => encoder.set_repeat(Repeat::Finite(plays - 1)).map_err(failed)?,
+    }
+    encoder.write_raw_extension(COMMENT, &[animation.comment.as_bytes()]).map_err(failed)?;
+
+    let numbers = |at: usize| Ok(palette.numbers(&animation.reel.image(ticks[at].0)?));
+    let mut shown: Option<Vec<u8>> = None;
+    in_order(ticks.len(), animation.threads, numbers, |at, numbers| {
+        let mut frame = frame(size, &palette, numbers, &mut shown);
+        // What lasts longer than a delay can say stays for several.
+        let mut left = ticks[at].1;
+        while left > 0 {
+            frame.delay = left.min(u16::MAX.into()) as u16;
+            left -= u64::from(frame.delay);
+            encoder.write_lzw_pre_encoded_frame(&frame).map_err(failed)?;
+        }
+        stage(FIRST + (1.0 - FIRST) * share(at))
+    })?;
+    encoder.into_inner().map_err(failed)?;
+    let duration = ticks.iter().map(|(_, ticks)| *ticks as f64).sum::<f64>() / RATE;
+    Ok(Written { pictures: ticks.len(), duration })
+}
+
+/// The part of a picture that differs from what is shown, compressed. A pixel whose colour is as good as the one shown
+/// stays as it is.
+fn frame(size: [u32; 2], palette: &Palette, numbers: Numbers, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
+    let (place, buffer) = match shown {
+        None => ([0, 0, size[0], size[1]], shown.insert(numbers.best).clone()),
+        Some(shown) => {
+            let mut new = vec![SAME; shown.len()];
+            for (at, shown) in shown.iter_mut().enumerate() {
+                if !palette.may_stay(&numbers, at, *shown) {
+                    new[at] = numbers.best[at];
+                    *shown = new[at];
+                }
+            }
+            let place @ [left, top, width, height] = changed(size, |at| new[at] != SAME);
+            let start = |y: u32| (y * size[0] + left) as usize;
+            let rows = (top..top + height).map(|y| &new[start(y)..start(y) + width as usize]);
+            (place, rows.flatten().copied().collect())
+        }
+    };
+    let is_first = place[2..] == size && buffer.iter().all(|&number| number != SAME);
+    let [left, top, width, height] = place.map(|number| number as u16);
+    let mut frame = Frame {
+        left,
+        top,
+        width,
+        height,
+        transparent: (!is_first).then_some(SAME),
+        dispose: DisposalMethod::Keep,
+        buffer: buffer.into(),
+        ..Frame::default()
+    };
+    frame.make_lzw_pre_encoded();
+    frame
+}
+
+fn failed(error: EncodingError) -> AnimationError {
+    AnimationError::Out(match error {
+        EncodingError::Io(error) => error,
+        other => io::Error::other(other.to_string()),
+    })
+}

@@ -1,0 +1,342 @@
+//! Few colours for many: a palette for all frames of an animation, and which of its colours stand for each other colour.
+//!
+//! Colours are gathered in cells of 4×4×4 levels. Boxes of cells are cut in two, the least uniform one first, as in
+//! P. Heckbert, *Color Image Quantization for Frame Buffer Display*, SIGGRAPH 1982, but in Oklab, where equal distances
+//! look about equal; then each colour moves to the mean of what is nearest to it (k-means).
+
+use super::Image;
+use crate::colour::{Colour, Oklab, from_oklab, oklab};
+
+/// Bits of each channel that tell cells apart.
+const BITS: u32 = 6;
+const CELLS: usize = 1 << (3 * BITS);
+/// Colours of a palette. One more number is left for what does not change.
+const MOST: usize = 255;
+/// How often colours move to the mean of what is nearest to them.
+const ROUNDS: usize = 6;
+/// How much more often a colour counts the more pixels it has: with 1 a large background would take all colours.
+const POWER: f64 = 0.4;
+/// Colours that are as near as this in Oklab look the same side by side, and are not dithered.
+const NEAR: f64 = 0.012;
+/// What is shown already stays while the colour that is meant is as near as this in Oklab.
+const STAY: f64 = 0.015;
+/// How much a mixture is disliked for its two colours being apart: its grain shows.
+const GRAIN: f64 = 0.15;
+/// Steps of a mixture.
+const LEVELS: f64 = 64.0;
+
+/// Where the colour of a pixel is counted.
+fn cell(pixel: [u8; 3]) -> usize {
+    let [r, g, b] = pixel.map(|byte| usize::from(byte >> (8 - BITS)));
+    r << (2 * BITS) | g << BITS | b
+}
+
+/// How many pixels have which colours.
+pub(super) struct Counts {
+    /// For each cell the number of pixels and the sums of their channels.
+    cells: Vec<[u64; 4]>,
+}
+
+impl Counts {
+    pub(super) fn new() -> Self {
+        Self { cells: vec![[0; 4]; CELLS] }
+    }
+
+    /// The cells of a picture that are not empty.
+    pub(super) fn of(image: &Image) -> Vec<(u32, [u64; 4])> {
+        let mut cells = Self::new().cells;
+        let mut pixels = image.pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]);
+        let Some(mut last) = pixels.next() else { return Vec::new() };
+        let mut run = 1_u64;
+        let mut count = |pixel: [u8; 3], run: u64| {
+            let sums = &mut cells[cell(pixel)];
+            sums[0] += run;
+            (0..3).for_each(|channel| sums[channel + 1] += run * u64::from(pixel[channel]));
+        };
+        for pixel in pixels {
+            if pixel == last {
+                run += 1;
+            } else {
+                count(last, run);
+                (last, run) = (pixel, 1);
+            }
+        }
+        count(last, run);
+        let filled = cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
+        filled.map(|(at, sums)| (at as u32, *sums)).collect()
+    }
+
+    pub(super) fn add(&mut self, more: &[(u32, [u64; 4])]) {
+        for (at, sums) in more {
+            (0..4).for_each(|number| self.cells[*at as usize][number] += sums[number]);
+        }
+    }
+
+    /// The palette that suits these colours best.
+    pub(super) fn palette(&self) -> Palette {
+        let filled = self.cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
+        let cells: Vec<Cell> = filled
+            .map(|(at, &[count, r, g, b])| {
+                let mean = [r, g, b].map(|sum| ((2 * sum + count) / (2 * count)) as u8);
+                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, POWER) }
+            })
+            .collect();
+        let colours = chosen(&cells);
+        let labs: Vec<Oklab> = colours.iter().map(|&colour| oklab(colour)).collect();
+        let mut mixtures = vec![Mixture::default(); CELLS];
+        let mut near = Vec::with_capacity(cells.len());
+        for (row, cell) in (0..).zip(&cells) {
+            mixtures[cell.at] = Mixture { row, ..Mixture::of(cell.lab, &labs) };
+            let mut bits = [0; 4];
+            for (number, &other) in labs.iter().enumerate() {
+                if square(cell.lab, other) < STAY * STAY {
+                    bits[number / 64] |= 1_u64 << (number % 64);
+                }
+            }
+            near.push(bits);
+        }
+        Palette { colours, mixtures, near }
+    }
+}
+
+/// Colours that are counted together.
+struct Cell {
+    at: usize,
+    mean: Colour,
+    lab: Oklab,
+    count: u64,
+    weight: f64,
+}
+
+/// The sum of weights and the mean of some cells.
+fn mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> (f64, [f64; 3]) {
+    let (mut weight, mut sums) = (0.0, [0.0; 3]);
+    for cell in cells {
+        weight += cell.weight;
+        (0..3).for_each(|axis| sums[axis] += cell.weight * cell.lab.0[axis]);
+    }
+    (weight, sums.map(|sum| sum / weight))
+}
+
+/// The axis along which cells differ most, how much they do, and their mean on it.
+fn spread(cells: &[Cell], members: &[usize]) -> (usize, f64, f64) {
+    let (_, middle) = mean(members.iter().map(|&at| &cells[at]));
+    let squares = |axis: usize| {
+        let off = |at: &usize| (cells[*at].lab.0[axis] - middle[axis]).powi(2) * cells[*at].weight;
+        members.iter().map(off).sum::<f64>()
+    };
+    let along: [f64; 3] = std::array::from_fn(squares);
+    let most = (0..3).max_by(|&one, &other| along[one].total_cmp(&along[other])).unwrap_or(0);
+    (most, along[most], middle[most])
+}
+
+/// The colours of a palette.
+fn chosen(cells: &[Cell]) -> Vec<Colour> {
+    if cells.len() <= MOST {
+        return cells.iter().map(|cell| cell.mean).collect();
+    }
+    let whole: Vec<usize> = (0..cells.len()).collect();
+    let mut boxes = vec![(spread(cells, &whole), whole)];
+    while boxes.len() < MOST {
+        let widest = (0..boxes.len()).max_by(|&one, &other| boxes[one].0.1.total_cmp(&boxes[other].0.1));
+        let ((axis, _, middle), members) = boxes.swap_remove(widest.unwrap_or(0));
+        let (low, high): (Vec<_>, Vec<_>) = members.into_iter().partition(|&at| cells[at].lab.0[axis] < middle);
+        // Cells of one colour have nothing on one side; there are more cells than colours, so another box has.
+        for half in [low, high].into_iter().filter(|half| !half.is_empty()) {
+            boxes.push((spread(cells, &half), half));
+        }
+    }
+    let mut centres: Vec<Oklab> =
+        boxes.iter().map(|(_, members)| Oklab(mean(members.iter().map(|&at| &cells[at])).1)).collect();
+    let mut nearest = Vec::new();
+    for _ in 0..ROUNDS {
+        nearest = cells.iter().map(|cell| nearest_of(cell.lab, &centres)).collect::<Vec<_>>();
+        let mut sums = vec![(0.0, [0.0; 3]); centres.len()];
+        for (cell, &at) in cells.iter().zip(&nearest) {
+            sums[at].0 += cell.weight;
+            (0..3).for_each(|axis| sums[at].1[axis] += cell.weight * cell.lab.0[axis]);
+        }
+        for (centre, (weight, sum)) in centres.iter_mut().zip(sums) {
+            if weight > 0.0 {
+                *centre = Oklab(sum.map(|sum| sum / weight));
+            }
+        }
+    }
+    // A colour that has most of the pixels near it stays as it is: backgrounds meet those of pages.
+    let mut of: Vec<(u64, u64, usize)> = vec![(0, 0, 0); centres.len()];
+    for (at, (cell, &centre)) in cells.iter().zip(&nearest).enumerate() {
+        let (all, most, which) = &mut of[centre];
+        *all += cell.count;
+        if cell.count > *most {
+            (*most, *which) = (cell.count, at);
+        }
+    }
+    let colour = |(centre, (all, most, which)): (&Oklab, &(u64, u64, usize))| {
+        if *most > 0 && 2 * most >= *all { cells[*which].mean } else { from_oklab(*centre) }
+    };
+    centres.iter().zip(&of).map(colour).collect()
+}
+
+fn square(one: Oklab, other: Oklab) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|axis| one.0[axis] - other.0[axis]);
+    x * x + y * y + z * z
+}
+
+fn nearest_of(colour: Oklab, all: &[Oklab]) -> usize {
+    let mut best = (f64::INFINITY, 0);
+    for (at, &other) in all.iter().enumerate() {
+        let far = square(colour, other);
+        if far < best.0 {
+            best = (far, at);
+        }
+    }
+    best.1
+}
+
+/// One colour of the palette, or two side by side, for a colour that it lacks.
+#[derive(Clone, Copy, Default)]
+struct Mixture {
+    one: u8,
+    other: u8,
+    /// How many of 64 pixels have the other.
+    share: u8,
+    /// Where it is said which colours are near it.
+    row: u32,
+}
+
+impl Mixture {
+    fn of(colour: Oklab, palette: &[Oklab]) -> Self {
+        let one = nearest_of(colour, palette);
+        let mut best = (square(colour, palette[one]), one, 0.0);
+        if best.0 > NEAR * NEAR {
+            for (other, &to) in palette.iter().enumerate() {
+                let apart = square(palette[one], to);
+                if apart == 0.0 {
+                    continue;
+                }
+                let along: f64 = (0..3)
+                    .map(|axis| (colour.0[axis] - palette[one].0[axis]) * (to.0[axis] - palette[one].0[axis]))
+                    .sum();
+                let share = (along / apart).clamp(0.0, 0.5);
+                let from = palette[one].0;
+                let mixed = Oklab(std::array::from_fn(|axis| from[axis] + share * (to.0[axis] - from[axis])));
+                let error = square(colour, mixed) + GRAIN * share * (1.0 - share) * apart;
+                if error < best.0 {
+                    best = (error, other, share);
+                }
+            }
+        }
+        let (_, other, share) = best;
+        Self { one: one as u8, other: other as u8, share: (share * LEVELS).round() as u8, row: 0 }
+    }
+}
+
+/// In which order the pixels of a square of 8×8 take the second colour (B. Bayer, 1973): those that take it at one share
+/// also do at every larger one, and they are as far apart as can be.
+const ORDER: [[u8; 8]; 8] = {
+    let mut order = [[0; 8]; 8];
+    let mut y = 0;
+    while y < 8 {
+        let mut x = 0;
+        while x < 8 {
+            let (mut rank, mut bit) = (0, 0);
+            while bit < 3 {
+                let (low, high) = ((x ^ y) >> bit & 1, y >> bit & 1);
+                rank |= (low << 1 | high) << (2 * (2 - bit));
+                bit += 1;
+            }
+            order[y][x] = rank as u8;
+            x += 1;
+        }
+        y += 1;
+    }
+    order
+};
+
+/// Colours by number, and what stands for all others.
+pub(super) struct Palette {
+    pub(super) colours: Vec<Colour>,
+    mixtures: Vec<Mixture>,
+    /// For each cell that is not empty, a bit for each colour that is near it.
+    near: Vec<[u64; 4]>,
+}
+
+/// A picture as numbers of colours.
+pub(super) struct Numbers {
+    /// For each pixel the colour that stands for its own.
+    pub(super) best: Vec<u8>,
+    /// For each pixel where it is said which other colours are near it.
+    rows: Vec<u32>,
+}
+
+impl Palette {
+    /// Whether a colour that is shown already may stay for a pixel.
+    pub(super) fn may_stay(&self, numbers: &Numbers, at: usize, shown: u8) -> bool {
+        shown == numbers.best[at]
+            || self.near[numbers.rows[at] as usize][usize::from(shown / 64)] >> (shown % 64) & 1 == 1
+    }
+
+    /// A picture as numbers of colours. Which of two colours a pixel takes depends on its place: so the grain of a
+    /// mixture stands still, whatever moves.
+    pub(super) fn numbers(&self, image: &Image) -> Numbers {
+        let width = image.size[0] as usize;
+        let all = image.pixels.len() / 3;
+        let (mut best, mut rows) = (Vec::with_capacity(all), Vec::with_capacity(all));
+        for (y, line) in image.pixels.chunks_exact(3 * width).enumerate() {
+            let order = &ORDER[y % 8];
+            for (x, pixel) in line.chunks_exact(3).enumerate() {
+                let Mixture { one, other, share, row } = self.mixtures[cell([pixel[0], pixel[1], pixel[2]])];
+                best.push(if order[x % 8] < share { other } else { one });
+                rows.push(row);
+            }
+        }
+        Numbers { best, rows }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn palette(image: &Image) -> Palette {
+        let mut counts = Counts::new();
+        counts.add(&Counts::of(image));
+        counts.palette()
+    }
+
+    #[test]
+    fn every_rank_is_there_once() {
+        let mut ranks: Vec<u8> = ORDER.iter().flatten().copied().collect();
+        ranks.sort_unstable();
+        assert_eq!(ranks, (0..64).collect::<Vec<u8>>());
+        assert!(ORDER[0][0] == 0 && ORDER[0][1] >= 32, "neighbours are far apart");
+    }
+
+    #[test]
+    fn few_colours_stay_as_they_are() {
+        let image = Image { size: [3, 1], pixels: vec![252, 252, 250, 20, 30, 40, 252, 252, 250] };
+        let palette = palette(&image);
+        let numbers = palette.numbers(&image);
+        let back: Vec<u8> = numbers.best.iter().flat_map(|&number| palette.colours[usize::from(number)]).collect();
+        assert_eq!(back, image.pixels);
+    }
+
+    #[test]
+    fn a_course_of_many_colours_is_met_on_the_mean() {
+        let [width, height] = [256, 64];
+        let pixel = |at: usize| [(at % width) as u8, (at / width * 4) as u8, 255 - (at % width) as u8 / 2];
+        let image =
+            Image { size: [width as u32, height as u32], pixels: (0..width * height).flat_map(pixel).collect() };
+        let palette = palette(&image);
+        assert!(palette.colours.len() <= MOST);
+        let numbers = palette.numbers(&image);
+        let mut sum = 0.0;
+        for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers.best) {
+            let [one, other] =
+                [[pixel[0], pixel[1], pixel[2]], palette.colours[usize::from(number)]].map(|colour| oklab(colour));
+            sum += one.distance(other);
+        }
+        let mean = sum / numbers.best.len() as f64;
+        assert!(mean < 0.03, "{mean}");
+    }
+}

@@ -1,0 +1,257 @@
+//! When which frame is shown.
+
+/// A frame and how long it is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// The number of the frame in its reel.
+    pub frame: usize,
+    /// How long (s), more than 0.
+    pub duration: f64,
+}
+
+/// Which frame is shown how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timeline {
+    shots: Vec<Shot>,
+    /// Pictures a second, if somebody has chosen.
+    rate: Option<f64>,
+}
+
+/// How long a frame is shown that is the only one (s).
+const ALONE: f64 = 1.0;
+/// Videos that nobody has chosen a rate for have this many pictures a second at most: more than screens show.
+const MOST_RATE: f64 = 60.0;
+
+impl Timeline {
+    /// Each frame until the next one's moment, the last one as long as the one before it; `moments` are numbers and times
+    /// (s) of frames, both rising.
+    ///
+    /// Frames are taken at the end of a step, so their times stray by up to a step around their numbers over the rate.
+    /// Where they do not stray further, that rate is taken.
+    pub fn of(moments: &[(u64, f64)]) -> Self {
+        let (Some(&(first, start)), Some(&(last, end))) = (moments.first(), moments.last()) else {
+            return Self { shots: Vec::new(), rate: None };
+        };
+        if moments.len() == 1 {
+            return Self { shots: vec![Shot { frame: 0, duration: ALONE }], rate: None };
+        }
+        let interval = (end - start) / (last - first) as f64;
+        let even = |number: u64| start + (number - first) as f64 * interval;
+        let is_even = moments.iter().all(|&(number, time)| (time - even(number)).abs() < interval / 2.0);
+        let unit = 1.0 / likely_rate(1.0 / interval, last - first);
+        let duration = |pair: &[(u64, f64)]| {
+            if is_even { (pair[1].0 - pair[0].0) as f64 * unit } else { pair[1].1 - pair[0].1 }
+        };
+        let mut durations: Vec<f64> = moments.windows(2).map(duration).collect();
+        durations.extend(durations.last().copied());
+        let shots = durations.into_iter().enumerate().map(|(frame, duration)| Shot { frame, duration }).collect();
+        Self { shots, rate: None }
+    }
+
+    /// The shots in their order.
+    pub fn shots(&self) -> &[Shot] {
+        &self.shots
+    }
+
+    /// How long it plays (s).
+    pub fn duration(&self) -> f64 {
+        self.shots.iter().map(|shot| shot.duration).sum()
+    }
+
+    /// So many times as fast.
+    pub fn faster(mut self, times: f64) -> Self {
+        self.shots.iter_mut().for_each(|shot| shot.duration /= times);
+        self
+    }
+
+    /// The same with a fixed number of pictures a second, each of which shows the frame of its moment.
+    pub fn at_rate(mut self, rate: f64) -> Self {
+        // Sums of thirds may end a hair beyond a whole number.
+        let tick = |time: f64| (time * rate - 1e-6).ceil().max(0.0) as u64;
+        let mut starts: Vec<(usize, u64)> = Vec::new();
+        let mut time = 0.0;
+        for shot in &self.shots {
+            match starts.last_mut() {
+                Some((frame, start)) if *start == tick(time) => *frame = shot.frame,
+                _ => starts.push((shot.frame, tick(time))),
+            }
+            time += shot.duration;
+        }
+        let ends: Vec<u64> = starts.iter().skip(1).map(|(_, start)| *start).chain([tick(time)]).collect();
+        let shots = starts.iter().zip(ends).filter(|((_, start), end)| start < end);
+        self.shots =
+            shots.map(|(&(frame, start), end)| Shot { frame, duration: (end - start) as f64 / rate }).collect();
+        self.rate = Some(rate);
+        self
+    }
+
+    /// The same with at most so many pictures a second: halved as often as it takes, so that what is left is evenly
+    /// spaced.
+    pub(super) fn at_most(&self, most: f64) -> Self {
+        let own = self.own_rate();
+        let mut rate = own;
+        while rate > most * 1.001 {
+            rate /= 2.0;
+        }
+        if rate < own { self.clone().at_rate(rate) } else { self.clone() }
+    }
+
+    /// The same for a film: as many pictures a second as screens show, unless somebody has chosen more.
+    pub(super) fn for_screens(&self) -> Self {
+        if self.rate.is_some() { self.clone() } else { self.at_most(MOST_RATE) }
+    }
+
+    /// The last frame longer by so much (s).
+    pub fn holding(mut self, time: f64) -> Self {
+        if let Some(last) = self.shots.last_mut() {
+            last.duration += time;
+        }
+        self
+    }
+
+    /// There and back: neither the last frame nor the first is shown twice in a row when it is played again.
+    pub fn there_and_back(mut self) -> Self {
+        let inner = 1..self.shots.len().saturating_sub(1).max(1);
+        let back: Vec<_> = self.shots[inner.start.min(self.shots.len())..inner.end.min(self.shots.len())]
+            .iter()
+            .rev()
+            .copied()
+            .collect();
+        self.shots.extend(back);
+        self
+    }
+
+    /// Pictures a second of the shortest shot.
+    fn own_rate(&self) -> f64 {
+        let shortest = self.shots.iter().map(|shot| shot.duration).fold(f64::INFINITY, f64::min);
+        self.rate.unwrap_or(1.0 / shortest)
+    }
+
+    /// Pictures a second with which every frame can be shown at its time, as numerator and denominator.
+    pub(super) fn rate(&self) -> [u32; 2] {
+        fraction(self.own_rate(), 1 << 20)
+    }
+
+    /// The shots in whole ticks of a clock, `rate` a second, each `least` at least: every one begins at the tick nearest
+    /// to its time, so errors do not add up. What would be shown more shortly is left out, but never the last one.
+    pub(super) fn ticks(&self, rate: f64, least: u64) -> Vec<(usize, u64)> {
+        let mut starts: Vec<(usize, u64)> = Vec::new();
+        let mut time = 0.0;
+        for (at, shot) in self.shots.iter().enumerate() {
+            // Sums of thirds may end a hair below a half.
+            let start = (time * rate + 1e-6).round() as u64;
+            match starts.last_mut() {
+                Some((frame, before)) if start < *before + least => {
+                    if at + 1 == self.shots.len() {
+                        *frame = shot.frame;
+                    }
+                }
+                _ => starts.push((shot.frame, start)),
+            }
+            time += shot.duration;
+        }
+        let end = (time * rate + 1e-6).round() as u64;
+        let ends = starts.iter().skip(1).map(|(_, start)| *start).chain([end]);
+        starts.iter().zip(ends).map(|((frame, start), end)| (*frame, end.saturating_sub(*start).max(least))).collect()
+    }
+}
+
+/// Pictures a second that people choose.
+const USUAL: [f64; 10] = [60.0, 30.0, 50.0, 25.0, 100.0, 120.0, 24.0, 20.0, 15.0, 10.0];
+/// How far the ends of steps are taken to stray from the moments of frames, in parts of the time between two frames.
+const STRAY: f64 = 0.15;
+
+/// The rate that was meant by one measured over `count` frames: a usual one or a whole number, if it may be that.
+fn likely_rate(rate: f64, count: u64) -> f64 {
+    let is_near = |other: &f64| (rate - other).abs() <= STRAY / count as f64 * other;
+    let mut candidates = USUAL.into_iter().chain([rate.round()]).filter(|candidate| *candidate >= 1.0);
+    candidates.find(is_near).unwrap_or(rate)
+}
+
+/// The simplest fraction that is a number to within a ten-millionth of it, or the nearest with numerator and denominator up
+/// to `most`.
+pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
+    let (mut before, mut here) = ([0.0, 1.0], [1.0, 0.0]);
+    let mut rest = number;
+    loop {
+        let whole = rest.floor();
+        let next = [whole * here[0] + before[0], whole * here[1] + before[1]];
+        if next.iter().any(|part| *part > f64::from(most)) {
+            break;
+        }
+        (before, here) = (here, next);
+        if (here[0] / here[1] - number).abs() <= 1e-7 * number || rest - whole < 1e-9 {
+            break;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    // A number beyond all such fractions.
+    if here[1] == 0.0 { [most, 1] } else { here.map(|part| part as u32) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn even(count: u64, rate: f64) -> Timeline {
+        Timeline::of(&(0..count).map(|number| (number, number as f64 / rate)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_rate_follows_from_times_that_stray() {
+        let stray = |number: u64| (number, number as f64 / 60.0 + if number % 3 == 1 { 1e-3 } else { 0.0 });
+        let timeline = Timeline::of(&(0..=180).map(stray).collect::<Vec<_>>());
+        assert!(timeline.shots().iter().all(|shot| (shot.duration - 1.0 / 60.0).abs() < 1e-12));
+        assert_eq!(timeline.rate(), [60, 1]);
+        assert_eq!(even(5, 25.0).faster(0.5).rate(), [25, 2]);
+        assert_eq!(even(5, 60.0).faster(2.0).for_screens().rate(), [60, 1]);
+        assert_eq!(even(5, 60.0).faster(2.0).rate(), [120, 1]);
+        let few = Timeline::of(&[(0, 0.0), (1, 1.0 / 30.0 + 1e-3), (2, 2.0 / 30.0), (3, 3.0 / 30.0 + 1e-3)]);
+        assert_eq!(few.rate(), [30, 1]);
+        let tenth = Timeline::of(&[(0, 0.0), (10, 10.0 / 60.0), (20, 20.0 / 60.0)]);
+        assert_eq!(tenth.rate(), [6, 1]);
+    }
+
+    #[test]
+    fn hundredths_carry_their_errors_on() {
+        let ticks = even(31, 30.0).ticks(100.0, 2);
+        assert_eq!(ticks.len(), 31);
+        assert_eq!(ticks.iter().take(4).map(|(_, delay)| *delay).collect::<Vec<_>>(), [3, 4, 3, 3]);
+        let mut start = 0;
+        for (frame, delay) in ticks {
+            assert!((start as f64 / 100.0 - frame as f64 / 30.0).abs() < 0.0051, "{frame} at {start}");
+            start += delay;
+        }
+        let uneven = Timeline::of(&[(0, 0.0), (1, 0.001), (2, 0.5), (3, 0.501)]);
+        assert_eq!(uneven.ticks(100.0, 2), [(0, 50), (3, 2)], "the first and the last are shown");
+    }
+
+    #[test]
+    fn there_back_held_and_sampled() {
+        let frames = |timeline: &Timeline| timeline.shots().iter().map(|shot| shot.frame).collect::<Vec<_>>();
+        assert_eq!(frames(&even(4, 10.0).there_and_back()), [0, 1, 2, 3, 2, 1]);
+        assert_eq!(frames(&even(2, 10.0).there_and_back()), [0, 1]);
+        assert_eq!(frames(&even(1, 10.0).there_and_back()), [0]);
+        let held = even(3, 10.0).holding(1.0);
+        assert!((held.duration() - 1.3).abs() < 1e-12);
+        assert_eq!(held.ticks(10.0, 1), [(0, 1), (1, 1), (2, 11)]);
+        assert_eq!(frames(&even(8, 60.0).at_rate(30.0)), [0, 2, 4, 6]);
+        assert_eq!(frames(&even(9, 60.0).at_rate(10.0)), [0, 6]);
+        assert_eq!(frames(&even(9, 60.0).at_most(50.0)), [0, 2, 4, 6, 8]);
+        assert_eq!(even(9, 50.0).at_most(50.0), even(9, 50.0));
+        assert_eq!(even(4, 10.0).at_rate(20.0).ticks(20.0, 1), [(0, 2), (1, 2), (2, 2), (3, 2)]);
+    }
+
+    #[test]
+    fn fractions_are_simple() {
+        for (number, most, expected) in [
+            (1.0 / 60.0, 65535, [1, 60]),
+            (30_000.0 / 1001.0, 1 << 20, [30_000, 1001]),
+            (0.5, 65535, [1, 2]),
+            (3.0, 65535, [3, 1]),
+            (1e9, 65535, [65535, 1]),
+        ] {
+            assert_eq!(fraction(number, most), expected, "{number}");
+        }
+    }
+}

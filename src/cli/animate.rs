@@ -1,0 +1,475 @@
+//! `animate`: frames of folders as an animation, or as a sheet of still pictures.
+
+use super::console;
+use super::failure::{Failure, Status, with_causes};
+use super::frames::FrameRanges;
+use super::interrupt;
+use super::options::processors;
+use super::render::size;
+use crate::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline, Written, resized};
+use crate::golden::{PictureError, Pixels};
+use crate::output::{FolderLock, Label, Tags, folder_of, frame_file_name, frame_files, read_frame};
+use clap::{Args, ValueHint};
+use serde_json::json;
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape animate output/fig4b -o fig4b.gif --width 800        for chats and READMEs
+  localshape animate output/fig4b -o fig4b.mp4 --speed 0.25       slow motion, for slides (needs ffmpeg)
+  localshape animate output/fig4b -o fig4b.apng --frames 0-60     every pixel as it is, for web pages
+  localshape animate soft stiff -o both.webm --stack              two folders, one above the other
+  localshape animate output/fig4b -o sheet.png --frames 0-44x4    still pictures with their times, for papers
+  localshape animate output/fig4b -o - | ffplay -                 y4m on standard output, for other programs
+
+The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
+(H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \
+hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
+every second one.";
+
+/// What stands at the beginning of each comment, by which a file is known as one of ours.
+const MARK: &str = "made by localshape ";
+/// Frames of a sheet if nobody says which.
+const ON_SHEET: usize = 12;
+/// The name of standard output.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Make an animation, or a sheet of still pictures, from frames
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Animate {
+    /// Folders of frames, as `render` makes them; several stand side by side
+    #[arg(value_name = "DIR", required = true, value_hint = ValueHint::DirPath)]
+    folders: Vec<PathBuf>,
+
+    /// The file to make, whose ending chooses the format; - for y4m on standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    out: PathBuf,
+
+    /// Replace a file that was not made by this command
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Frames to show, ends included: 0-119, every third as 0-119x3, or 5,9,40-60 [default: all; on a sheet twelve]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
+    frames: Option<FrameRanges>,
+
+    /// How many times as fast as in the scene: 0.25 for slow motion
+    #[arg(long, value_name = "TIMES", default_value = "1", value_parser = positive, allow_hyphen_values = true)]
+    speed: f64,
+
+    /// Pictures a second [default: one for each frame]
+    #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
+    fps: Option<f64>,
+
+    /// How often it plays, 0 for ever (GIF and APNG)
+    #[arg(long = "loop", value_name = "N", default_value = "0")]
+    plays: u16,
+
+    /// Show the last frame longer by so much (s)
+    #[arg(long, value_name = "SECONDS", value_parser = pause, allow_hyphen_values = true)]
+    hold_last: Option<f64>,
+
+    /// There and back again
+    #[arg(long)]
+    boomerang: bool,
+
+    /// Put folders one above the other
+    #[arg(long)]
+    stack: bool,
+
+    /// Scale to this width (px) [default: as the frames are]
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    width: Option<u32>,
+
+    /// Width and height of a sheet (px) [default: 1920x1080]
+    #[arg(long, value_name = "WxH", value_parser = size, conflicts_with = "width")]
+    size: Option<[u32; 2]>,
+
+    /// Threads to work with [default: one for each processor]; the file is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Neither progress nor summary; only errors
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Print what was made as one JSON document
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+impl Animate {
+    pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+        let to_standard_output = self.out == Path::new(STANDARD_OUTPUT);
+        let format = if to_standard_output { Format::Y4m } else { Format::of(&self.out).map_err(Failure::usage)? };
+        if !to_standard_output && !self.overwrite {
+            replaceable(&self.out)?;
+        }
+        if self.size.is_some() && format != Format::Sheet {
+            return Err(Failure::usage("--size is for sheets (.png); an animation is scaled with --width"));
+        }
+        let reel = Folders::open(&self, format)?;
+        let mut timeline = Timeline::of(&reel.moments).faster(self.speed);
+        if let Some(rate) = self.fps {
+            timeline = timeline.at_rate(rate);
+        }
+        if let Some(time) = self.hold_last {
+            timeline = timeline.holding(time);
+        }
+        if self.boomerang {
+            timeline = timeline.there_and_back();
+        }
+        interrupt::listen();
+        let comment = comment(words, &reel.scenes);
+        let sheet = Sheet { times: reel.moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
+        let sheet = Sheet { size: self.size.unwrap_or(sheet.size), ..sheet };
+        let bar = console::progress(&self.out.to_string_lossy(), PARTS, self.quiet || self.json);
+        bar.set_message(format!("{} frames", reel.moments.len()));
+        let progress = |done: f64| {
+            bar.set_position((done * PARTS as f64) as u64);
+            !interrupt::requested()
+        };
+        let animation = Animation {
+            reel: &reel,
+            timeline: &timeline,
+            plays: self.plays,
+            sheet: &sheet,
+            comment: &comment,
+            threads: self.threads.map_or_else(processors, usize::from),
+            progress: &progress,
+        };
+        let result = if to_standard_output {
+            animation.write_y4m(std::io::BufWriter::new(std::io::stdout().lock()))
+        } else {
+            let _lock = FolderLock::beside_others(folder_of(&self.out));
+            animation.write(format, &self.out)
+        };
+        bar.finish_and_clear();
+        match result {
+            Ok(written) => {
+                if !to_standard_output {
+                    let size = if format == Format::Sheet { sheet.size } else { reel.size };
+                    self.tell(size, reel.moments.len(), &written)?;
+                }
+                Ok(Status::Done)
+            }
+            Err(AnimationError::Stopped) => Ok(Status::Interrupted),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn tell(&self, [width, height]: [u32; 2], frames: usize, written: &Written) -> Result<(), Failure> {
+        if self.json {
+            let bytes = self.out.metadata().map_or(0, |found| found.len());
+            let Written { pictures, duration } = *written;
+            let file = self.out.to_string_lossy();
+            return console::print_json(&json!({
+                "file": file, "size": [width, height], "frames": frames, "pictures": pictures, "duration": duration,
+                "bytes": bytes,
+            }));
+        }
+        if self.quiet { Ok(()) } else { console::print(&summary(&self.out, [width, height], frames, written)) }
+    }
+}
+
+/// What was made, on a line.
+pub(super) fn summary(path: &Path, [width, height]: [u32; 2], frames: usize, written: &Written) -> String {
+    let bytes = path.metadata().map_or(0, |found| found.len());
+    let (path, Written { pictures, duration }) = (path.display(), *written);
+    let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
+    let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
+    let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
+    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes))
+}
+
+/// Steps of a progress bar.
+pub(super) const PARTS: u64 = 1000;
+
+/// The size of a file for people.
+fn file_size(bytes: u64) -> String {
+    if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
+}
+
+/// What an animation says about itself.
+pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
+    let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
+}
+
+/// Refuses to replace what this program did not make.
+pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
+    /// Comments stand near the beginning, in films behind tables of all pictures.
+    const BEGINNING: u64 = 1 << 20;
+    let Ok(found) = path.metadata() else { return Ok(()) };
+    let name = path.display();
+    if !found.is_file() {
+        return Err(Failure::usage(format!("{name} is no file; choose another name with -o")));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
+    read.map_err(|error| Failure::files(format!("cannot read {name}: {error}")))?;
+    let mark = MARK.replace(' ', "_");
+    let is_ours = [MARK, &mark].iter().any(|mark| bytes.windows(mark.len()).any(|part| part == mark.as_bytes()));
+    if is_ours {
+        return Ok(());
+    }
+    let told = format!(
+        "{name} is there already, and was not made by this command; choose another name with -o, or replace it with --overwrite"
+    );
+    Err(Failure::usage(told))
+}
+
+impl From<AnimationError> for Failure {
+    fn from(error: AnimationError) -> Self {
+        match error {
+            AnimationError::File(error) => error.into(),
+            AnimationError::Picture { source: PictureError::Read(_), .. } | AnimationError::Ffmpeg { .. } => {
+                Self::files(with_causes(&error))
+            }
+            AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
+                Self::files("cannot write to standard output: its reader has ended before the animation has")
+            }
+            AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
+            AnimationError::Stopped => Self::silent(Status::Interrupted),
+            error => Self::usage(with_causes(&error)),
+        }
+    }
+}
+
+/// Frames of one folder, or of several beside each other.
+struct Folders {
+    /// For each frame its file in each folder.
+    paths: Vec<Vec<PathBuf>>,
+    /// Number and time of each frame (s).
+    moments: Vec<(u64, f64)>,
+    /// Digests of the scenes shown, each once.
+    scenes: Vec<String>,
+    /// Width and height of a frame in its folder (px).
+    own: [u32; 2],
+    /// Width and height of all together, scaled (px).
+    size: [u32; 2],
+    stack: bool,
+}
+
+/// What the frames of one folder have in common, and when they are.
+struct Folder {
+    size: [u32; 2],
+    scene: String,
+    frames: Vec<(u64, f64, PathBuf)>,
+}
+
+impl Folders {
+    /// Looks at all frames that are asked for.
+    fn open(options: &Animate, format: Format) -> Result<Self, Failure> {
+        let folders: Vec<Folder> =
+            options.folders.iter().map(|path| Folder::open(path, options.frames.as_ref())).collect::<Result<_, _>>()?;
+        let first = &folders[0];
+        for (path, folder) in options.folders.iter().zip(&folders).skip(1) {
+            let ([one, other], [name, beside]) = ([first, folder], [options.folders[0].display(), path.display()]);
+            let [[w, h], [w2, h2]] = [one.size, other.size];
+            if one.size != other.size {
+                let told = format!(
+                    "{name} has frames of {w}×{h} and {beside} of {w2}×{h2}; only equal sizes fit side by side"
+                );
+                return Err(Failure::usage(told));
+            }
+            let unlike = one.frames.iter().zip(&other.frames).find(|(a, b)| a.0 != b.0).map(|(a, b)| a.0.min(b.0));
+            let (a, b) = (one.frames.len(), other.frames.len());
+            let unlike = unlike.or_else(|| (a != b).then(|| if a < b { other.frames[a].0 } else { one.frames[b].0 }));
+            if let Some(number) = unlike {
+                let told = format!(
+                    "frame {number} is only in one of {name} and {beside}; choose frames that both have with --frames"
+                );
+                return Err(Failure::usage(told));
+            }
+            // Each takes its frames at the end of a step of its own.
+            let step = one.frames.windows(2).map(|pair| pair[1].1 - pair[0].1).fold(f64::INFINITY, f64::min);
+            if let Some((a, b)) = one.frames.iter().zip(&other.frames).find(|(a, b)| (a.1 - b.1).abs() > step / 2.0) {
+                let told = format!(
+                    "frame {} is at {:.4} s in {name} and at {:.4} s in {beside}; only frames of equal times fit side by side",
+                    a.0, a.1, b.1
+                );
+                return Err(Failure::usage(told));
+            }
+        }
+        let mut keep: Vec<usize> = (0..first.frames.len()).collect();
+        if format == Format::Sheet && options.frames.is_none() && keep.len() > ON_SHEET {
+            let last = keep.len() - 1;
+            keep = (0..ON_SHEET).map(|at| (at * last + (ON_SHEET - 1) / 2) / (ON_SHEET - 1)).collect();
+        }
+        let paths = keep.iter().map(|&at| folders.iter().map(|folder| folder.frames[at].2.clone()).collect()).collect();
+        let moments = keep.iter().map(|&at| (first.frames[at].0, first.frames[at].1)).collect();
+        let mut scenes: Vec<String> = folders.iter().map(|folder| folder.scene.clone()).collect();
+        scenes.dedup();
+        let (own, count) = (first.size, folders.len() as u32);
+        let whole = if options.stack { [own[0], own[1] * count] } else { [own[0] * count, own[1]] };
+        let size = match options.width {
+            Some(width) => {
+                let height = f64::from(whole[1]) * f64::from(width) / f64::from(whole[0]);
+                [width, (height.round() as u32).max(1)]
+            }
+            None => whole,
+        };
+        if size.iter().any(|&side| side > 16_384) {
+            let [width, height] = size;
+            return Err(Failure::usage(format!(
+                "together the frames have {width}×{height} pixels, which is more than 16384 a side"
+            )));
+        }
+        Ok(Self { paths, moments, scenes, own, size, stack: options.stack })
+    }
+
+    /// One frame of one folder, which is still what it was when it was looked at.
+    fn read(&self, path: &Path, number: u64) -> Result<Image, AnimationError> {
+        let picture = |source| AnimationError::Picture { path: path.to_owned(), source };
+        let found = Pixels::read(path).map_err(picture)?;
+        let is_it = matches!(&found.label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
+        let is_same = found.size == self.own && is_it;
+        if !is_same {
+            let told =
+                format!("{} has become another picture meanwhile; try again when nobody writes there", path.display());
+            return Err(AnimationError::Wrong(told));
+        }
+        Ok(found.into())
+    }
+}
+
+impl Reel for Folders {
+    fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    fn image(&self, frame: usize) -> Result<Image, AnimationError> {
+        let number = self.moments[frame].0;
+        let image = match self.paths[frame].as_slice() {
+            [path] => self.read(path, number)?,
+            paths => {
+                let count = paths.len() as u32;
+                let [width, height] = self.own;
+                let size = if self.stack { [width, height * count] } else { [width * count, height] };
+                let mut whole = Image::plain(size, [0; 3]);
+                for (at, path) in (0..).zip(paths) {
+                    let corner = if self.stack { [0, at * height] } else { [at * width, 0] };
+                    whole.paste(&self.read(path, number)?, corner);
+                }
+                whole
+            }
+        };
+        Ok(if image.size == self.size { image } else { resized(&image, self.size) })
+    }
+}
+
+impl Folder {
+    /// Reads what the frames of a folder say about themselves.
+    fn open(path: &Path, asked: Option<&FrameRanges>) -> Result<Self, Failure> {
+        let name = path.display();
+        match path.metadata() {
+            Ok(found) if found.is_dir() => {}
+            Ok(_) => {
+                return Err(Failure::usage(format!(
+                    "{name} is no folder; expected one with frames of `localshape render`"
+                )));
+            }
+            Err(error) => {
+                return Err(Failure::usage(format!(
+                    "{name} cannot be read: {error}; expected a folder with frames of `localshape render`"
+                )));
+            }
+        }
+        let mut files = frame_files(path)?;
+        let Some(&(last, _)) = files.last() else {
+            let told = format!(
+                "{name} has no frames, such as {}; `localshape render SCENE -o {name}` makes some",
+                frame_file_name(0)
+            );
+            return Err(Failure::usage(told));
+        };
+        if let Some(asked) = asked {
+            let wanted = asked.select(last).map_err(|told| Failure::usage(format!("frames of {name}: {told}")))?;
+            if let Some(missing) =
+                wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
+            {
+                return Err(Failure::usage(format!("frames of {name}: there is no {}", frame_file_name(*missing))));
+            }
+            files.retain(|(number, _)| wanted.binary_search(number).is_ok());
+        } else if let Some(stride) = files.get(1).map(|(second, _)| second - files[0].0)
+            && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
+        {
+            let [before, after] = [&pair[0], &pair[1]].map(|(number, _)| frame_file_name(*number));
+            let told = format!(
+                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render those that \
+                 are missing, or choose frames with --frames"
+            );
+            return Err(Failure::usage(told));
+        }
+        let mut folder: Option<(Self, Vec<String>)> = None;
+        for (number, file) in files {
+            let Some((size, tags)) = read_frame(&file)? else {
+                let told = format!(
+                    "{} is damaged, or no frame of `localshape render`: it does not say what it shows",
+                    file.display()
+                );
+                return Err(Failure::usage(told));
+            };
+            let runs: Vec<String> = tags.states.iter().map(|(_, run)| run.clone()).collect();
+            let (all, first) = folder
+                .get_or_insert_with(|| (Self { size, scene: tags.scene.clone(), frames: Vec::new() }, runs.clone()));
+            let unlike = |what: String| Failure::usage(format!("{} {what}", file.display()));
+            let before = all
+                .frames
+                .last()
+                .map(|(_, _, path)| path.file_name().unwrap_or_default().to_string_lossy().into_owned())
+                .unwrap_or_default();
+            if tags.frame != number {
+                return Err(unlike(format!("shows frame {}; a file was renamed", tags.frame)));
+            }
+            if size != all.size {
+                let [[w, h], [w2, h2]] = [size, all.size];
+                return Err(unlike(format!("has {w}×{h} pixels, {before} has {w2}×{h2}; render them in one size")));
+            }
+            if tags.scene != all.scene {
+                return Err(unlike(format!("shows another scene than {before}; render all of one scene")));
+            }
+            if runs != *first {
+                return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(first))));
+            }
+            if !tags.time.is_finite() || all.frames.last().is_some_and(|(_, time, _)| tags.time <= *time) {
+                return Err(unlike(format!("is at {} s, not after {before}", tags.time)));
+            }
+            all.frames.push((number, tags.time, file));
+        }
+        Ok(folder.expect("at least one frame").0)
+    }
+}
+
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("“{name}”")).collect::<Vec<_>>().join(", ")
+}
+
+fn number(typed: &str) -> Result<f64, String> {
+    typed.trim().parse().map_err(|_| "expected a number".to_owned())
+}
+
+fn positive(typed: &str) -> Result<f64, String> {
+    let times = number(typed)?;
+    if (0.001..=1000.0).contains(&times) {
+        Ok(times)
+    } else {
+        Err("expected a number from 0.001 to 1000; at 0 it would stand still".to_owned())
+    }
+}
+
+fn rate(typed: &str) -> Result<f64, String> {
+    let rate = number(typed)?;
+    if (0.1..=1000.0).contains(&rate) { Ok(rate) } else { Err("expected a number from 0.1 to 1000".to_owned()) }
+}
+
+fn pause(typed: &str) -> Result<f64, String> {
+    let time = number(typed)?;
+    if (0.0..=3600.0).contains(&time) { Ok(time) } else { Err("expected seconds from 0 to 3600".to_owned()) }
+}

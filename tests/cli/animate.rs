@@ -1,0 +1,553 @@
+//! `animate`: what other decoders make of the files, and what is said of frames that do not fit.
+
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, run, skip};
+use localshape::output::{Tags, encode};
+use std::path::Path;
+use std::process::Command;
+
+const SIZE: [u32; 2] = [64, 48];
+/// Frames of a folder.
+const COUNT: u64 = 12;
+
+/// A frame of a bright square on a course of colours, further to the right in each frame.
+fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let moving = |x: u32, y: u32| (10..20).contains(&y) && (x as u64).wrapping_sub(3 * number) < 8;
+    let pixel = |(x, y): (u32, u32)| if moving(x, y) { [230, 90, 20] } else { [250 - y as u8, 250 - y as u8 / 2, 240] };
+    places.flat_map(pixel).collect()
+}
+
+fn tags(number: u64) -> Tags {
+    Tags {
+        scene: "5c".repeat(32),
+        states: vec![("ab".repeat(32), "Local shape".to_owned())],
+        frame: number,
+        // Taken at the end of a step, as those of scenes.
+        time: number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 },
+        version: "0.1.0".to_owned(),
+        adapter: "none".to_owned(),
+    }
+}
+
+fn put(place: &Place, folder: &str, number: u64, bytes: &[u8]) {
+    std::fs::create_dir_all(place.path(folder)).expect("a folder");
+    std::fs::write(place.path(format!("{folder}/frame_{number:05}.png")), bytes).expect("a frame");
+}
+
+/// A place with a folder of frames at 30 a second.
+fn with_frames() -> Place {
+    let place = Place::new();
+    (0..COUNT).for_each(|number| put(&place, "in", number, &encode(SIZE, &pixels(number, SIZE), &tags(number))));
+    place
+}
+
+/// The frames of an APNG as they are shown, each with its delay (s), and how often it is played.
+fn decode_apng(path: &Path) -> (Vec<(Vec<u8>, f64)>, u32) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+    let control = *reader.info().animation_control().expect("an animation");
+    let [width, height] = [reader.info().width as usize, reader.info().height as usize];
+    let mut shown = vec![0; 3 * width * height];
+    let mut frames = Vec::new();
+    for _ in 0..control.num_frames {
+        let mut buffer = vec![0; 4 * width * height];
+        reader.next_frame(&mut buffer).expect("a frame");
+        let frame = *reader.info().frame_control().expect("a control");
+        assert_eq!((frame.dispose_op, frame.blend_op), (png::DisposeOp::None, png::BlendOp::Over));
+        for (at, pixel) in buffer.chunks_exact(4).take(frame.width as usize * frame.height as usize).enumerate() {
+            let [x, y] = [at % frame.width as usize, at / frame.width as usize];
+            let to = 3 * ((y + frame.y_offset as usize) * width + x + frame.x_offset as usize);
+            match pixel[3] {
+                255 => shown[to..to + 3].copy_from_slice(&pixel[..3]),
+                opacity => assert_eq!(opacity, 0),
+            }
+        }
+        frames.push((shown.clone(), f64::from(frame.delay_num) / f64::from(frame.delay_den)));
+    }
+    (frames, control.num_plays)
+}
+
+/// The frames of a GIF as they are shown, each with its delay (hundredths of a second), and how often it is played again.
+fn decode_gif(path: &Path) -> (Vec<(Vec<u8>, u16)>, gif::Repeat) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(std::fs::File::open(path).expect("a file")).expect("a GIF");
+    let [width, height] = [decoder.width() as usize, decoder.height() as usize];
+    assert!(decoder.global_palette().is_some_and(|palette| palette.len() <= 3 * 256));
+    let mut shown = vec![0; 3 * width * height];
+    let mut frames = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+        assert!(frame.palette.is_none(), "one palette for all");
+        for (at, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, pixel)| pixel[3] == 255) {
+            let [x, y] = [at % frame.width as usize, at / frame.width as usize];
+            let to = 3 * ((y + frame.top as usize) * width + x + frame.left as usize);
+            shown[to..to + 3].copy_from_slice(&pixel[..3]);
+        }
+        frames.push((shown.clone(), frame.delay));
+    }
+    (frames, decoder.repeat())
+}
+
+/// The mean difference of two pictures (CIEDE2000).
+fn difference(one: &[u8], other: &[u8]) -> f64 {
+    use localshape::colour::{ciede2000, lab, linear};
+    let of = |pixel: &[u8]| lab(linear([pixel[0], pixel[1], pixel[2]]));
+    let pairs = one.chunks_exact(3).zip(other.chunks_exact(3));
+    pairs.map(|(one, other)| ciede2000(of(one), of(other))).sum::<f64>() / (one.len() / 3) as f64
+}
+
+#[test]
+fn an_apng_is_every_frame_to_the_bit() {
+    let place = with_frames();
+    let ran = place.run("animate in -o out.apng").good();
+    assert!(ran.out.starts_with("out.apng  64×48, 12 pictures in 0.40 s, "), "{}", ran.out);
+    let (frames, plays) = decode_apng(&place.path("out.apng"));
+    assert_eq!((frames.len() as u64, plays), (COUNT, 0));
+    for (number, (shown, delay)) in (0..).zip(&frames) {
+        assert!(*shown == pixels(number, SIZE), "frame {number}");
+        assert_eq!(*delay, 1.0 / 30.0);
+    }
+    let sum: u64 =
+        (0..COUNT).map(|number| place.path(format!("in/frame_{number:05}.png")).metadata().unwrap().len()).sum();
+    assert!(place.path("out.apng").metadata().unwrap().len() < sum);
+    let bytes = std::fs::read(place.path("out.apng")).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains(&format!(
+        "made by localshape {}; scene {}; command: ",
+        env!("CARGO_PKG_VERSION"),
+        "5c".repeat(32)
+    )));
+    assert!(text.contains("animate in -o out.apng"));
+}
+
+#[test]
+fn a_gif_looks_like_its_frames_and_keeps_their_times() {
+    let place = with_frames();
+    place.run("animate in -o out.gif --loop 3").good();
+    let (frames, repeat) = decode_gif(&place.path("out.gif"));
+    assert_eq!((frames.len() as u64, repeat), (COUNT, gif::Repeat::Finite(2)));
+    for (number, (shown, _)) in (0..).zip(&frames) {
+        let apart = difference(shown, &pixels(number, SIZE));
+        assert!(apart < 1.0, "frame {number}: {apart}");
+    }
+    let delays: Vec<_> = frames.iter().map(|(_, delay)| *delay).collect();
+    assert_eq!(delays, [3, 4, 3, 3, 4, 3, 3, 4, 3, 3, 4, 3]);
+    // Twice as fast there are more frames than hundredths allow.
+    let ran = place.run("animate in -o out.gif --speed 2").good();
+    assert!(ran.out.contains("6 pictures of 12 frames in 0.20 s"), "{}", ran.out);
+    let (frames, repeat) = decode_gif(&place.path("out.gif"));
+    assert!(frames.iter().all(|(_, delay)| *delay >= 2) && repeat == gif::Repeat::Infinite);
+    assert!(difference(&frames.last().unwrap().0, &pixels(COUNT - 2, SIZE)) < 1.0, "every second one is shown");
+    assert!(std::fs::read(place.path("out.gif")).unwrap().windows(8).any(|part| part == b"scene 5c"));
+}
+
+/// What stands still in a frame is shown in the same colours in every frame.
+#[test]
+fn nothing_flickers_where_nothing_moves() {
+    let place = with_frames();
+    place.run("animate in -o out.gif").good();
+    let (frames, _) = decode_gif(&place.path("out.gif"));
+    let below = 3 * 64 * 20;
+    assert!(frames.iter().all(|(shown, _)| shown[below..] == frames[0].0[below..]));
+}
+
+#[test]
+fn y4m_goes_to_a_file_or_a_pipe() {
+    let place = with_frames();
+    place.run("animate in -o out.y4m --frames 0-3").good();
+    let bytes = std::fs::read(place.path("out.y4m")).unwrap();
+    let end = bytes.iter().position(|&byte| byte == b'\n').unwrap();
+    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    assert!(
+        header.starts_with("YUV4MPEG2 W64 H48 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED Xmade_by_localshape_"),
+        "{header}"
+    );
+    let frame = 6 + 3 * 64 * 48;
+    assert_eq!(bytes.len() - end - 1, 4 * frame);
+    assert!(bytes[end + 1..].chunks_exact(frame).all(|part| part.starts_with(b"FRAME\n")));
+    let piped = place.command(["animate", "in", "-o", "-", "--frames", "0-3"]).output().expect("the program starts");
+    assert!(piped.status.success() && piped.stderr.is_empty(), "{piped:?}");
+    assert_eq!(piped.stdout[piped.stdout.len() - 4 * frame..], bytes[end + 1..]);
+}
+
+#[test]
+fn any_number_of_threads_makes_the_same_bytes() {
+    let place = with_frames();
+    for ending in ["gif", "apng", "y4m", "png"] {
+        let made = |threads: u32| {
+            place.run(&format!("animate in -o out.{ending} --threads {threads}")).good();
+            std::fs::read(place.path(format!("out.{ending}"))).unwrap()
+        };
+        let [one, many] = [made(1), made(5)];
+        assert_eq!(one.len(), many.len(), "{ending}");
+        // The file says by which command it was made, and PNG has a checksum of that.
+        let unlike = one.iter().zip(&many).filter(|(a, b)| a != b).count();
+        assert!(unlike <= 5, "{ending}: {unlike}");
+    }
+}
+
+/// The same frames go into the animation whether they are kept or not.
+#[test]
+fn rendering_makes_animations_meanwhile() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    let ran = place.run("render small.toml --samples 1 --animate a.gif --animate a.apng").good();
+    for line in ["a.gif  96×64, 4 pictures of 7 frames in 0.13 s", "a.apng  96×64, 7 pictures in 0.12 s"] {
+        assert!(ran.out.contains(line), "{line}: {}", ran.out);
+    }
+    place.run("animate output/small -o b.apng").good();
+    place.run("render small.toml --samples 1 --animate c.apng --no-frames -o numbers").good();
+    assert_eq!(place.names("numbers"), ["diagnostics.csv", "run.json"]);
+    let (frames, _) = decode_apng(&place.path("a.apng"));
+    assert_eq!(frames.len(), SMALL_FRAMES);
+    assert!(frames == decode_apng(&place.path("b.apng")).0 && frames == decode_apng(&place.path("c.apng")).0);
+    assert_eq!(decode_gif(&place.path("a.gif")).0.len(), 4);
+
+    place.write("other.toml", SMALL);
+    place.run("render small.toml other.toml --animate d.gif").bad(2, &["--animate", "one at a time"]);
+    place.run("render small.toml --animate d.avi").bad(2, &[".avi", ".gif"]);
+    place.run("render small.toml --animate absent/d.gif").bad(2, &["there is no folder absent"]);
+    assert_eq!(place.run("render small.toml --no-frames").status, Some(2));
+    assert!(place.names(".").iter().all(|name| !name.starts_with("d.")));
+}
+
+#[test]
+fn speed_rate_pauses_and_ways() {
+    let place = with_frames();
+    let times = |arguments: &str| {
+        place.run(&format!("animate in -o out.apng {arguments}")).good();
+        let (frames, plays) = decode_apng(&place.path("out.apng"));
+        let which =
+            |shown: &Vec<u8>| (0..COUNT).find(|&number| *shown == pixels(number, SIZE)).expect("one of the frames");
+        let shots: Vec<_> = frames.iter().map(|(shown, delay)| (which(shown), (delay * 1e4).round() / 1e4)).collect();
+        (shots, plays)
+    };
+    assert_eq!(times("--frames 3-9x3 --speed 0.5").0, [(3, 0.2), (6, 0.2), (9, 0.2)]);
+    assert_eq!(
+        times("--frames 0-3 --hold-last 1.5 --loop 1"),
+        (vec![(0, 0.0333), (1, 0.0333), (2, 0.0333), (3, 1.5333)], 1)
+    );
+    assert_eq!(
+        times("--frames 0-3 --speed 3 --boomerang").0.iter().map(|shot| shot.0).collect::<Vec<_>>(),
+        [0, 1, 2, 3, 2, 1]
+    );
+    assert_eq!(times("--frames 0-8 --fps 10").0, [(0, 0.1), (3, 0.1), (6, 0.1)]);
+    assert_eq!(times("--frames 1,2,8").0, [(1, 0.0333), (2, 0.2), (8, 0.2)]);
+}
+
+#[test]
+fn folders_stand_side_by_side_and_may_be_scaled() {
+    let place = with_frames();
+    let size = |arguments: &str| {
+        place.run(&format!("animate {arguments} -o out.apng --frames 0-1")).good();
+        let (frames, _) = decode_apng(&place.path("out.apng"));
+        frames[1].0.clone()
+    };
+    let one = pixels(1, SIZE);
+    let beside = size("in in");
+    let row = 3 * 64;
+    assert!(
+        beside
+            .chunks_exact(2 * row)
+            .zip(one.chunks_exact(row))
+            .all(|(two, one)| two[..row] == *one && two[row..] == *one)
+    );
+    let stacked = size("in in --stack");
+    assert!(stacked[..one.len()] == one && stacked[one.len()..] == one);
+    let small = size("in --width 32");
+    assert_eq!(small.len(), 3 * 32 * 24);
+    // Far from the square the colours are a course down the picture.
+    let below = &small[3 * 32 * 20..3 * 32 * 20 + 3];
+    assert!(below[0].abs_diff(250 - 40) <= 2 && below[2] == 240, "{below:?}");
+}
+
+#[test]
+fn a_sheet_shows_frames_with_their_times() {
+    let place = with_frames();
+    let ran = place.run("animate in -o out.png --frames 0-11x3 --size 300x200").good();
+    assert!(ran.out.starts_with("out.png  300×200, 4 pictures, "), "{}", ran.out);
+    let file = std::io::BufReader::new(std::fs::File::open(place.path("out.png")).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    let info = reader.info();
+    assert!(info.animation_control.is_none() && (info.width, info.height) == (300, 200));
+    let ground = &bytes[..3];
+    let squares = bytes.chunks_exact(3).filter(|pixel| *pixel == [230, 90, 20]).count();
+    assert_eq!(squares, 4 * 80, "four frames at their own size");
+    assert!(
+        bytes.chunks_exact(3).any(|pixel| pixel.iter().zip(ground).all(|(byte, ground)| *byte < ground / 2)),
+        "words"
+    );
+    let ran = place.run("animate in -o many.png --size 60x40 --frames 0-11");
+    ran.bad(2, &["12 frames are too many for a sheet of 60×40", "--frames"]);
+}
+
+/// A folder with an `ffmpeg` that is a script, and the command that finds it.
+#[cfg(unix)]
+fn with_script(place: &Place, script: &str, arguments: &str) -> Command {
+    use std::os::unix::fs::PermissionsExt;
+    place.write("bin/ffmpeg", &format!("#!/bin/sh\nPATH=/usr/bin:/bin\n{script}\n"));
+    std::fs::set_permissions(place.path("bin/ffmpeg"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = place.command(arguments.split(' '));
+    command.env("PATH", place.path("bin"));
+    command
+}
+
+#[cfg(unix)]
+#[test]
+fn films_are_piped_to_ffmpeg() {
+    let place = with_frames();
+    let script = "echo \"$@\" > arguments; cat > pixels; for last; do :; done; echo film > \"$last\"";
+    let ran = run(&mut with_script(&place, script, "animate in -o out.mp4 --hold-last 0.1")).good();
+    assert!(ran.out.starts_with("out.mp4  64×48, 15 pictures of 12 frames in 0.50 s"), "{}", ran.out);
+    let arguments = place.read("arguments");
+    for part in [
+        "-f rawvideo",
+        "rgb24",
+        "64x48",
+        "-framerate 30/1",
+        "libx264",
+        "yuv420p",
+        "+faststart",
+        "bt709",
+        "comment=made by localshape",
+    ] {
+        assert!(arguments.contains(part), "{part}: {arguments}");
+    }
+    let raw = std::fs::read(place.path("pixels")).unwrap();
+    let frames: Vec<_> = raw.chunks(3 * 64 * 48).collect();
+    assert_eq!(frames.len(), 15);
+    assert!(frames[..12].iter().zip(0..).all(|(frame, number)| *frame == pixels(number, SIZE)));
+    assert!(frames[12..].iter().all(|frame| *frame == frames[11]));
+    assert_eq!(place.read("out.mp4"), "film\n");
+    run(&mut with_script(&place, script, "animate in -o out.webm")).good();
+    assert!(place.read("arguments").contains("libvpx-vp9"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_ffmpeg_that_is_missing_or_fails_is_told() {
+    let place = with_frames();
+    let mut without = place.command(["animate", "in", "-o", "out.mp4"]);
+    without.env("PATH", place.path("in"));
+    run(&mut without).bad(2, &["no `ffmpeg`", ".mp4", "apt install ffmpeg", ".gif, .apng"]);
+    for script in [
+        "head -c 10000 > /dev/null; for n in 1 2 3 4 5 6 7; do echo \"complaint $n\" >&2; done; exit 3",
+        "cat > /dev/null; for last; do :; done; echo begun > \"$last\"; for n in 3 4 5 6 7; do echo \"complaint $n\" >&2; done; exit 3",
+    ] {
+        let ran = run(&mut with_script(&place, script, "animate in -o out.mp4"));
+        let ran = ran.bad(4, &["ffmpeg failed (exit status: 3)", "\n  complaint 3\n", "complaint 7"]);
+        assert!(!ran.err.contains("complaint 2"), "the last lines only: {}", ran.err);
+    }
+    assert_eq!(place.names("."), ["bin", "in"], "nothing half-written");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_film_leaves_nothing() {
+    use crate::support::Running;
+    let place = with_frames();
+    let script = "head -c 9216 > /dev/null; echo > started; sleep 0.5; cat > /dev/null";
+    let mut command = with_script(&place, script, "animate in -o out.mp4 --hold-last 600");
+    let mut running = Running::start(&mut command);
+    running.until("the start of the film", |_| place.path("started").exists());
+    Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap();
+    let ran = running.wait();
+    assert_eq!((ran.status, ran.err.as_str()), (Some(130), ""), "{ran:?}");
+    assert_eq!(place.names("."), ["bin", "in", "started"]);
+}
+
+/// The real one, if it is there: what it makes has the right pictures at the right times.
+#[test]
+fn films_and_all_else_are_read_by_other_programs() {
+    let place = with_frames();
+    if Command::new("ffmpeg").arg("-version").output().is_err() {
+        return skip("there is no ffmpeg");
+    }
+    let mut odd = Vec::new();
+    for number in 0..COUNT {
+        put(&place, "odd", number, &encode([63, 47], &pixels(number, [63, 47]), &tags(number)));
+        odd.push(pixels(number, [63, 47]));
+    }
+    for (file, size) in
+        [("a.mp4", [64, 48]), ("a.webm", [64, 48]), ("a.y4m", [63, 47]), ("a.gif", [63, 47]), ("a.apng", [63, 47])]
+    {
+        place.run(&format!("animate odd -o {file}")).good();
+        let mut decoder = Command::new("ffmpeg");
+        decoder.args(["-v", "error", "-i", file, "-vf", "scale=in_color_matrix=bt709", "-vsync", "0"]);
+        decoder.args(["-f", "rawvideo", "-pix_fmt", "rgb24", "-"]).current_dir(place.path("."));
+        let output = decoder.output().expect("ffmpeg starts");
+        assert!(output.status.success(), "{file}: {}", String::from_utf8_lossy(&output.stderr));
+        let [width, height] = size.map(|side| side as usize);
+        let frames: Vec<_> = output.stdout.chunks(3 * width * height).collect();
+        assert_eq!(frames.len() as u64, COUNT, "{file}");
+        for (shown, number) in frames.iter().zip(0..) {
+            let inner =
+                shown.chunks_exact(3 * width).take(47).flat_map(|row| &row[..3 * 63]).copied().collect::<Vec<u8>>();
+            let apart = difference(&inner, &odd[number]);
+            assert!(apart < 3.0, "{file}, frame {number}: {apart}");
+        }
+        if size != [63, 47] {
+            let corner = &frames[0][frames[0].len() - 3 * width..][..3];
+            assert!(
+                corner.iter().zip([250, 250, 240]).all(|(byte, ground)| byte.abs_diff(ground) < 8),
+                "{file}: {corner:?}"
+            );
+        }
+        let mut prober = Command::new("ffprobe");
+        prober.args([
+            "-v",
+            "error",
+            "-show_entries",
+            "stream=pix_fmt,color_space,r_frame_rate:format_tags=comment",
+            file,
+        ]);
+        let Ok(output) = prober.current_dir(place.path(".")).output() else { continue };
+        let told = String::from_utf8_lossy(&output.stdout);
+        if file == "a.mp4" || file == "a.webm" {
+            for part in ["yuv420p", "bt709", "r_frame_rate=30/1", "made by localshape"] {
+                assert!(told.contains(part), "{file}, {part}: {told}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pillow_reads_the_same() {
+    let place = with_frames();
+    let can = Command::new("python3").args(["-c", "import PIL"]).output().is_ok_and(|output| output.status.success());
+    if !can {
+        return skip("there is no Pillow");
+    }
+    place.run("animate in -o a.gif").good();
+    place.run("animate in -o a.apng").good();
+    let script = "
+import sys
+from PIL import Image, ImageChops
+for name in ['a.gif', 'a.apng']:
+    film = Image.open(name)
+    assert film.n_frames == 12, film.n_frames
+    total = 0
+    for number in range(12):
+        film.seek(number)
+        total += film.info['duration']
+        original = Image.open(f'in/frame_{number:05}.png').convert('RGB')
+        apart = max(high for _, high in ImageChops.difference(film.convert('RGB'), original).getextrema())
+        assert apart <= (0 if name == 'a.apng' else 24), (name, number, apart)
+    assert abs(total - 400) < 1, total
+print('fine')
+";
+    let output = Command::new("python3").args(["-c", script]).current_dir(place.path(".")).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "fine\n", "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn bad(place: &Place, arguments: &str, words: &[&str]) -> Ran {
+    place.run(&format!("animate {arguments}")).bad(2, words)
+}
+
+#[test]
+fn frames_that_are_no_sequence_are_told() {
+    let place = with_frames();
+    let copy = |name: &str| {
+        (0..4).for_each(|number| put(&place, name, number, &encode(SIZE, &pixels(number, SIZE), &tags(number))))
+    };
+    place.write("empty/notes.txt", "");
+    bad(&place, "empty -o out.gif", &["empty has no frames", "localshape render"]);
+    bad(&place, "absent -o out.gif", &["absent", "expected a folder with frames"]);
+    bad(&place, "empty/notes.txt -o out.gif", &["is no folder"]);
+    copy("gap");
+    std::fs::remove_file(place.path("gap/frame_00002.png")).unwrap();
+    bad(&place, "gap -o out.gif", &["gap has a gap: frame_00003.png follows frame_00001.png", "--frames"]);
+    bad(&place, "gap -o out.gif --frames 0-3", &["there is no frame_00002.png"]);
+    bad(&place, "gap -o out.gif --frames 0-7", &["there is no frame 7"]);
+    place.run("animate gap -o fine.gif --frames 0,1,3").good();
+    let with = |name: &str, bytes: &[u8]| {
+        copy(name);
+        put(&place, name, 2, bytes);
+    };
+    with("size", &encode([32, 48], &pixels(2, [32, 48]), &tags(2)));
+    bad(&place, "size -o out.gif", &["size/frame_00002.png has 32×48 pixels, frame_00001.png has 64×48"]);
+    with("scene", &encode(SIZE, &pixels(2, SIZE), &Tags { scene: "99".repeat(32), ..tags(2) }));
+    bad(&place, "scene -o out.gif", &["scene/frame_00002.png shows another scene than frame_00001.png"]);
+    with(
+        "runs",
+        &encode(SIZE, &pixels(2, SIZE), &Tags { states: vec![("ab".repeat(32), "Springs".to_owned())], ..tags(2) }),
+    );
+    bad(&place, "runs -o out.gif", &["runs/frame_00002.png shows the runs “Springs”", "“Local shape”"]);
+    with("time", &encode(SIZE, &pixels(2, SIZE), &Tags { time: 0.0, ..tags(2) }));
+    bad(&place, "time -o out.gif", &["time/frame_00002.png is at 0 s, not after frame_00001.png"]);
+    with("renamed", &encode(SIZE, &pixels(2, SIZE), &tags(3)));
+    bad(&place, "renamed -o out.gif", &["renamed/frame_00002.png shows frame 3"]);
+    with("foreign", b"GIF89a");
+    bad(&place, "foreign -o out.gif", &["foreign/frame_00002.png is damaged, or no frame"]);
+    let whole = encode(SIZE, &pixels(2, SIZE), &tags(2));
+    with("cut", &whole[..whole.len() - 40]);
+    for out in ["out.gif", "out.apng", "out.y4m"] {
+        bad(&place, &format!("cut -o {out}"), &["cut/frame_00002.png: this PNG picture is damaged or cut short"]);
+    }
+    bad(&place, "in gap -o out.gif --frames 0-1,4", &["gap"]);
+    bad(&place, "in gap -o out.gif", &["gap has a gap"]);
+    bad(&place, "in cut -o out.gif", &["frame 4 is only in one of in and cut"]);
+    assert!(
+        place.names(".").iter().all(|name| !name.starts_with("out") && !name.starts_with('.')),
+        "nothing half-written"
+    );
+}
+
+#[test]
+fn wrong_options_are_told() {
+    let place = with_frames();
+    for (arguments, words) in [
+        ("in -o out.avi", [".avi", ".gif, .apng, .mp4 or .webm"]),
+        ("in -o out", ["no ending", ".y4m"]),
+        ("in -o out.gif --size 100x100", ["--size is for sheets", "--width"]),
+        ("in -o in", ["no ending", ".gif"]),
+    ] {
+        bad(&place, arguments, &words);
+    }
+    for (arguments, word) in [
+        ("--speed 0", "at 0 it would stand still"),
+        ("--speed -1", "0.001 to 1000"),
+        ("--speed nan", "0.001 to 1000"),
+        ("--fps 0", "0.1 to 1000"),
+        ("--hold-last -1", "0 to 3600"),
+        ("--width 3", "16"),
+        ("--frames 9-0", "did you mean 0-9?"),
+    ] {
+        let ran = place.run(&format!("animate in -o out.gif {arguments}"));
+        assert!(ran.status == Some(2) && ran.err.contains(word), "{arguments}: {ran:?}");
+    }
+    place.write("mine.gif", "not one of ours");
+    bad(&place, "in -o mine.gif", &["mine.gif is there already", "--overwrite"]);
+    place.run("animate in -o mine.gif --overwrite").good();
+    place.run("animate in -o mine.gif").good();
+    std::fs::create_dir(place.path("folder.gif")).unwrap();
+    bad(&place, "in -o folder.gif", &["folder.gif is no file"]);
+    place.run("animate in -o absent/out.gif").bad(4, &["cannot write absent/out.gif"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_ends_early_is_told() {
+    let place = with_frames();
+    let program = env!("CARGO_BIN_EXE_localshape");
+    let script = format!("{{ '{program}' animate in -o - --hold-last 60; echo $? > status; }} | head -c 100 > head");
+    let ran = run(Command::new("bash").args(["-c", &script]).current_dir(place.path(".")));
+    assert!(ran.err.contains("error: cannot write to standard output: its reader has ended"), "{ran:?}");
+    assert_eq!(place.read("status"), "4\n");
+}
+
+#[test]
+fn summaries_are_documents_if_asked_for() {
+    let place = with_frames();
+    let made = place.run("animate in -o out.gif --json").good().json();
+    assert_eq!(
+        (made["file"].as_str(), made["pictures"].as_u64(), made["frames"].as_u64()),
+        (Some("out.gif"), Some(12), Some(12))
+    );
+    assert_eq!(made["bytes"].as_u64(), Some(place.path("out.gif").metadata().unwrap().len()));
+    assert_eq!(place.run("animate in -o out.gif -q").good().out, "");
+}
