@@ -221,7 +221,7 @@ fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
     assert!(pair.contains("frame_00003.png shows frame 3 at 0.04976 s instead of 0.05027 s\n"), "{pair}");
     // What is not known of these very pictures is not told.
     let summary = place.read("small/run.json");
-    let (step, cycle) = ("\"step\":", "\"cycle\":");
+    let (step, cycle) = ("\"time_step\":", "\"cycle\":");
     assert!(summary.contains(step) && summary.contains(cycle));
     for other in [
         place.read("stiffer/run.json"),
