@@ -167,7 +167,7 @@ fn json_is_one_document() {
 #[test]
 fn json_is_one_document_also_when_a_later_scene_fails() {
     let place = Place::with_small();
-    place.write("other.toml", &lasting("30"));
+    place.write("other.toml", &lasting("300"));
     place.write("third.toml", SMALL);
     let arguments = "simulate small.toml other.toml third.toml -o out --json";
     let running = crate::interrupt::start(&place, arguments, "out/other/run.json");
