@@ -1,6 +1,6 @@
 //! `simulate`: diagnostics, summary and states.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, documented};
+use crate::support::{Place, SMALL, SMALL_FRAMES, documented, lasting};
 use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
 use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
@@ -164,15 +164,17 @@ fn json_is_one_document() {
 }
 
 /// What was finished before a failure is told, and the failure after it.
+#[cfg(unix)]
 #[test]
 fn json_is_one_document_also_when_a_later_scene_fails() {
     let place = Place::with_small();
-    place.write("other.toml", SMALL);
+    place.write("other.toml", &lasting("300"));
     place.write("third.toml", SMALL);
-    // No file can take the place of a folder.
+    let arguments = "simulate small.toml other.toml third.toml -o out --json";
+    let running = crate::interrupt::start(&place, arguments, "out/other/run.json");
+    // No file can take the place of a folder, which comes long before the end.
     place.write("out/other/diagnostics.csv/notes.txt", "mine");
-    let ran = place.run("simulate small.toml other.toml third.toml -o out --json --overwrite");
-    let ran = ran.bad(4, &["cannot write", "diagnostics.csv"]);
+    let ran = running.wait().bad(4, &["cannot write", "diagnostics.csv"]);
     let document = ran.json();
     let outcomes: Vec<_> = document["scenes"].as_array().unwrap().iter().map(|scene| &scene["outcome"]).collect();
     assert_eq!(outcomes, ["done", "failed"]);
