@@ -31,7 +31,7 @@ const HALO: f64 = 2.2;
 const NAMES: f64 = 0.4;
 const NAMES_ABOVE: f64 = 8.0;
 /// The height of the room for these names (px in the reference picture), in strips of the usual height.
-pub(super) const NAMES_HEIGHT: f64 = 88.0;
+pub(super) const NAMES_HEIGHT: f64 = 86.0;
 
 /// What the strips of a scene show.
 #[derive(Debug)]
