@@ -40,9 +40,9 @@
 //!
 //! [`scene`] reads and resolves, [`sim`] simulates in double precision, [`sequence`] hands out frames, `picture` makes
 //! plain data of a frame, `render` draws it, [`history`] tells what comes before and after it, [`moments`] takes the
-//! states that a figure shows, [`table`] measures what the paper tells in numbers, [`output`] writes files, [`cli`] is the
-//! program. Without the feature `render` (on by
-//! default) the crate simulates and needs no graphics library.
+//! states that a figure shows, [`table`] measures what the paper tells in numbers, [`output`] writes files, `animation` makes
+//! one file of frames, [`cli`] is the program. Without the feature `render` (on by default) the crate simulates and needs no
+//! graphics library.
 
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;

@@ -6,6 +6,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// So many results for each thread may wait to be taken.
 const AHEAD: usize = 2;
+/// Threads that work, at most: more would keep more frames in memory, and these keep up with any disk.
+const MOST: usize = 4;
 
 /// What is done, and what is to be done next.
 struct Belt<T> {
@@ -23,6 +25,7 @@ pub(super) fn in_order<T: Send>(
     work: impl Fn(usize) -> Result<T, AnimationError> + Sync,
     mut take: impl FnMut(usize, T) -> Result<(), AnimationError>,
 ) -> Result<(), AnimationError> {
+    let threads = threads.clamp(1, MOST);
     let belt = Mutex::new(Belt { next: 0, taken: 0, done: BTreeMap::new(), ended: false });
     let moved = Condvar::new();
     let lock = || belt.lock().unwrap_or_else(PoisonError::into_inner);
@@ -45,7 +48,7 @@ pub(super) fn in_order<T: Send>(
         }
     };
     std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, count.max(1)) {
+        for _ in 0..threads.min(count) {
             scope.spawn(worker);
         }
         // However this ends, the others are not to wait for it.
@@ -107,7 +110,7 @@ type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 impl<T, F: Fn(usize) -> Result<T, AnimationError>> Kept<T, F> {
     /// Kept for as many threads.
     pub(super) fn new(threads: usize, make: F) -> Self {
-        Self { make, most: 2 * threads + 2, places: Mutex::new(VecDeque::new()) }
+        Self { make, most: 2 * threads.clamp(1, MOST) + 2, places: Mutex::new(VecDeque::new()) }
     }
 
     /// One of them. Who asks for what another thread is making waits for it.

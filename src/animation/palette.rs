@@ -20,6 +20,8 @@ const POWER: f64 = 0.4;
 const NEAR: f64 = 0.012;
 /// What is shown already stays while the colour that is meant is as near as this in Oklab.
 const STAY: f64 = 0.015;
+/// So many pixels of one colour in a row are a ground.
+const GROUND: u64 = 48;
 /// How much a mixture is disliked for its two colours being apart: its grain shows.
 const GRAIN: f64 = 0.15;
 /// Steps of a mixture.
@@ -33,17 +35,17 @@ fn cell(pixel: [u8; 3]) -> usize {
 
 /// How many pixels have which colours.
 pub(super) struct Counts {
-    /// For each cell the number of pixels and the sums of their channels.
-    cells: Vec<[u64; 4]>,
+    /// For each cell the number of pixels, the sums of their channels, and the number of those that lie on a ground.
+    cells: Vec<[u64; 5]>,
 }
 
 impl Counts {
     pub(super) fn new() -> Self {
-        Self { cells: vec![[0; 4]; CELLS] }
+        Self { cells: vec![[0; 5]; CELLS] }
     }
 
     /// The cells of a picture that are not empty.
-    pub(super) fn of(image: &Image) -> Vec<(u32, [u64; 4])> {
+    pub(super) fn of(image: &Image) -> Vec<(u32, [u64; 5])> {
         let mut cells = Self::new().cells;
         let mut pixels = image.pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]);
         let Some(mut last) = pixels.next() else { return Vec::new() };
@@ -52,6 +54,7 @@ impl Counts {
             let sums = &mut cells[cell(pixel)];
             sums[0] += run;
             (0..3).for_each(|channel| sums[channel + 1] += run * u64::from(pixel[channel]));
+            sums[4] += if run >= GROUND { run } else { 0 };
         };
         for pixel in pixels {
             if pixel == last {
@@ -66,9 +69,9 @@ impl Counts {
         filled.map(|(at, sums)| (at as u32, *sums)).collect()
     }
 
-    pub(super) fn add(&mut self, more: &[(u32, [u64; 4])]) {
+    pub(super) fn add(&mut self, more: &[(u32, [u64; 5])]) {
         for (at, sums) in more {
-            (0..4).for_each(|number| self.cells[*at as usize][number] += sums[number]);
+            (0..5).for_each(|number| self.cells[*at as usize][number] += sums[number]);
         }
     }
 
@@ -76,9 +79,16 @@ impl Counts {
     pub(super) fn palette(&self) -> Palette {
         let filled = self.cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
         let cells: Vec<Cell> = filled
-            .map(|(at, &[count, r, g, b])| {
+            .map(|(at, &[count, r, g, b, even])| {
                 let mean = [r, g, b].map(|sum| ((2 * sum + count) / (2 * count)) as u8);
-                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, POWER) }
+                Cell {
+                    at,
+                    mean,
+                    lab: oklab(mean),
+                    count,
+                    is_ground: 2 * even > count,
+                    weight: libm::pow(count as f64, POWER),
+                }
             })
             .collect();
         let colours = chosen(&cells);
@@ -89,7 +99,7 @@ impl Counts {
             mixtures[cell.at] = Mixture { row, ..Mixture::of(cell.lab, &labs) };
             let mut bits = [0; 4];
             for (number, &other) in labs.iter().enumerate() {
-                if square(cell.lab, other) < STAY * STAY {
+                if !cell.is_ground && square(cell.lab, other) < STAY * STAY {
                     bits[number / 64] |= 1_u64 << (number % 64);
                 }
             }
@@ -105,6 +115,8 @@ struct Cell {
     mean: Colour,
     lab: Oklab,
     count: u64,
+    /// Whether most of its pixels lie on a ground, on which every trace of what was there before would be seen.
+    is_ground: bool,
     weight: f64,
 }
 

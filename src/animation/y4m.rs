@@ -10,9 +10,10 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let [rate, of] = animation.timeline.rate();
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = animation.timeline.ticks(rate_each, 1);
-    // A parameter ends at a blank.
-    let comment = animation.comment.replace(|character: char| !character.is_ascii_graphic(), "_");
-    let header = format!("YUV4MPEG2 W{width} H{height} F{rate}:{of} Ip A1:1 C444 XCOLORRANGE=LIMITED X{comment}\n");
+    // Readers take a header of some 90 bytes: room for its beginning, which says what made it. A parameter ends at a blank.
+    let beginning = animation.comment.split(';').next().unwrap_or_default();
+    let comment = beginning.replace(|character: char| !character.is_ascii_graphic(), "_");
+    let header = format!("YUV4MPEG2 W{width} H{height} F{rate}:{of} Ip C444 XCOLORRANGE=LIMITED X{comment}\n");
     out.write_all(header.as_bytes()).map_err(AnimationError::Out)?;
     let planes = |at: usize| animation.reel.image(ticks[at].0).map(|image| planes(&image));
     let mut pictures = 0;

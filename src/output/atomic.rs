@@ -36,6 +36,7 @@ impl AtomicFile {
     }
 
     /// The name that it has until then, for programs that write it themselves.
+    #[cfg(feature = "render")]
     pub(crate) fn hidden_path(&self) -> &Path {
         self.temporary.path()
     }

@@ -145,7 +145,7 @@ pub(crate) fn encode_plain(size: [u32; 2], pixels: &[u8]) -> Vec<u8> {
 ///
 /// # Panics
 /// As [`encode`].
-#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only what draws makes such pictures"))]
+#[cfg(feature = "render")]
 pub(crate) fn encode_commented(size: [u32; 2], pixels: &[u8], comment: &str) -> Vec<u8> {
     encode_with(size, pixels, &[("comment", comment.to_owned())], png::Compression::High)
 }

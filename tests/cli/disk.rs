@@ -74,7 +74,10 @@ fn animations_on_a_full_disk() {
     let place = Place::new();
     for number in 0..4 {
         // Noise, which takes room.
-        let noise = (0..3 * 320 * 240_u32).map(|at| (at.wrapping_add(number).wrapping_mul(2_654_435_761) >> 21) as u8);
+        let noise = (0..3 * 320 * 240_u32).map(|at| {
+            let mixed = (at + number * 1_000_003).wrapping_mul(0x9e37_79b9);
+            ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8
+        });
         let tags = Tags {
             scene: "5c".repeat(32),
             states: vec![("ab".repeat(32), "Shape".to_owned())],
