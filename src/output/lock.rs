@@ -121,7 +121,6 @@ fn holder_in(locks: &str, file: &str) -> Option<u32> {
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
-    use crate::output::AtomicFile;
 
     #[test]
     fn one_alone_or_several_beside_each_other() {
@@ -151,28 +150,19 @@ mod tests {
         assert!(!leftover.exists());
     }
 
-    /// However they come and go, nobody takes the file of another for a leftover.
+    /// Or the next one would take its files for leftovers.
     #[test]
-    fn many_write_beside_each_other() {
+    fn nobody_is_left_without_a_lock_who_comes_while_another_tidies_up() {
         let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let tidying = FolderLock::alone(path).unwrap();
         std::thread::scope(|scope| {
-            for thread in 0..16 {
-                let path = folder.path();
-                scope.spawn(move || {
-                    for number in 0..100 {
-                        let _lock = FolderLock::beside_others(path);
-                        let mut file = AtomicFile::create(&path.join(format!("{thread}-{number}"))).unwrap();
-                        std::thread::yield_now();
-                        file.append(b"whole").unwrap();
-                        file.commit().unwrap();
-                    }
-                });
-            }
-            let path = folder.path();
-            // Somebody who is to write alone is kept out or comes between.
-            scope.spawn(move || (0..1000).for_each(|_| drop(FolderLock::alone(path))));
+            let beside = scope.spawn(|| FolderLock::beside_others(path));
+            std::thread::sleep(MOMENT / 10);
+            drop(tidying);
+            let _beside = beside.join().unwrap();
+            assert!(matches!(FolderLock::alone(path), Err(OutputError::InUse { .. })));
         });
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1600);
     }
 
     #[cfg(target_os = "linux")]
