@@ -168,7 +168,7 @@ fn likely_rate(rate: f64, count: u64) -> f64 {
     candidates.find(is_near).unwrap_or(rate)
 }
 
-/// The simplest fraction that is a number to within a ten-millionth of it, or the nearest with numerator and denominator up
+/// The simplest fraction that is a number to within a billionth of it, or the nearest with numerator and denominator up
 /// to `most`.
 pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
     let (mut before, mut here) = ([0.0, 1.0], [1.0, 0.0]);
@@ -180,7 +180,7 @@ pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
             break;
         }
         (before, here) = (here, next);
-        if (here[0] / here[1] - number).abs() <= 1e-7 * number || rest - whole < 1e-9 {
+        if (here[0] / here[1] - number).abs() <= 1e-9 * number || rest - whole < 1e-9 {
             break;
         }
         rest = 1.0 / (rest - whole);
