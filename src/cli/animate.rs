@@ -18,12 +18,12 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  localshape animate output/fig4b -o fig4b.gif --width 800        for chats and READMEs
-  localshape animate output/fig4b -o fig4b.mp4 --speed 0.25       slow motion, for slides (needs ffmpeg)
-  localshape animate output/fig4b -o fig4b.apng --frames 0-60     every pixel as it is, for web pages
-  localshape animate soft stiff -o both.webm --stack              two folders, one above the other
-  localshape animate output/fig4b -o sheet.png --frames 0-44x4    still pictures with their times, for papers
-  localshape animate output/fig4b -o - | ffplay -                 y4m on standard output, for other programs
+  localshape animate output/fig4b -o fig4b.gif --width 800      for chats and READMEs
+  localshape animate output/fig4b -o fig4b.mp4 --speed 0.25     slow motion for slides
+  localshape animate output/fig4b -o fig4b.apng --frames 0-60   every pixel as it is
+  localshape animate soft stiff -o both.webm --stack            one above the other
+  localshape animate output/fig4b -o sheet.png --frames 0-44x4  stills with their times
+  localshape animate output/fig4b -o - | ffplay -               for other programs
 
 The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
 (H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \

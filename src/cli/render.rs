@@ -233,6 +233,7 @@ impl Studio for Device {
             renderer: Renderer::new(&self.gpu, scene.view.size, self.samples).map_err(failed)?,
             writer: FrameWriter::start_with(self.keep.then_some(folder), self.writers, tap),
             films,
+            keep: self.keep,
             adapter: self.gpu.description().to_string(),
             samples: self.samples,
             compose: Spent::default(),
@@ -251,6 +252,8 @@ struct Drawing<'a> {
     renderer: Renderer,
     writer: FrameWriter,
     films: Option<Films<'a>>,
+    /// Whether frames stay.
+    keep: bool,
     adapter: String,
     samples: u32,
     compose: Spent,
@@ -260,9 +263,12 @@ struct Drawing<'a> {
 impl Pictures for Drawing<'_> {
     fn describe(&self, summary: &mut Summary) {
         summary.adapter = Some(self.adapter.clone());
-        summary.frames.size = Some(self.scene.view.size);
-        summary.frames.samples = Some(self.samples);
-        summary.frames.written = Some(0);
+        // Frames that nobody keeps are as good as simulated.
+        if self.keep {
+            summary.frames.size = Some(self.scene.view.size);
+            summary.frames.samples = Some(self.samples);
+            summary.frames.written = Some(0);
+        }
     }
 
     fn need_history(&self) -> bool {
@@ -292,7 +298,7 @@ impl Pictures for Drawing<'_> {
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
         let (written, encode, result) = self.writer.finish();
         let filmed = self.films.map_or(Ok(()), |films| films.finish(self.scene.view.size));
-        summary.frames.written = Some(written);
+        summary.frames.written = self.keep.then_some(written);
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
         result?;
         filmed

@@ -195,7 +195,8 @@ fn rendering_makes_animations_meanwhile() {
         assert!(ran.out.contains(line), "{line}: {}", ran.out);
     }
     place.run("animate output/small -o b.apng").good();
-    place.run("render small.toml --samples 1 --animate c.apng --no-frames -o numbers").good();
+    let ran = place.run("render small.toml --samples 1 --animate c.apng --no-frames -o numbers").good();
+    assert!(ran.out.contains("7 frames simulated in numbers"), "{}", ran.out);
     assert_eq!(place.names("numbers"), ["diagnostics.csv", "run.json"]);
     let (frames, _) = decode_apng(&place.path("a.apng"));
     assert_eq!(frames.len(), SMALL_FRAMES);
