@@ -112,11 +112,11 @@ impl Film {
     fn write(&mut self, bytes: &[u8]) -> Result<(), AnimationError> {
         let written = self.pipe.as_mut().expect("not finished yet").write_all(bytes);
         // Why it takes no more, it says itself.
-        written.or_else(|_| {
-            Err(self.ended().err().unwrap_or_else(|| AnimationError::Ffmpeg {
+        written.map_err(|_| {
+            self.ended().err().unwrap_or_else(|| AnimationError::Ffmpeg {
                 status: "it took only a part of the pictures".to_owned(),
                 told: String::new(),
-            }))
+            })
         })
     }
 

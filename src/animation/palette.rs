@@ -344,8 +344,7 @@ mod tests {
         let numbers = palette.numbers(&image);
         let mut sum = 0.0;
         for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers.best) {
-            let [one, other] =
-                [[pixel[0], pixel[1], pixel[2]], palette.colours[usize::from(number)]].map(|colour| oklab(colour));
+            let [one, other] = [[pixel[0], pixel[1], pixel[2]], palette.colours[usize::from(number)]].map(oklab);
             sum += one.distance(other);
         }
         let mean = sum / numbers.best.len() as f64;

@@ -162,7 +162,7 @@ impl<'a> Films<'a> {
     fn start(shared: &Shared, made: &'a Mutex<Vec<String>>, spool: Spool, scene: &Scene, frames: &[u64]) -> Self {
         let spool = Arc::new(spool);
         let moments: Vec<_> = frames.iter().map(|&frame| (frame, scene.frame_time(frame))).collect();
-        let comment = comment(&shared.words, &[scene.digest.clone()]);
+        let comment = comment(&shared.words, std::slice::from_ref(&scene.digest));
         let threads = shared.films.iter().map(|(format, path)| {
             let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
             let (format, path, threads) = (*format, path.clone(), shared.threads);
