@@ -42,7 +42,7 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         padded
     };
     let mut command = Command::new("ffmpeg");
-    command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
+    command.args(["-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y"]);
     command.args(["-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", &format!("{width}x{height}")]);
     command.args(["-framerate", &format!("{rate}/{of}"), "-i", "pipe:0", "-an"]);
     command.args(["-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p"]);
@@ -129,8 +129,10 @@ impl Film {
         self.pipe = None;
         let status = self.child.wait();
         let told = self.told.take().and_then(|told| told.join().ok()).unwrap_or_default();
+        // On a full disk some versions say so and end well, leaving a film that nothing can play.
+        let is_cut = |line: &String| ["Error writing trailer", "No space left"].iter().any(|cut| line.contains(cut));
         match status {
-            Ok(status) if status.success() => Ok(()),
+            Ok(status) if status.success() && !told.iter().any(is_cut) => Ok(()),
             status => {
                 let status = status.map_or_else(|error| error.to_string(), |status| status.to_string());
                 let told = told.iter().map(|line| format!("\n  {line}")).collect();

@@ -288,7 +288,9 @@ impl Folders {
                 return Err(Failure::usage(told));
             }
             // Each takes its frames at the end of a step of its own.
-            let step = one.frames.windows(2).map(|pair| pair[1].1 - pair[0].1).fold(f64::INFINITY, f64::min);
+            let between = one.frames.windows(2).map(|pair| pair[1].1 - pair[0].1);
+            let from_start = one.frames.iter().filter(|frame| frame.0 > 0).map(|frame| frame.1 / frame.0 as f64);
+            let step = between.chain(from_start).fold(f64::INFINITY, f64::min);
             if let Some((a, b)) = one.frames.iter().zip(&other.frames).find(|(a, b)| (a.1 - b.1).abs() > step / 2.0) {
                 let told = format!(
                     "frame {} is at {:.4} s in {name} and at {:.4} s in {beside}; only frames of equal times fit side by side",

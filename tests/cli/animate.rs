@@ -340,6 +340,10 @@ fn an_ffmpeg_that_is_missing_or_fails_is_told() {
         let ran = ran.bad(4, &["ffmpeg failed (exit status: 3)", "\n  complaint 3\n", "complaint 7"]);
         assert!(!ran.err.contains("complaint 2"), "the last lines only: {}", ran.err);
     }
+    // Some versions end well on a full disk, and leave a film that nothing can play.
+    let script = "cat > /dev/null; for last; do :; done; echo cut > \"$last\"; echo 'Error writing trailer of it' >&2";
+    let ran = run(&mut with_script(&place, script, "animate in -o out.mp4"));
+    ran.bad(4, &["ffmpeg failed", "Error writing trailer of it"]);
     assert_eq!(place.names("."), ["bin", "in"], "nothing half-written");
 }
 
