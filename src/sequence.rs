@@ -74,9 +74,7 @@ impl Scene {
     /// # Panics
     /// If the scene has no such run.
     pub fn forces(&self, run: usize) -> Vec<DVec3> {
-        let mut forces = vec![DVec3::ZERO; self.body.len()];
-        self.runs[run].model.prepare(&self.body, &self.initial).add_forces(&self.initial, &mut forces);
-        forces
+        self.runs[run].model.forces_at_start(&self.body, &self.initial)
     }
 
     /// The world of one run, at its start.

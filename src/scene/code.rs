@@ -4,9 +4,10 @@ use super::file::ViewFile;
 use super::resolve;
 use super::view::{View, Visible};
 use super::{Run, Scene};
-use crate::sim::body::{Body, State};
+use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
 use glam::DVec3;
 use std::sync::Arc;
 

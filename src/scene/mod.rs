@@ -49,11 +49,12 @@ pub use view::{
 pub(crate) use words::nearest as nearest_name;
 
 use crate::colour::Colour;
-use crate::sim::body::{Body, State};
+use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -4,6 +4,7 @@ mod closed_forms;
 mod conformance;
 mod contact;
 mod degenerate_starts;
+mod example_model;
 mod fig4a;
 mod fig4b;
 mod fig4c;

@@ -3,14 +3,15 @@
 use crate::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::body::{Body, Dimension, Solids, State};
+use localshape::sim::body::{Body, Dimension, Solids};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
-use localshape::sim::model::ModelParameters;
 use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::model::{ModelParameters, Report};
 use localshape::sim::motion::{Ease, Key, Motion, Place};
 use localshape::sim::rotation::{linearised, moment, torque};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
 
@@ -27,7 +28,7 @@ fn uneven() -> Arc<Body> {
 fn momenta_and_energy_weigh_each_node_with_its_mass() {
     let body = uneven();
     let mut noise = Noise(6);
-    let state = State { position: body.rest.clone(), velocity: body.rest.iter().map(|_| noise.vector()).collect() };
+    let state = State::new(body.rest.clone(), body.rest.iter().map(|_| noise.vector()).collect());
     let gravity = DVec3::new(1.0, -9.8, 2.0);
     let around = Surroundings { gravity, ..Surroundings::default() };
     let stepping = Stepping { integrator: Integrator::default(), step: 1e-3 };
@@ -73,7 +74,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let second = linearised::follow(at_rest(&world), first, 1, solve);
     let inertia: f64 = body.mass.iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
     let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
-    let found = world.measure().residual.expect("the shape model has one");
+    let found = world.report(0).residual(Report::ROTATION).expect("the shape model has one");
     assert!(expected > 1e-3 && (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 

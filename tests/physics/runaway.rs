@@ -3,12 +3,12 @@
 
 use crate::support::{lattice, shape_based};
 use glam::DVec3;
-use localshape::sim::body::State;
 use localshape::sim::contact::{Obstacle, Shape};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::motion::{Ease, Key, Motion, Place};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 use localshape::sim::world::{Stepping, Surroundings, World};
 
 /// The fastest node (m/s) of a cube of 1 cm with a cycle of 2 s, after some seconds.

@@ -5,7 +5,9 @@ mod shape;
 pub use super::motion::{Motion, Pose};
 pub use shape::{Contact, Shape};
 
-use super::body::State;
+use super::grip::Interval;
+use super::state::Nodes;
+use super::system::Part;
 use glam::DVec3;
 
 /// Something rigid that nodes bounce off.
@@ -21,6 +23,38 @@ pub struct Obstacle {
     pub restitution: f64,
     /// Friction coefficient `μ`, 0 or more.
     pub friction: f64,
+}
+
+/// A way to treat contact at the end of each step.
+pub trait ContactStage: Send + Sync {
+    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step, which were at `before` when it began.
+    /// `acceleration` (m/s²) is that with which each node has moved in the step; `None` if it has moved at constant velocity.
+    fn resolve(
+        &self,
+        parts: &[Part],
+        interval: Interval,
+        before: Nodes<'_>,
+        position: &mut [DVec3],
+        velocity: &mut [DVec3],
+        acceleration: Option<&[DVec3]>,
+    );
+}
+
+/// The paper's collision processing: each node that is found inside an obstacle rebounds, whatever way it has come.
+impl ContactStage for Vec<Obstacle> {
+    fn resolve(
+        &self,
+        _parts: &[Part],
+        interval: Interval,
+        _before: Nodes<'_>,
+        position: &mut [DVec3],
+        velocity: &mut [DVec3],
+        acceleration: Option<&[DVec3]>,
+    ) {
+        for obstacle in self {
+            obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+        }
+    }
 }
 
 /// What a body can stand on at a time (s): unit normal and distance from the origin (m) of the first floor that faces
@@ -107,9 +141,9 @@ impl Placed<'_> {
 
     /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is that of each node (m/s²); `None` for nodes that
     /// have moved at constant velocity.
-    pub fn rebound_all(&self, state: &mut State, acceleration: Option<&[DVec3]>) {
+    fn rebound_all(&self, position: &mut [DVec3], velocity: &mut [DVec3], acceleration: Option<&[DVec3]>) {
         let acceleration = |node: usize| acceleration.map_or(DVec3::ZERO, |all| all[node]);
-        let nodes = state.position.iter_mut().zip(&mut state.velocity).enumerate();
+        let nodes = position.iter_mut().zip(velocity).enumerate();
         match (&self.moving, &self.obstacle.shape) {
             // Nearly every scene stands on one, and most of its nodes are far above: its shape is asked for only once.
             (None, shape @ &Shape::Floor { normal, height }) => nodes.for_each(|(node, (position, velocity))| {
