@@ -29,7 +29,7 @@ impl Scene {
     /// use localshape::glam::DVec3;
     /// use localshape::gpu::{AdapterChoice, Gpu};
     /// use localshape::scene::{Run, Scene};
-    /// use localshape::sequence::Sequence;
+    /// use localshape::runner::Runner;
     /// use localshape::sim::body::{Body, Dimension, Solids};
     /// use localshape::sim::integrate::Integrator;
     /// use localshape::sim::model::shape_based::ShapeBased;
@@ -53,7 +53,7 @@ impl Scene {
     /// scene.gravity = -9.8 * DVec3::Y;
     /// scene.initial.velocity.fill(DVec3::Y);
     ///
-    /// let frame = Sequence::new(&scene, &[0]).frame(6);
+    /// let frame = Runner::new(&scene, &[0]).frame(6);
     /// # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
     /// let gpu = Gpu::new(&AdapterChoice::Auto)?;
     /// let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;

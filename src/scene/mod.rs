@@ -55,6 +55,7 @@ use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::state::State;
+use crate::sim::world::Moment;
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -129,10 +130,14 @@ impl Scene {
         frame as f64 / self.frames_per_second
     }
 
+    /// The moment that a frame shows.
+    pub fn moment(&self, frame: u64) -> Moment {
+        Moment { count: frame as f64, rate: self.frames_per_second }
+    }
+
     /// The step of a run after which a frame shows it: `round(n / (frames_per_second · ΔT))`.
     pub fn frame_step(&self, run: usize, frame: u64) -> u64 {
-        // As written: dividing twice would round ties to other steps.
-        (frame as f64 / (self.frames_per_second * self.runs[run].step)).round() as u64
+        self.moment(frame).step(self.runs[run].step)
     }
 }
 

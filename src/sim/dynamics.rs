@@ -7,7 +7,7 @@ use super::system::System;
 use super::world::Surroundings;
 
 /// A way of advancing. It takes its own from the state and may hold the nodes itself while it works.
-pub(super) trait Dynamics: Send {
+pub(super) trait Dynamics: Send + Sync {
     /// Takes so many steps from where it stands, and counts them in [`State::steps`].
     ///
     /// # Errors
