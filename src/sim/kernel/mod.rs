@@ -1,0 +1,3 @@
+//! Vectorised steps. The plain code of [`model`](super::model) and [`integrate`](super::integrate) is their reference.
+
+mod lanes;
