@@ -11,6 +11,7 @@ pub mod field;
 pub mod grip;
 pub mod hull;
 pub mod integrate;
+mod kernel;
 pub mod lists;
 pub mod model;
 pub mod motion;
