@@ -294,7 +294,7 @@ impl Scene {
         let run = &self.runs[run];
         let surroundings =
             Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: self.grips.clone() };
-        let stepping = Stepping { integrator: run.integrator, step: run.step };
+        let stepping = Stepping { integrator: run.integrator, step: run.step, kernel: run.kernel };
         let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
         world.show(self.view.colour.map(|scale| scale.field));
         world

@@ -15,7 +15,7 @@ impl Run {
     /// A run of a name that is unique in its scene, with a time step (s). Its lines get their
     /// look from [`Scene::framed`].
     pub fn new(name: &str, model: Arc<dyn ElasticModel>, integrator: Integrator, step: f64) -> Self {
-        Self { name: name.into(), model, integrator, step, place: 0, colour: None }
+        Self { name: name.into(), model, integrator, step, kernel: Default::default(), place: 0, colour: None }
     }
 }
 

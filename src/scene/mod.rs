@@ -55,7 +55,7 @@ use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::state::State;
-use crate::sim::world::Moment;
+use crate::sim::world::{Kernel, Moment};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -105,6 +105,8 @@ pub struct Run {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// How a step is computed.
+    pub kernel: Kernel,
     /// Its place in the palette, which says what its lines look like ([`Palette::line`]). In a figure of several scenes,
     /// runs of one name have one place.
     pub(crate) place: usize,

@@ -53,13 +53,13 @@ impl Grip {
         let mut memory = vec![0.0; self.width()];
         if self.holds(0.0) {
             self.nodes.iter().for_each(|&node| state.velocity[node as usize] = DVec3::ZERO);
-            self.take(&mut memory, &state.position);
+            self.take(&mut memory, |node| state.position[node as usize]);
         }
         memory
     }
 
     /// Takes the nodes where they are at the start of a step, if it is to hold them at its end (s).
-    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: &[DVec3]) {
+    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
         if memory[0] == 0.0 && self.moves(end) {
             self.take(memory, position);
         }
@@ -70,16 +70,16 @@ impl Grip {
         self.from < end && end <= self.until
     }
 
-    fn take(&self, memory: &mut [f64], position: &[DVec3]) {
+    fn take(&self, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
         memory[0] = 1.0;
         for (&node, gripped) in self.nodes.iter().zip(memory[1..].as_chunks_mut::<3>().0) {
-            *gripped = position[node as usize].to_array();
+            *gripped = position(node).to_array();
         }
     }
 
     /// For each node that it holds at the end of a step: where it is then (m), and its velocity (m/s), the way that it has
     /// gone in the step over the step: with that it flies on when it is let go.
-    fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
+    pub(super) fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
         let Interval { begin, end, step } = interval;
         let is_held = self.moves(end) && memory[0] == 1.0;
         let gripped = memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at));

@@ -83,7 +83,7 @@ impl System {
     }
 
     /// Each grip with its part of the memory.
-    fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
+    pub(super) fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
         let mut rest = memory;
         self.grips.iter().map(move |grip| {
             let (own, others) = rest.split_at(grip.width());

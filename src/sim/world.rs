@@ -7,18 +7,20 @@ use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::grip::Grip;
 use super::integrate::{ByForces, Integrator};
+use super::kernel::ByKernel;
 use super::model::{ElasticModel, Report};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 use super::system::{Part, System};
-use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What acts on a body from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// Acceleration of gravity (m/s²).
-    pub gravity: DVec3,
+    pub gravity: glam::DVec3,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
     /// What holds and drags nodes, after all obstacles.
@@ -32,6 +34,27 @@ pub struct Stepping {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// How a step is computed.
+    pub kernel: Kernel,
+}
+
+impl Stepping {
+    /// In the fastest way.
+    pub fn new(integrator: Integrator, step: f64) -> Self {
+        Self { integrator, step, kernel: Kernel::default() }
+    }
+}
+
+/// How a step is computed. The choice moves states by round-off alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kernel {
+    /// Vectorised, as far as there is a kernel for the model, the body and the integrator. Its results have the same bits on
+    /// every machine and for any number of threads.
+    #[default]
+    Fast,
+    /// The plain code that reads like the paper.
+    Reference,
 }
 
 /// A moment of simulated time: so many counts of a clock that counts at a rate, such as frames. A run with fixed steps shows
@@ -120,7 +143,17 @@ impl World {
         }
         let Surroundings { gravity, obstacles, grips } = surroundings;
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step: stepping.step };
-        let dynamics = Box::new(ByForces::new(stepping.integrator, &state));
+        let Stepping { integrator, step, kernel } = stepping;
+        let fast = match bodies {
+            [(body, model)] if kernel == Kernel::Fast => {
+                model.known().and_then(|model| ByKernel::new(body, model, integrator, gravity, step))
+            }
+            _ => None,
+        };
+        let dynamics: Box<dyn Dynamics> = match fast {
+            Some(kernel) => Box::new(kernel),
+            None => Box::new(ByForces::new(integrator, &state)),
+        };
         Self { system, dynamics, limit: limit.unwrap_or_default(), field: None, state }
     }
 

@@ -104,7 +104,7 @@ fn momentum_changes_by_gravity_alone() {
                 body.rest.iter().map(|_| flat(noise.vector())).collect(),
             );
             let around = Surroundings { gravity, ..Surroundings::default() };
-            let mut world = World::new(&body, start, model.as_ref(), around, Stepping { integrator, step: 1e-4 });
+            let mut world = World::new(&body, start, model.as_ref(), around, Stepping::new(integrator, 1e-4));
             let before = world.snapshot().diagnostics.momentum;
             world.advance(200);
             let drift = world.snapshot().diagnostics.momentum - before - gravity * mass * 0.02;
@@ -131,7 +131,7 @@ fn contact_changes_momentum_along_its_normal_alone() {
                 obstacles: vec![floor(0.5, 0.0)],
                 ..Surroundings::default()
             };
-            let mut world = World::new(&body, start, model, around, Stepping { integrator, step: 2e-4 });
+            let mut world = World::new(&body, start, model, around, Stepping::new(integrator, 2e-4));
             let before = world.snapshot().diagnostics;
             world.advance(3000);
             let after = world.snapshot().diagnostics;
@@ -157,7 +157,7 @@ fn velocity_verlet_goes_on_as_if_it_began() {
         body.rest.iter().map(|&rest| rest + noise.vector() * 0.005 + DVec3::Y * 0.006).collect(),
         vec![DVec3::new(0.2, -2.0, 0.1); body.len()],
     );
-    let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 1e-3 };
+    let stepping = Stepping::new(Integrator::VelocityVerlet, 1e-3);
     for damping in [0.0, 20.0] {
         let model = mass_spring(&body, STIFFNESS, damping, Springs::EdgesOneDiagonal);
         let begin = |state: State| World::new(&body, state, &model, around.clone(), stepping);
@@ -186,7 +186,7 @@ fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
     let around =
         Surroundings { gravity: DVec3::new(0.0, -g, 0.0), obstacles: vec![floor(1.0, 0.0)], ..Surroundings::default() };
     let start = State::at_rest(nodes.rest.iter().map(|&rest| rest + DVec3::Y * height).collect());
-    let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 0.01 };
+    let stepping = Stepping::new(Integrator::VelocityVerlet, 0.01);
     let mut world = World::new(&nodes, start, &shape_based(1.0, 0.0), around, stepping);
     let (mut rebounds, mut last) = (0, 0.0);
     while rebounds < 100_000 {
@@ -211,7 +211,7 @@ fn a_damped_body_on_a_floor_comes_to_rest() {
         };
         let model = shape_based(STIFFNESS, 20.0);
         let start = State::at_rest(body.rest.clone());
-        let stepping = Stepping { integrator: Integrator::VelocityVerlet, step: 1e-3 };
+        let stepping = Stepping::new(Integrator::VelocityVerlet, 1e-3);
         let mut world = World::new(&body, start, &model, around, stepping);
         let energy = |world: &World| {
             let now = world.diagnostics();
@@ -268,7 +268,7 @@ fn the_residual_means_the_same_for_every_method() {
         let model = ShapeBased { passes: 1, ..shape_based(STIFFNESS, damping) };
         let residuals = ALL.map(|integrator| {
             let around = Surroundings { grips: vec![grip.clone()], ..Surroundings::default() };
-            let stepping = Stepping { integrator, step: 0.01 };
+            let stepping = Stepping::new(integrator, 0.01);
             let mut world = World::new(&body, start.clone(), &model, around, stepping);
             let mut residuals = vec![];
             for _ in 0..50 {
@@ -297,8 +297,7 @@ fn held_nodes_have_the_velocity_of_the_hand() {
         let around =
             Surroundings { gravity: DVec3::new(0.0, -9.8, 0.0), grips: vec![grip.clone()], ..Surroundings::default() };
         let start = State::at_rest(body.rest.clone());
-        let mut world =
-            World::new(&body, start, &shape_based(STIFFNESS, 5.0), around, Stepping { integrator, step: 1e-3 });
+        let mut world = World::new(&body, start, &shape_based(STIFFNESS, 5.0), around, Stepping::new(integrator, 1e-3));
         for _ in 0..100 {
             world.advance(1);
             for node in [0, 5, 9] {
@@ -335,7 +334,7 @@ fn the_jitter_at_rest_has_the_bound_of_the_load() {
         for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet] {
             let model = shape_based(STIFFNESS, 20.0);
             let start = State::at_rest(rest.clone());
-            let mut world = World::new(&irregular, start, &model, around.clone(), Stepping { integrator, step });
+            let mut world = World::new(&irregular, start, &model, around.clone(), Stepping::new(integrator, step));
             world.advance(30_000);
             for _ in 0..100 {
                 world.advance(1);
@@ -363,7 +362,7 @@ fn rebounds_are_alike_with_every_stable_method() {
             ..Surroundings::default()
         };
         let start = State::at_rest(body.rest.iter().map(|&rest| rest + DVec3::Y).collect());
-        let stepping = Stepping { integrator, step: 2e-5 };
+        let stepping = Stepping::new(integrator, 2e-5);
         let mut world = World::new(&body, start, &shape_based(1e5, 0.0), around, stepping);
         world.advance(35_000);
         world.state().position.iter().map(|p| p.y).sum::<f64>() / 8.0

@@ -31,7 +31,7 @@ fn momenta_and_energy_weigh_each_node_with_its_mass() {
     let state = State::new(body.rest.clone(), body.rest.iter().map(|_| noise.vector()).collect());
     let gravity = DVec3::new(1.0, -9.8, 2.0);
     let around = Surroundings { gravity, ..Surroundings::default() };
-    let stepping = Stepping { integrator: Integrator::default(), step: 1e-3 };
+    let stepping = Stepping::new(Integrator::default(), 1e-3);
     let found = World::new(&body, state.clone(), &shape_based(1e4, 0.0), around, stepping).diagnostics();
     let nodes = || body.mass.iter().zip(&state.position).zip(&state.velocity).map(|((&m, &p), &v)| (m, p, v));
     let momentum: DVec3 = nodes().map(|(m, _, v)| v * m).sum();
@@ -57,7 +57,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
     let around = Surroundings { grips: vec![grip], ..Surroundings::default() };
     let model = ShapeBased { passes: 1, ..shape_based(stiffness, 0.0) };
-    let stepping = Stepping { integrator: Integrator::default(), step };
+    let stepping = Stepping::new(Integrator::default(), step);
     let start = State::at_rest(body.rest.iter().map(|&rest| rest * DVec3::new(1.2, 0.9, 1.0)).collect());
     let mut world = World::new(&body, start, &model, around, stepping);
     let centred = |points: &[DVec3]| -> Vec<DVec3> {

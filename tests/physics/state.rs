@@ -61,7 +61,7 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
         for case in cases(&body, 7.0) {
             for integrator in ALL {
                 let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
-                let stepping = Stepping { integrator, step: 1e-3 };
+                let stepping = Stepping::new(integrator, 1e-3);
                 let begin = || World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
                 let mut whole = begin();
                 whole.advance(20);
@@ -85,7 +85,7 @@ fn a_rejected_step_leaves_nothing_behind() {
     let shape = shape_based(1e4, 0.0);
     for integrator in ALL {
         // Far beyond what is stable.
-        let stepping = Stepping { integrator, step: 0.5 };
+        let stepping = Stepping::new(integrator, 0.5);
         let mut noise = Noise(4);
         let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector() * 0.02).collect());
         let grip = Grip { nodes: vec![0], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
@@ -110,7 +110,7 @@ fn two_parts_move_like_each_alone() {
     let shape = shape_based(1e4, 20.0);
     let spring = mass_spring(&second, 1e4, 0.0, Springs::EdgesFaceDiagonals);
     for integrator in ALL {
-        let stepping = Stepping { integrator, step: 1e-3 };
+        let stepping = Stepping::new(integrator, 1e-3);
         let start = |body: &localshape::sim::Body, shift: DVec3| {
             let mut noise = Noise(6);
             let position = body.rest.iter().map(|&at| at + shift + noise.vector() * 0.005).collect();

@@ -66,7 +66,7 @@ pub(crate) fn world(
     step: f64,
     around: Surroundings,
 ) -> World {
-    World::new(body, initial, model, around, Stepping { integrator: Integrator::SemiImplicitEuler, step })
+    World::new(body, initial, model, around, Stepping::new(Integrator::SemiImplicitEuler, step))
 }
 
 /// A world without gravity and obstacles, stepped by some integrator.
@@ -77,7 +77,7 @@ pub(crate) fn stepped(
     integrator: Integrator,
     step: f64,
 ) -> World {
-    World::new(body, initial, model, Surroundings::default(), Stepping { integrator, step })
+    World::new(body, initial, model, Surroundings::default(), Stepping::new(integrator, step))
 }
 
 /// Internal forces (N) at a state.

@@ -50,7 +50,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         let ends = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
             pool.install(|| {
-                let stepping = Stepping { integrator, step: 1e-3 };
+                let stepping = Stepping::new(integrator, 1e-3);
                 let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
                 world.advance(60);
                 world.state().clone()

@@ -62,7 +62,8 @@ pub(super) fn resolve(
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
         let colour = run.colour.map(|colour| colour.0);
-        runs.push(Run { name: run.name.clone(), model, integrator, step, place: 0, colour });
+        let kernel = run.kernel.unwrap_or_default();
+        runs.push(Run { name: run.name.clone(), model, integrator, step, kernel, place: 0, colour });
     }
     Some(runs)
 }

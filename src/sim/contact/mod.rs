@@ -6,6 +6,7 @@ pub use super::motion::{Motion, Pose};
 pub use shape::{Contact, Shape};
 
 use super::grip::Interval;
+use super::kernel::Bound;
 use super::state::Nodes;
 use super::system::Part;
 use glam::DVec3;
@@ -38,6 +39,11 @@ pub trait ContactStage: Send + Sync {
         velocity: &mut [DVec3],
         acceleration: Option<&[DVec3]>,
     );
+
+    /// The obstacles, if nothing else is met than each of them by each node alone, which kernels do on their way.
+    fn obstacles(&self) -> Option<&[Obstacle]> {
+        None
+    }
 }
 
 /// The paper's collision processing: each node that is found inside an obstacle rebounds, whatever way it has come.
@@ -55,6 +61,10 @@ impl ContactStage for Vec<Obstacle> {
             obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
         }
     }
+
+    fn obstacles(&self) -> Option<&[Obstacle]> {
+        Some(self)
+    }
 }
 
 /// What a body can stand on at a time (s): unit normal and distance from the origin (m) of the first floor that faces
@@ -67,6 +77,11 @@ pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
 }
 
 impl Obstacle {
+    /// Whether it stays where it is.
+    pub fn is_still(&self) -> bool {
+        self.motion == Motion::Still
+    }
+
     /// Where it is at a time (s).
     pub fn pose(&self, time: f64) -> Pose {
         self.motion.pose(time)
@@ -137,6 +152,23 @@ impl Placed<'_> {
         }
         let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
         Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
+    }
+
+    /// A region outside of which no node is met, with a margin (m) for round-off.
+    pub(super) fn bound(&self, margin: f64) -> Bound {
+        let now = |point: DVec3| self.moving.as_ref().map_or(point, |moving| moving.now.apply(moving.pivot, point));
+        let middle = now(self.obstacle.shape.middle());
+        match self.obstacle.shape {
+            Shape::Floor { normal, .. } | Shape::Plate { normal, .. } => {
+                let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.turn * normal);
+                Bound::HalfSpace { normal, height: normal.dot(middle) + margin }
+            }
+            // In the plane they are endless across it, but all nodes are at zero there.
+            Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Box { .. } => {
+                let reach = DVec3::splat(self.obstacle.shape.reach() + margin);
+                Bound::Box { low: middle - reach, high: middle + reach }
+            }
+        }
     }
 
     /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is that of each node (m/s²); `None` for nodes that

@@ -73,7 +73,9 @@ impl Trial {
     fn begin(&mut self, system: &System, interval: Interval, state: &State) {
         let constraints = &mut self.next.memory.constraints;
         constraints.clone_from(&state.memory.constraints);
-        system.change_grips(constraints, |grip, memory| grip.reach(interval.end, memory, &state.position));
+        system.change_grips(constraints, |grip, memory| {
+            grip.reach(interval.end, memory, |node| state.position[node as usize])
+        });
     }
 
     fn accept(&mut self, state: &mut State) {

@@ -603,11 +603,12 @@ fn within<L: Lanes>(bound: &Bound, p: &[L; 3]) -> L::Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::body::{IndexLists, Solids, State};
+    use crate::sim::body::{IndexLists, Solids};
     use crate::sim::contact::{Motion, Obstacle, Shape};
     use crate::sim::integrate::Integrator;
     use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
     use crate::sim::rotation::{davenport1968, moment};
+    use crate::sim::state::State;
     use crate::sim::world::{Stepping, Surroundings, World};
     use glam::DQuat;
     use std::sync::Arc;
@@ -658,7 +659,7 @@ mod tests {
             .map(|&rest| turn * (rest * DVec3::new(1.05, 0.97, 1.0)) + vector(&mut random) * (shake * side) + DVec3::Y)
             .collect();
         let velocity = position.iter().map(|&at| spin.cross(at) + vector(&mut random) * 0.1 - DVec3::Y).collect();
-        State { position, velocity }
+        State::new(position, velocity)
     }
 
     fn turns(body: &Body, state: &State) -> Vec<f64> {
@@ -715,7 +716,7 @@ mod tests {
             damping_of: DampingReading::RelativeMotion,
         };
         let surroundings = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
-        let stepping = Stepping { integrator: Integrator::SemiImplicitEuler, step: STEP };
+        let stepping = Stepping::new(Integrator::SemiImplicitEuler, STEP);
         let mut world = World::new(body, state.clone(), &model, surroundings, stepping);
         world.advance(steps);
         assert_eq!(world.steps(), steps);

@@ -4,10 +4,12 @@
 //! when somebody looks. Its results have the same bits for every vector set and every number of threads.
 
 mod array;
+mod drive;
 mod lanes;
 pub(in crate::sim) mod lattice;
 mod rotation;
 
+pub(in crate::sim) use drive::ByKernel;
 pub(in crate::sim) use lanes::Set;
 
 use glam::DVec3;

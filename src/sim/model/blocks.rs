@@ -14,23 +14,23 @@ const BLOCK: usize = 512;
 
 /// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. Each element has
 /// `width` numbers of the memory.
-pub(super) fn for_each(
+pub(super) fn for_each<T: Send>(
     elements: &IndexLists,
     width: usize,
     memory: &mut [f64],
-    corners: &mut [DVec3],
-    work: &(impl Fn(usize, &mut [f64], &mut [DVec3]) + Sync),
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
     split(elements, 0..elements.len(), width, memory, corners, work);
 }
 
-fn split(
+fn split<T: Send>(
     elements: &IndexLists,
     range: Range<usize>,
     width: usize,
     memory: &mut [f64],
-    corners: &mut [DVec3],
-    work: &(impl Fn(usize, &mut [f64], &mut [DVec3]) + Sync),
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
     if range.len() > BLOCK {
         let middle = range.start + range.len() / 2;

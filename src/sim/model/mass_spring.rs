@@ -5,7 +5,7 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
 
-use super::{ElasticModel, ForceModel, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, ElementKind};
 use crate::sim::census::Census;
 use crate::sim::state::Nodes;
@@ -144,6 +144,10 @@ impl ElasticModel for MassSpring {
 
     fn springs(&self) -> &[[u32; 2]] {
         &self.springs
+    }
+
+    fn known(&self) -> Option<Known<'_>> {
+        Some(Known::MassSpring(self))
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {

@@ -110,6 +110,11 @@ pub trait ElasticModel: Debug + Send + Sync {
         &[]
     }
 
+    /// Which model it is, for faster ways of computing it.
+    fn known(&self) -> Option<Known<'_>> {
+        None
+    }
+
     /// Works out beforehand what evaluating the forces on `body` needs.
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
 }
@@ -125,6 +130,15 @@ impl dyn ElasticModel + '_ {
     }
 }
 
+/// Models that vectorised steps know.
+#[derive(Clone, Copy, Debug)]
+pub enum Known<'a> {
+    /// Section 3 of the paper.
+    ShapeBased(&'a shape_based::ShapeBased),
+    /// Section 2 of the paper.
+    MassSpring(&'a mass_spring::MassSpring),
+}
+
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the same
 /// next memory. So trial evaluations and steps that are given up leave nothing behind.
 ///
@@ -137,7 +151,7 @@ impl dyn ElasticModel + '_ {
 /// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
 /// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
 /// let stretched = State::at_rest(body.rest.iter().map(|&rest| rest * 1.1).collect());
-/// let stepping = Stepping { integrator: Default::default(), step: 1e-3 };
+/// let stepping = Stepping::new(Default::default(), 1e-3);
 /// let mut world = World::new(&body, stretched, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
 /// let energy = world.diagnostics().elastic;
 /// world.advance(1000);

@@ -9,7 +9,7 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
@@ -144,6 +144,10 @@ impl ElasticModel for ShapeBased {
             text.push_str(" of deformation");
         }
         text
+    }
+
+    fn known(&self) -> Option<Known<'_>> {
+        Some(Known::ShapeBased(self))
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
@@ -329,22 +333,24 @@ impl ForceModel for Elements {
     }
 
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
-        let (mut energy, mut residual) = (0.0, 0.0f64);
-        let (mut shares, mut next) = (Vec::new(), [0.0; 9]);
-        for element in 0..self.body.elements.len() {
+        let mut shares = vec![0.0; self.rest.len()];
+        let mut alphas = vec![0.0; self.body.elements.len()];
+        blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
             let (nodes, rest) = self.element(element);
-            let last = self.of(element, memory);
+            let (last, mut next) = (self.of(element, memory), [0.0; 9]);
             let Fit { centre, at_rest, turn } = self.fit(element, at.position, last, &mut next[..last.len()]);
-            shares.clear();
-            for (&node, &rest) in nodes.iter().zip(rest) {
+            for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
                 let squared = (at.position[node as usize] - centre - turn * rest).length_squared();
-                shares.push(0.5 * self.model.stiffness * squared);
-                energy += 0.5 * self.model.stiffness * squared;
+                *share = 0.5 * self.model.stiffness * squared;
             }
-            share(element, nodes, &shares);
-            let alpha = angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]);
-            residual = residual.max(alpha);
+            alpha[0] = angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]);
+        });
+        for (element, nodes) in self.body.elements.iter().enumerate() {
+            share(element, nodes, &shares[self.body.elements.range(element)]);
         }
+        // In the order of the corners, whoever measured them.
+        let energy = shares.iter().sum();
+        let residual = alphas.into_iter().fold(0.0, f64::max);
         Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
     }
 }
