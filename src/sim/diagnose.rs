@@ -158,11 +158,15 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     let mut volume = 0.0;
     topology::for_each_face(kind, nodes, |face| {
         let corners = face.len();
+        // Listed twice, so that no fan runs over the end: faces of elements of a kind have four corners at most.
+        let mut around = [DVec3::ZERO; 8];
+        for (at_corner, &node) in around.iter_mut().zip(face.iter().chain(face)) {
+            *at_corner = at(node);
+        }
         let mut fans = 0.0;
         for hub in 0..corners {
-            for step in 1..corners - 1 {
-                let [a, b, c] = [hub, hub + step, hub + step + 1].map(|corner| at(face[corner % corners]));
-                fans += a.dot(b.cross(c));
+            for step in hub + 1..hub + corners - 1 {
+                fans += around[hub].dot(around[step].cross(around[step + 1]));
             }
         }
         volume += fans / (6 * corners) as f64;

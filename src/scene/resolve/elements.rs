@@ -5,9 +5,11 @@ use crate::scene::report::Report;
 use crate::scene::words::{count, list};
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
-use crate::sim::topology;
+use crate::sim::topology::{self, ordered};
+use foldhash::fast::FixedState;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::hash::Hash;
 
 /// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
 /// none: rounding of coordinates leaves some 1e-16, and a needle a millionth as thick as long still has 1e-6.
@@ -19,16 +21,17 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let Lists { place, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
-    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
     let mut distinct = Vec::new();
+    let sorted = elements.sorted();
+    let mut known = HashMap::with_capacity_and_hasher(elements.len(), FixedState::default());
     for (at, element) in elements.iter().enumerate() {
-        if !check_indices(place, "elements", at, element, node_count, report) {
+        if !check_indices(place, "elements", at, element, &sorted[at], node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(place, "elements", at, element, &mut known, report) {
+        if !repeated(place, "elements", at, &sorted[at], &mut known, report) {
             distinct.push(at);
         }
     }
@@ -38,17 +41,20 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
         disorder.tell(lists, report);
     }
-    known.clear();
-    for (at, spring) in springs.iter().flatten().enumerate() {
-        if check_indices(place, "springs", at, spring, node_count, report) {
+    let mut known = HashMap::default();
+    for (at, &spring) in springs.iter().flatten().enumerate() {
+        if check_indices(place, "springs", at, &spring, &ordered(spring), node_count, report) {
             spring.iter().for_each(|&node| held[node as usize] = true);
-            repeated(place, "springs", at, spring, &mut known, report);
+            repeated(place, "springs", at, ordered(spring), &mut known, report);
         } else {
             sound = false;
         }
     }
-    for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
-        check_indices(place, "faces", at, face, node_count, report);
+    if let Some(faces) = faces {
+        let sorted = faces.sorted();
+        for (at, face) in faces.iter().enumerate() {
+            check_indices(place, "faces", at, face, &sorted[at], node_count, report);
+        }
     }
     // A wrong index leaves the node that was meant without an element: said once is enough.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
@@ -70,11 +76,11 @@ impl Lists {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
-        let name = self.place.name("elements", &[at]);
+        let name = || self.place.name("elements", &[at]);
         let mut tell = |message, help| self.place.tell(report, "elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
-            return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
+            return tell(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
         }
         let kind = topology::kind(self.dimension, solids, element.len());
         let whole = match kind {
@@ -83,13 +89,14 @@ impl Lists {
             ElementKind::Triangle | ElementKind::Other => {
                 if element.len() > MOST_IN_HULL {
                     let message = format!(
-                        "`{name}` has {} nodes; the faces of a solid are found for up to {}",
+                        "`{}` has {} nodes; the faces of a solid are found for up to {}",
+                        name(),
                         count(element.len() as u128),
                         count(MOST_IN_HULL as u128)
                     );
                     tell(message, Some("divide it into smaller elements".into()));
                 } else if kind == ElementKind::Triangle && is_on_a_line(&corners, size) {
-                    tell(format!("`{name}` has no area: its nodes are on a line"), None);
+                    tell(format!("`{}` has no area: its nodes are on a line", name()), None);
                 }
                 return;
             }
@@ -98,7 +105,7 @@ impl Lists {
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
         disorder.ordered += 1;
-        let around = || volume_by_faces(kind, &reordered(element, &AROUND), &self.nodes);
+        let around = || volume_by_faces(kind, &AROUND.map(|place| element[place]), &self.nodes);
         // A sound hexahedron read in the other order is wound into itself and has hardly any volume, of either sign.
         if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
             disorder.found.push((at, Wrong::Around, kind));
@@ -106,7 +113,7 @@ impl Lists {
             disorder.found.push((at, Wrong::Flat, kind));
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
-            let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
+            let message = format!("the sides {} and {} of `{}` cross", side(one), side(other), name());
             tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
             disorder.found.push((at, Wrong::Turned, kind));
@@ -117,10 +124,6 @@ impl Lists {
 /// The order in which other programs list the corners of a hexahedron, around one side and then around the other; and the
 /// way back.
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-fn reordered(nodes: &[u32], order: &[usize]) -> Vec<u32> {
-    order.iter().map(|&place| nodes[place]).collect()
-}
 
 /// What is wrong with the nodes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +221,7 @@ fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, O
         (Wrong::Around, _) => {
             let expected = "expected bit order: x fastest, then y, then z";
             let message = format!("`{name}` lists its corners around its sides; {expected}");
-            (message, Some(format!("write {:?}", reordered(element, &AROUND))))
+            (message, Some(format!("write {:?}", AROUND.map(|place| element[place]))))
         }
         (Wrong::Turned, _) => {
             let (what, turned) = mended(kind, element);
@@ -259,8 +262,20 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
-fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
+/// Reports indices that do not exist and nodes that stand twice in one list, which is also given sorted. Whether there are
+/// none.
+fn check_indices(
+    place: &Place,
+    key: &str,
+    at: usize,
+    list: &[u32],
+    sorted: &[u32],
+    nodes: usize,
+    report: &mut Report<'_>,
+) -> bool {
+    if sorted.is_sorted_by(|one, next| one < next) && sorted.last().is_none_or(|&last| (last as usize) < nodes) {
+        return true;
+    }
     let mut sound = true;
     // Positions in order of their node, so that long lists are compared quickly.
     let mut order: Vec<usize> = (0..list.len()).collect();
@@ -281,17 +296,15 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
     sound
 }
 
-/// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
-fn repeated(
+/// Reports a list with the same nodes, sorted, as an earlier one. Whether it is one.
+fn repeated<K: Eq + Hash>(
     place: &Place,
     key: &str,
     at: usize,
-    list: &[u32],
-    known: &mut HashMap<Vec<u32>, usize>,
+    sorted: K,
+    known: &mut HashMap<K, usize, FixedState>,
     report: &mut Report<'_>,
 ) -> bool {
-    let mut sorted = list.to_vec();
-    sorted.sort_unstable();
     let first = *known.entry(sorted).or_insert(at);
     if first != at {
         let [this, other] = [at, first].map(|at| place.name(key, &[at]));
@@ -316,8 +329,9 @@ fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
 /// Mean length of all elements' edges at rest (m); the size of the body if they have none.
 pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
+    let topology = body.topology();
     for element in 0..body.elements.len() {
-        for [a, b] in body.topology().edges_of(element) {
+        for [a, b] in topology.edges_of(element) {
             sum += body.rest[a as usize].distance(body.rest[b as usize]);
             count += 1.0;
         }
