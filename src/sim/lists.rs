@@ -40,13 +40,6 @@ impl IndexLists {
         &self.indices
     }
 
-    /// The same lists, each of them sorted.
-    pub fn sorted(&self) -> Self {
-        let mut sorted = self.clone();
-        (0..self.len()).for_each(|at| sorted.indices[self.range(at)].sort_unstable());
-        sorted
-    }
-
     /// The lists in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         (0..self.len()).map(|at| &self[at])

@@ -2,6 +2,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod alike;
 pub mod body;
 pub mod census;
 pub mod contact;

@@ -1,12 +1,11 @@
 //! The kinds of elements, their faces and edges, and the springs made from them.
 
+use super::alike::Alike;
 use super::hull::Hulls;
 use super::lists::IndexLists;
-use foldhash::fast::FixedState;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 
 /// Whether a body lives in the plane or in space.
 ///
@@ -183,35 +182,22 @@ impl Elements<'_> {
 
     /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
     pub fn shared_faces(&self) -> Faces {
-        // Faces that wait for their other side, by their sorted corners. Those found are taken out, so that of a large
-        // body only a layer is in the map. Elements that are faces themselves stay single.
-        let mut small: HashMap<[u32; 4], usize, FixedState> = HashMap::default();
-        let mut large: HashMap<Vec<u32>, usize, FixedState> = HashMap::default();
         let mut faces = Faces::default();
+        // Those that wait for their other side. Elements that are faces themselves stay single.
+        let mut waiting = Alike::new(self.rest.len());
         for (owner, element) in (0u32..).zip(0..self.nodes.len()) {
             let is_flat = self.is_flat(element);
             self.for_each_face(element, |face| {
-                let new = faces.nodes.len();
-                let waiting = if is_flat {
-                    None
-                } else if face.len() <= 4 {
-                    let mut key = [u32::MAX; 4];
-                    key[..face.len()].copy_from_slice(face);
-                    key.sort_unstable();
-                    taken_or_put(&mut small, key, new)
-                } else {
-                    let mut key = face.to_vec();
-                    key.sort_unstable();
-                    taken_or_put(&mut large, key, new)
-                };
-                match waiting {
-                    Some(first) => faces.outer[first] = Some(owner),
-                    None => {
-                        faces.nodes.push(face);
-                        faces.inner.push(Some(owner));
-                        faces.outer.push(None);
+                if !is_flat {
+                    if let Some(first) = waiting.take(face, |first| &faces.nodes[first]) {
+                        faces.outer[first] = Some(owner);
+                        return;
                     }
+                    waiting.put(faces.nodes.len(), face);
                 }
+                faces.nodes.push(face);
+                faces.inner.push(Some(owner));
+                faces.outer.push(None);
             });
         }
         faces
@@ -284,21 +270,6 @@ impl Elements<'_> {
                 in_faces.sort_unstable();
                 every_pair(nodes).filter(|pair| in_faces.binary_search(pair).is_err()).for_each(visit);
             }
-        }
-    }
-}
-
-/// The face that waits under a key, which is taken out; else a new one is put there to wait.
-fn taken_or_put<K: Eq + std::hash::Hash>(
-    waiting: &mut HashMap<K, usize, FixedState>,
-    key: K,
-    new: usize,
-) -> Option<usize> {
-    match waiting.entry(key) {
-        Entry::Occupied(first) => Some(first.remove()),
-        Entry::Vacant(place) => {
-            place.insert(new);
-            None
         }
     }
 }

@@ -3,13 +3,11 @@
 use super::lists::{Lists, Place};
 use crate::scene::report::Report;
 use crate::scene::words::{count, list};
+use crate::sim::alike::Alike;
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
-use crate::sim::topology::{self, ordered};
-use foldhash::fast::FixedState;
+use crate::sim::topology;
 use glam::DVec3;
-use std::collections::HashMap;
-use std::hash::Hash;
 
 /// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
 /// none: rounding of coordinates leaves some 1e-16, and a needle a millionth as thick as long still has 1e-6.
@@ -23,15 +21,14 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let mut held = vec![false; node_count];
     let mut sound = !flawed;
     let mut distinct = Vec::new();
-    let sorted = elements.sorted();
-    let mut known = HashMap::with_capacity_and_hasher(elements.len(), FixedState::default());
+    let mut known = Alike::new(elements.len());
     for (at, element) in elements.iter().enumerate() {
-        if !check_indices(place, "elements", at, element, &sorted[at], node_count, report) {
+        if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(place, "elements", at, &sorted[at], &mut known, report) {
+        if !repeated(place, "elements", at, |at| &elements[at], &mut known, report) {
             distinct.push(at);
         }
     }
@@ -41,20 +38,18 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
         disorder.tell(lists, report);
     }
-    let mut known = HashMap::default();
-    for (at, &spring) in springs.iter().flatten().enumerate() {
-        if check_indices(place, "springs", at, &spring, &ordered(spring), node_count, report) {
+    let springs = springs.as_deref().unwrap_or_default();
+    let mut known = Alike::new(springs.len());
+    for (at, spring) in springs.iter().enumerate() {
+        if check_indices(place, "springs", at, spring, node_count, report) {
             spring.iter().for_each(|&node| held[node as usize] = true);
-            repeated(place, "springs", at, ordered(spring), &mut known, report);
+            repeated(place, "springs", at, |at| &springs[at], &mut known, report);
         } else {
             sound = false;
         }
     }
-    if let Some(faces) = faces {
-        let sorted = faces.sorted();
-        for (at, face) in faces.iter().enumerate() {
-            check_indices(place, "faces", at, face, &sorted[at], node_count, report);
-        }
+    for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
+        check_indices(place, "faces", at, face, node_count, report);
     }
     // A wrong index leaves the node that was meant without an element: said once is enough.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
@@ -262,18 +257,12 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// Reports indices that do not exist and nodes that stand twice in one list, which is also given sorted. Whether there are
-/// none.
-fn check_indices(
-    place: &Place,
-    key: &str,
-    at: usize,
-    list: &[u32],
-    sorted: &[u32],
-    nodes: usize,
-    report: &mut Report<'_>,
-) -> bool {
-    if sorted.is_sorted_by(|one, next| one < next) && sorted.last().is_none_or(|&last| (last as usize) < nodes) {
+/// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
+fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
+    /// So few are compared with each other faster than they are sorted.
+    const FEW: usize = 16;
+    let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
+    if list.len() <= FEW && (0..list.len()).all(is_new) {
         return true;
     }
     let mut sound = true;
@@ -296,16 +285,19 @@ fn check_indices(
     sound
 }
 
-/// Reports a list with the same nodes, sorted, as an earlier one. Whether it is one.
-fn repeated<K: Eq + Hash>(
+/// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
+fn repeated<'l>(
     place: &Place,
     key: &str,
     at: usize,
-    sorted: K,
-    known: &mut HashMap<K, usize, FixedState>,
+    list: impl Fn(usize) -> &'l [u32],
+    known: &mut Alike,
     report: &mut Report<'_>,
 ) -> bool {
-    let first = *known.entry(sorted).or_insert(at);
+    let first = known.find(list(at), &list).unwrap_or(at);
+    if first == at {
+        known.put(at, list(at));
+    }
     if first != at {
         let [this, other] = [at, first].map(|at| place.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");

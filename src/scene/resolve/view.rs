@@ -309,14 +309,14 @@ fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
 fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_distance: bool) {
     let (low, high) = bounds(start);
     let drop = camera.target - (low + high) / 2.0;
-    let shown: Vec<_> = start.iter().flat_map(|&at| [at, at + drop]).collect();
-    if least_distance(camera, start, dimension) <= camera.distance {
+    if least_distance(camera, start.iter().copied(), dimension) <= camera.distance {
         return;
     }
     camera.rise = -drop.y;
     camera.target -= drop / 2.0;
     if !keep_distance {
-        camera.distance = camera.distance.max(least_distance(camera, &shown, dimension));
+        let shown = start.iter().flat_map(|&at| [at, at + drop]);
+        camera.distance = camera.distance.max(least_distance(camera, shown, dimension));
     }
 }
 
@@ -325,20 +325,21 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Around<'_>) {
     let (low, high) = bounds(start);
     let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
-    let body: Vec<_> = match camera.follow {
-        Follow::Nothing => start.iter().flat_map(|&at| [at, at + drop]).collect(),
-        Follow::Height | Follow::Body => start.iter().map(|&at| at + drop).collect(),
+    let is_shown_at_start = camera.follow == Follow::Nothing;
+    let around = match is_shown_at_start {
+        true => [low.min(low + drop), high.max(high + drop)],
+        false => [low + drop, high + drop],
     };
-    let mut shown = reach::near(scene, &body, size(scene));
-    if shown.is_empty() || least_distance(camera, &shown, dimension) <= camera.distance {
+    let mut shown = reach::near(scene, around, size(scene));
+    if shown.is_empty() || least_distance(camera, shown.iter().copied(), dimension) <= camera.distance {
         return;
     }
-    shown.extend(body);
+    shown.extend(start.iter().flat_map(|&at| is_shown_at_start.then_some(at).into_iter().chain([at + drop])));
     // Each distance shows another middle, but hardly.
     for _ in 0..4 {
         let step = middle_of(camera, &shown, dimension);
         camera.target += step;
-        camera.distance = camera.distance.max(least_distance(camera, &shown, dimension));
+        camera.distance = camera.distance.max(least_distance(camera, shown.iter().copied(), dimension));
     }
 }
 
@@ -370,13 +371,13 @@ fn is_under_plate(obstacles: &[Obstacle]) -> bool {
 }
 
 /// The least distance at which a camera has points in the picture (m).
-fn least_distance(camera: &Camera, points: &[DVec3], dimension: Dimension) -> f64 {
+fn least_distance(camera: &Camera, points: impl Iterator<Item = DVec3>, dimension: Dimension) -> f64 {
     let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
     let towards = DVec3::new(across * level, rise, along * level);
     let right = DVec3::new(along, 0.0, -across);
     let up = towards.cross(right);
     let [aside, above, below] = ROOM.map(|share| share * 2.0 * libm::tan(camera.field_of_view / 2.0));
-    let least = points.iter().map(|&point| {
+    let least = points.map(|point| {
         let from_target = point - camera.target;
         let (x, y) = (from_target.dot(right), from_target.dot(up));
         let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
