@@ -13,6 +13,7 @@ use crate::picture::compose_figure;
 use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, Theme, nearest_name};
+use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
 use serde_json::{Value, json};
@@ -288,16 +289,17 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
                     snapshot::Status::Diverged(divergence) => Some(divergence.time),
                     snapshot::Status::Ok => None,
                 };
-                json!({
+                let mut cell = json!({
                     "diverged_at": diverged,
                     "number": number,
                     "scene": sheet.scenes[scene].title,
                     "run": sheet.scenes[scene].runs[run].name,
                     "time": time,
-                    "turned_over": diagnostics.turned_over,
-                    "volume_ratio": diagnostics.volume_ratio,
-                    "shape_error": diagnostics.shape_error,
-                })
+                });
+                let described = json!(Chosen::within(Reach::Summaries, diagnostics));
+                let both = cell.as_object_mut().zip(described.as_object());
+                both.into_iter().for_each(|(cell, described)| cell.extend(described.clone()));
+                cell
             };
             let rows = 0..sheet.rows.len();
             let all = rows.map(|row| (0..sheet.columns.len()).map(|column| cell(row, column)).collect::<Vec<_>>());

@@ -7,6 +7,7 @@ pub mod body;
 pub mod census;
 pub mod contact;
 pub mod diagnose;
+pub mod diagnostics;
 pub mod field;
 pub mod grip;
 pub mod hull;
