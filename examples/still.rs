@@ -4,9 +4,10 @@
 //! dark theme.
 
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::look::{Look, Theme};
 use localshape::picture::compose;
 use localshape::render::Renderer;
-use localshape::scene::{Limits, Look, Scene, Theme};
+use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
 use std::error::Error;
 use std::path::Path;

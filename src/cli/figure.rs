@@ -7,12 +7,14 @@ use super::options::processors;
 use super::record;
 use super::render::{failed, samples, size};
 use crate::gpu::{AdapterChoice, Gpu};
+use crate::look::Theme;
 use crate::moments::{Moments, Taking};
 use crate::output::{self, AtomicFile, FolderLock, OutputError};
 use crate::picture::compose_figure;
+use crate::reading::words::nearest;
 use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
-use crate::scene::{Limits, Scene, Theme, nearest_name};
+use crate::scene::{Limits, Scene};
 use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
@@ -316,7 +318,7 @@ fn times(typed: &str) -> Result<f64, String> {
 /// What is said of a name that no figure has.
 fn unknown(asked: &str) -> String {
     let names: Vec<_> = NAMES.iter().copied().chain(["fig4", "all"]).collect();
-    let hint = nearest_name(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
+    let hint = nearest(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!(
         "there is no figure `{asked}`{hint} The figures are {}; a figure of your own is a .toml file",
         names.join(", ")

@@ -3,8 +3,8 @@
 //! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
 //! only with what is really there.
 
-use super::limits::size;
-use super::words::{count, quoted};
+use crate::reading::words::size;
+use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufReader, Read};

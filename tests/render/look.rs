@@ -5,9 +5,10 @@ use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
+use localshape::look::{Follow, FontFiles, Look, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::render::Renderer;
-use localshape::scene::{Follow, FontFiles, Limits, Look, Scene, Theme};
+use localshape::scene::{Limits, Scene};
 use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 

@@ -1,8 +1,8 @@
 //! Checks of elements, springs and faces that a body lists.
 
 use super::lists::{Lists, Place};
-use crate::scene::report::Report;
-use crate::scene::words::{count, list};
+use crate::reading::report::Report;
+use crate::reading::words::{count, list};
 use crate::sim::alike::Alike;
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;

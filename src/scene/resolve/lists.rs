@@ -1,13 +1,14 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
 use super::vector;
-use crate::scene::beside::{missing, similar};
+use crate::reading::beside::{missing, similar};
+use crate::reading::report::{Report, Way, written};
+use crate::reading::words::size;
+use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
-use crate::scene::limits::{Limits, size};
+use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz, Numbers};
-use crate::scene::report::{Report, Way, written};
 use crate::scene::structure::LARGEST;
-use crate::scene::words::{count, list, nearest};
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
