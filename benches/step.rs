@@ -1,57 +1,198 @@
-//! What a step costs: both models, from a body that fits any cache to one that does not, on one thread and on all.
+//! What a step costs, beside the floor of the machine: `cargo bench --bench step`, and `benches/README.md` how to read it.
 //!
-//! `cargo bench --bench step`. Criterion prints median and spread; the throughput is elements times steps a second, so
-//! its inverse is the time per element and step.
+//! Everything of one size is measured in turns, so that whatever else the machine does meets all alike, and the best of
+//! many short samples counts. `-- 3 10 40` measures these sizes alone.
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use localshape::scene::{Limits, Scene};
+use localshape::sim::World;
+use localshape::sim::floor::multiply_adds;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::hint::black_box;
+use std::time::Instant;
 
-/// Elements times steps in one sample: enough to hide the hand-over to the pool, a few milliseconds of work.
-const WORK: u64 = 64_000;
+/// Multiply-adds of one lane that a box and step needs at least.
+const FLOOR: f64 = 320.0;
+/// Elements times steps in one sample: some milliseconds of a fast step.
+const WORK: u64 = 400_000;
+/// Cells along an edge.
+const SIZES: [u64; 6] = [3, 10, 20, 40, 80, 160];
 
-/// A block of cubes at rest on the floor with each model as one run.
-fn scene(cells: u32) -> Scene {
-    let text = format!(
-        r#"
-        gravity = [0, -9.8, 0]
-        time = {{ duration = 1.0, step = "T/50", frames_per_second = 60 }}
-        body = {{ lattice = {{ cells = [{cells}, {cells}, {cells}], side = 0.1 }}, mass = 1.0, lowest = 0.0 }}
-        obstacle = [{{ kind = "floor", restitution = 0.5, friction = 0.3 }}]
-        [[run]]
-        name = "shape, 2 passes"
-        model = {{ kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1 }}
-        [[run]]
-        name = "shape, 1 pass"
-        model = {{ kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1, passes = 1 }}
-        [[run]]
-        name = "springs, edges+one-diagonal"
-        model = {{ kind = "mass-spring", stiffness = 1e4, damping_ratio = 0.1, springs = "edges+one-diagonal" }}
-        [[run]]
-        name = "springs, all"
-        model = {{ kind = "mass-spring", stiffness = 1e4, damping_ratio = 0.1, springs = "all" }}
-        "#
-    );
-    Scene::parse(&text, "step", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+/// One thing to be timed.
+struct Case {
+    name: &'static str,
+    world: World,
+    /// Elements of the body.
+    count: u64,
+    steps: u64,
+    pool: usize,
+    /// Nanoseconds per element and step.
+    times: Vec<f64>,
 }
 
-fn step(criterion: &mut Criterion) {
-    let most = std::thread::available_parallelism().map_or(1, usize::from);
-    for threads in std::collections::BTreeSet::from([1, most]) {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-        for cells in [3, 10, 20, 40] {
-            let scene = scene(cells);
-            let mut group = criterion.benchmark_group(format!("{cells}^3 cubes, {threads} threads"));
-            let elements = scene.body.elements.len() as u64;
-            let steps = (WORK / elements).max(1);
-            group.sample_size(10).throughput(Throughput::Elements(steps * elements));
-            for (index, run) in scene.runs.iter().enumerate() {
-                let mut world = scene.world(index);
-                group.bench_function(&run.name, |bencher| bencher.iter(|| pool.install(|| world.advance(steps))));
-            }
-            group.finish();
-        }
+impl Case {
+    fn new(name: &'static str, scene: &Scene, run: usize, pool: usize) -> Self {
+        let count = scene.body.elements.len() as u64;
+        Self { name, world: scene.world(run), count, steps: (WORK / count).max(1), pool, times: Vec::new() }
+    }
+
+    fn sample(&mut self, pools: &[ThreadPool]) {
+        let Self { world, steps, .. } = self;
+        let start = Instant::now();
+        pools[self.pool].install(|| world.advance(*steps));
+        self.times.push(start.elapsed().as_secs_f64() * 1e9 / (self.steps * self.count) as f64);
+    }
+
+    fn best(&self) -> f64 {
+        self.times.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    fn median(&self) -> f64 {
+        let mut times = self.times.clone();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
     }
 }
 
-criterion_group!(benches, step);
-criterion_main!(benches);
+/// A body on a floor, with the models that are compared.
+fn scene(body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
+    let mut text = format!(
+        "gravity = [0, -9.8{dimension}]
+        time = {{ duration = 1, step = 'T/50', frames_per_second = 60 }}
+        body = {{ {body}, mass = 1, lowest = 0 }}
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        "
+    );
+    for (at, (model, more)) in runs.iter().enumerate() {
+        text += &format!("[[run]]\nname = '{at}'\nmodel = {{ stiffness = 1e4, damping_ratio = 0.1, {model} }}\n{more}\n");
+    }
+    Scene::parse(&text, "step", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The floor on the spot: nanoseconds a box and step.
+fn floor() -> f64 {
+    let start = Instant::now();
+    let count = black_box(multiply_adds(20_000));
+    start.elapsed().as_secs_f64() * 1e9 / count as f64 * FLOOR
+}
+
+/// Bytes a nanosecond of reading two and writing one array that fit no cache.
+fn bandwidth() -> f64 {
+    let count = 1 << 24;
+    let (mut to, one, two) = (vec![0.0f64; count], vec![1.0f64; count], vec![2.0f64; count]);
+    let pass = |to: &mut [f64]| {
+        let start = Instant::now();
+        for ((to, one), two) in to.iter_mut().zip(&one).zip(&two) {
+            *to = one + 0.5 * two;
+        }
+        black_box(to);
+        24.0 * count as f64 / (start.elapsed().as_secs_f64() * 1e9)
+    };
+    (0..5).map(|_| pass(&mut to)).fold(0.0, f64::max)
+}
+
+/// Times all cases and the floor in turns.
+fn measure(cases: &mut [Case], pools: &[ThreadPool], samples: usize) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..samples {
+        least = least.min(floor());
+        cases.iter_mut().for_each(|case| case.sample(pools));
+    }
+    least
+}
+
+fn print(cases: &[Case], floor: f64) {
+    for case in cases {
+        let (best, median) = (case.best(), case.median());
+        println!("  {:<44} {best:8.1} {median:8.1} {:8.2}", case.name, best / floor);
+    }
+}
+
+fn find<'a>(cases: &'a [Case], name: &str) -> &'a Case {
+    cases.iter().find(|case| case.name == name).expect("a case that was timed")
+}
+
+fn main() {
+    let asked: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    let pool = |threads: usize| ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let pools = [pool(1), pool(2)];
+    println!("floor: {FLOOR} multiply-adds a cube; memory {:.1} GB/s", bandwidth());
+    println!("ns per element and step: best, median, best over floor\n");
+    let mut results = Vec::new();
+    for cells in SIZES.into_iter().filter(|size| asked.is_empty() || asked.contains(size)) {
+        let lattice = format!("lattice = {{ cells = [{cells}, {cells}, {cells}], side = 0.1 }}");
+        let mut runs = vec![
+            ("kind = 'shape-based'", ""),
+            ("kind = 'shape-based', rotation = 'arctangent'", ""),
+            ("kind = 'mass-spring', springs = 'all'", ""),
+        ];
+        if cells <= 80 {
+            runs.extend([
+                ("kind = 'mass-spring', springs = 'edges+one-diagonal'", ""),
+                ("kind = 'mass-spring', springs = 'edges+face-diagonals'", ""),
+                ("kind = 'mass-spring', springs = 'edges+body-diagonals'", ""),
+                ("kind = 'mass-spring', springs = 'edges'", ""),
+            ]);
+        }
+        if cells <= 40 {
+            runs.extend([
+                ("kind = 'shape-based', rotation = 'arctangent'", "kernel = 'reference'"),
+                ("kind = 'mass-spring', springs = 'all'", "kernel = 'reference'"),
+            ]);
+        }
+        let scene_of_lattice = scene(&lattice, ", 0", &runs);
+        let names = [
+            "shape",
+            "shape, Eq. (15) twice",
+            "springs, all (13 a cube)",
+            "springs, edges+one-diagonal",
+            "springs, edges+face-diagonals",
+            "springs, edges+body-diagonals",
+            "springs, edges",
+            "plain shape, Eq. (15) twice",
+            "plain springs, all",
+        ];
+        let mut cases: Vec<_> =
+            (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 0)).collect();
+        cases.push(Case::new("shape, 2 threads", &scene_of_lattice, 0, 1));
+        cases.push(Case::new("springs, all, 2 threads", &scene_of_lattice, 2, 1));
+        let one = [("kind = 'shape-based'", "")];
+        let other = |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 0);
+        if cells <= 40 {
+            let cube = format!("cells = [{cells}, {cells}, {cells}], side = 0.1");
+            cases.push(other(format!("lattice = {{ {cube}, irregular = 0.2 }}"), ", 0", "irregular hexahedra"));
+            cases.push(other(
+                format!("lattice = {{ {cube}, elements = 'tetrahedra' }}"),
+                ", 0",
+                "tetrahedra",
+            ));
+            let side = (cells * cells * cells).isqrt();
+            let square = format!("cells = [{side}, {side}], side = 0.1");
+            cases.push(other(format!("lattice = {{ {square}, irregular = 0.2 }}"), "", "irregular squares in the plane"));
+            cases.push(other(
+                format!("lattice = {{ {square}, elements = 'triangles' }}"),
+                "",
+                "triangles in the plane",
+            ));
+        }
+        let samples = match cells {
+            0..=40 => 40,
+            41..=80 => 12,
+            _ => 5,
+        };
+        let floor = measure(&mut cases, &pools, samples);
+        println!("{cells}³ cubes, floor {floor:.2}");
+        print(&cases, floor);
+        println!();
+        results.push((cells, floor, cases));
+    }
+    if let Some((_, floor, cases)) = results.iter().find(|(cells, ..)| *cells == 40) {
+        let best = |name: &str| find(cases, name).best();
+        // Of paired samples, the best speed-up.
+        let pairs = find(cases, "shape").times.iter().zip(&find(cases, "shape, 2 threads").times);
+        println!("ratio-to-floor: {:.2}", best("shape") / floor);
+        println!("general-to-floor: {:.2}", best("irregular hexahedra") / floor);
+        println!("shape-to-spring: {:.2}", best("shape") / best("springs, all (13 a cube)"));
+        println!("threads-2: {:.2}", pairs.map(|(one, two)| one / two).fold(0.0, f64::max));
+        println!("plain-to-fast: {:.2}", best("plain shape, Eq. (15) twice") / best("shape, Eq. (15) twice"));
+    }
+}

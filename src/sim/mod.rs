@@ -26,6 +26,7 @@ pub mod words;
 pub mod world;
 
 pub use body::Body;
+pub use kernel::floor;
 pub use snapshot::{Frame, Snapshot};
 pub use state::State;
 pub use world::World;

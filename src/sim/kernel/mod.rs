@@ -5,6 +5,7 @@
 
 mod array;
 mod drive;
+pub mod floor;
 mod lanes;
 pub(in crate::sim) mod lattice;
 mod rotation;

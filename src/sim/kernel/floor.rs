@@ -1,0 +1,32 @@
+//! The machine's floor: how fast it multiplies and adds.
+
+use super::lanes::{Lanes, Set, Work};
+
+/// Multiplies and adds in all lanes of the widest vectors of this processor, in twelve independent chains, and returns how
+/// many multiply-adds of one lane that were. A step of the shape model on a lattice needs at least 320 of them a box: 155 to
+/// gather, scatter, damp and move, 165 for one pass of the rotation.
+pub fn multiply_adds(rounds: u64) -> u64 {
+    Set::best().run(Chains { rounds })
+}
+
+struct Chains {
+    rounds: u64,
+}
+
+impl Work for Chains {
+    type Output = u64;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u64 {
+        const CHAINS: usize = 12;
+        let (factor, summand) = (L::splat(std::hint::black_box(0.999_999)), L::splat(std::hint::black_box(1e-9)));
+        let mut chains = [L::splat(1.0); CHAINS];
+        for _ in 0..self.rounds {
+            for chain in &mut chains {
+                *chain = chain.mul_add(factor, summand);
+            }
+        }
+        std::hint::black_box(chains.map(Lanes::to_array));
+        self.rounds * (CHAINS * L::WIDTH) as u64
+    }
+}
