@@ -66,7 +66,8 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         command.args(["-movflags", "+faststart"]);
     }
     command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
-    command.args(["-metadata", &format!("comment={}", animation.comment)]);
+    // Nothing by chance, as the number that Matroska gives a film.
+    command.args(["-fflags", "+bitexact", "-metadata", &format!("comment={}", animation.comment)]);
     command.args(["-f", if format == Format::WebM { "webm" } else { "mp4" }]).arg(file.hidden_path());
     let (process, mut film) = start(&mut command, ending(format), animation.go_on)?;
     let mut pictures = 0;

@@ -179,7 +179,8 @@ impl Animate {
         } else if self.size.is_some() && !is_sheet {
             "--size is for sheets (.png); an animation is scaled with --width".to_owned()
         } else if self.plays.is_some() && !matches!(format, Format::Gif | Format::Apng) {
-            "--loop is for .gif and .apng, which say how often they play; for other files, whoever plays them does".to_owned()
+            "--loop is for .gif and .apng, which say how often they play; for other files, whoever plays them does"
+                .to_owned()
         } else if self.stack && self.folders.len() == 1 {
             "--stack puts several folders one above the other; expected more than one".to_owned()
         } else if self.json && self.out == Path::new(STANDARD_OUTPUT) {

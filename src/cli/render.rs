@@ -223,7 +223,8 @@ impl<'a> Films<'a> {
                 }
                 // Why, is told by what has stopped it.
                 Err(AnimationError::Stopped) => {
-                    let kept = self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
+                    let kept =
+                        self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
                     let path = path.display();
                     let how = kept.map_or(String::new(), |folder| {
                         format!("; of the frames that are: localshape animate {} -o {path}", folder.display())
