@@ -100,6 +100,7 @@ impl Render {
             films,
             words: words.to_vec(),
             threads: self.options.threads(),
+            run: jobs.first().and_then(|job| job.runs.first().copied()),
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
         let device =
@@ -159,6 +160,8 @@ struct Shared {
     films: Vec<(Format, PathBuf)>,
     words: Vec<OsString>,
     threads: usize,
+    /// The run whose times those of frames are.
+    run: Option<usize>,
     /// Frames on a sheet, at most: all those that the user has chosen, if they were.
     stills: usize,
 }
@@ -183,7 +186,12 @@ impl<'a> Films<'a> {
         frames: &[u64],
     ) -> Self {
         let spool = Arc::new(spool);
-        let moments: Vec<_> = frames.iter().map(|&frame| (frame, scene.frame_time(frame))).collect();
+        // As the frames themselves say it: at the end of a step.
+        let time = |frame: u64| match shared.run {
+            Some(run) => scene.frame_step(run, frame) as f64 * scene.runs[run].step,
+            None => scene.frame_time(frame),
+        };
+        let moments: Vec<_> = frames.iter().map(|&frame| (frame, time(frame))).collect();
         let comment = comment(&shared.words, std::slice::from_ref(&scene.digest));
         let threads = shared.films.iter().map(|(format, path)| {
             let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());

@@ -254,7 +254,7 @@ fn rendering_makes_sheets_meanwhile() {
     let ran = place.run("animate output/long -o b.png").good();
     assert!(ran.out.contains("b.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
     let pixels = |name: &str| localshape::golden::Pixels::read(&place.path(name)).unwrap().bytes;
-    assert!(pixels("a.png") == pixels("b.png"));
+    assert!(pixels("a.png") == pixels("b.png"), "the same frames with the same times");
     let ran = place.run("render long.toml --samples 1 --animate c.png --frames 0-13 --no-frames -o c").good();
     assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);
 }
