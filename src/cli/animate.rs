@@ -28,7 +28,7 @@ Examples:
 The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
 (H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \
 hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
-every second one.";
+every second one. Transparent frames stand on white.";
 
 /// What stands at the beginning of each comment, by which a file is known as one of ours.
 const MARK: &str = "made by localshape ";
@@ -64,7 +64,7 @@ pub(super) struct Animate {
     fps: Option<f64>,
 
     /// How often it plays, 0 for ever (GIF and APNG) [default: 0]
-    #[arg(long = "loop", value_name = "N")]
+    #[arg(long = "loop", value_name = "N", value_parser = plays, allow_hyphen_values = true)]
     plays: Option<u16>,
 
     /// Show the last frame longer by so much (s)
@@ -517,6 +517,10 @@ fn positive(typed: &str) -> Result<f64, String> {
     } else {
         Err("expected a number from 0.001 to 1000; at 0 it would stand still".to_owned())
     }
+}
+
+fn plays(typed: &str) -> Result<u16, String> {
+    typed.trim().parse().map_err(|_| format!("expected a whole number from 1 to {}, or 0 for ever", u16::MAX))
 }
 
 fn rate(typed: &str) -> Result<f64, String> {

@@ -677,6 +677,8 @@ fn wrong_options_are_told() {
         ("--fps 0", "0.1 to 1000"),
         ("--hold-last -1", "0 to 3600"),
         ("--width 3", "16"),
+        ("--loop -1", "1 to 65535, or 0 for ever"),
+        ("--loop forever", "1 to 65535, or 0 for ever"),
         ("--frames 9-0", "did you mean 0-9?"),
     ] {
         let ran = place.run(&format!("animate in -o out.gif {arguments}"));
