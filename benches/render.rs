@@ -6,8 +6,8 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::picture::Composer;
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 use std::hint::black_box;
 
@@ -16,7 +16,7 @@ fn scene(cubes: usize) -> (Scene, Frame) {
     let text = include_str!("../scenes/fig4b.toml").replace("cells = [3, 3, 3]", &format!("cells = {:?}", [cubes; 3]));
     let scene = Scene::parse(&text, "fig4b.toml", &Limits::default()).expect("the scene is sound");
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Sequence::new(&scene, &runs).frame(if cubes > 5 { 0 } else { 4 });
+    let frame = Runner::new(&scene, &runs).frame(if cubes > 5 { 0 } else { 4 });
     (scene, frame)
 }
 

@@ -4,10 +4,11 @@
 //! dark theme.
 
 use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::compose;
+use localshape::history::History;
+use localshape::picture::Composer;
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Look, Scene, Theme};
-use localshape::sequence::Sequence;
 use std::error::Error;
 use std::path::Path;
 
@@ -25,8 +26,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         scene.view.look = Look::of(Theme::Dark);
     }
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Sequence::new(&scene, &runs).frame(frame.parse()?);
-    let picture = compose(&scene, &frame);
+    let frame = Runner::new(&scene, &runs).frame(frame.parse()?);
+    let mut composer = Composer::new(&scene);
+    if scene.view.strip.is_some() {
+        composer.set_history(&History::new(&scene, &runs));
+    }
+    let picture = composer.compose(&frame);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
     Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture)?.save(out)?;
     Ok(())

@@ -1,10 +1,10 @@
 //! The course of a scene: what its diagnostics do from its start to its end, for those who show a moment among all
-//! others. It comes from a simulation of its own, so that it depends on the scene alone and not on the frames asked for.
+//! others. It depends on the scene alone and not on the frames asked for.
 
+use crate::runner::Runner;
 use crate::scene::Scene;
-use crate::sim::snapshot::{Diagnostics, Divergence, Status};
-use crate::sim::world::World;
-use rayon::prelude::*;
+use crate::sim::snapshot::{Diagnostics, Divergence};
+use crate::sim::world::{Moment, World};
 
 /// So many moments at least, as long as there are so many steps: a curve as wide as a picture then has no corners.
 const FEWEST_MOMENTS: u64 = 600;
@@ -12,7 +12,7 @@ const FEWEST_MOMENTS: u64 = 600;
 const MOST_MOMENTS: u64 = 2000;
 
 /// The course of runs of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// Time of the scene's last frame (s).
     pub end: f64,
@@ -37,152 +37,56 @@ pub struct Course {
 impl History {
     /// Simulates runs of a scene from start to end.
     ///
-    /// It takes about as long as simulating for pictures does; [`Rehearsal`] does the same in slices. It works on the
-    /// rayon pool it is called from; the result has the same bits for any number of threads.
+    /// It takes about as long as simulating for pictures does; [`Frames`](crate::runner::Frames) tell it on their way. It
+    /// works on the rayon pool it is called from; the result has the same bits for any number of threads.
     ///
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut rehearsal = Rehearsal::new(scene, runs);
-        while !rehearsal.advance(u64::MAX) {}
-        rehearsal.finish()
+        let mut runner = Runner::new(scene, runs).without_field().with_course();
+        runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+        runner.history()
     }
 }
 
-/// A scene on its way from start to end, without fields and with diagnostics only where they are noted down.
-pub struct Rehearsal {
-    end: f64,
-    parts: Vec<Part>,
-}
-
-/// One run on its way.
-struct Part {
-    world: World,
-    /// Time step (s).
-    step: f64,
-    /// The steps to note down, rising.
-    moments: Vec<u64>,
-    course: Course,
-}
-
-impl Rehearsal {
-    /// The given runs of a scene at their start.
-    ///
-    /// # Panics
-    /// If the scene has no such run.
-    pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let part = |&run: &usize| {
-            let mut world = scene.world(run);
-            world.show(None);
-            let course = Course { run, times: Vec::new(), diagnostics: Vec::new(), divergence: None };
-            Part { world, step: scene.runs[run].step, moments: moments(scene, run), course }
-        };
-        Self { end: scene.frame_time(scene.last_frame()), parts: runs.iter().map(part).collect() }
-    }
-
-    /// The same with more moments noted down: as many as usually of the whole scene between two that are looked at
-    /// `closer` (s), if there are any, and the steps nearest to each of `shown` (s).
-    pub fn with(mut self, scene: &Scene, closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
-        for part in &mut self.parts {
-            let last = part.last();
-            let step = |time: f64| ((time / scene.runs[part.course.run].step).round() as u64).min(last);
-            let closely = closer.into_iter().flat_map(|[start, end]| {
-                (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
-            });
-            part.moments.extend(closely.chain(shown.iter().copied()).map(step));
-            part.moments.sort_unstable();
-            part.moments.dedup();
-        }
-        self
-    }
-
-    /// Goes on, each run by `most_steps` at most, and returns whether all runs are at their end. However the way is
-    /// cut up, the course has the same bits.
-    pub fn advance(&mut self, most_steps: u64) -> bool {
-        let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
-        arrived.reduce(|| true, |one, other| one && other)
-    }
-
-    /// Steps done with so far, of all runs together.
-    pub fn steps(&self) -> u64 {
-        self.parts.iter().fold(0, |sum, part| sum.saturating_add(part.steps()))
-    }
-
-    /// Steps that all runs together take to their end.
-    pub fn steps_at_end(&self) -> u64 {
-        self.parts.iter().fold(0, |sum, part| sum.saturating_add(part.last()))
-    }
-
-    /// What was noted down until now.
-    pub fn finish(self) -> History {
-        History { end: self.end, courses: self.parts.into_iter().map(|part| part.course).collect() }
+impl Course {
+    /// Of a run at its start, with nothing noted down.
+    pub(crate) fn new(run: usize) -> Self {
+        Self { run, times: Vec::new(), diagnostics: Vec::new(), divergence: None }
     }
 }
 
-impl Part {
-    /// Goes on by a number of steps at most and returns whether this is the end.
-    fn advance(&mut self, most_steps: u64) -> bool {
-        let mut left = most_steps;
-        while let (Some(&moment), None) = (self.moments.get(self.course.times.len()), self.course.divergence) {
-            let steps = moment - self.world.steps();
-            self.world.advance(steps.min(left));
-            if let Status::Diverged(divergence) = self.world.status() {
-                // The last finite state is that before the step which was given up.
-                let last = divergence.step - 1;
-                if self.course.times.is_empty() || last > self.moments[self.course.times.len() - 1] {
-                    self.note(last);
-                }
-                self.course.divergence = Some(divergence);
-            } else if steps > left {
-                return false;
-            } else {
-                left -= steps;
-                self.note(moment);
-            }
-        }
-        true
-    }
-
-    /// Notes down the present state as that after a step.
-    fn note(&mut self, step: u64) {
-        self.course.times.push(step as f64 * self.step);
-        self.course.diagnostics.push(self.world.diagnostics());
-    }
-
-    /// The last step to note down.
-    fn last(&self) -> u64 {
-        self.moments.last().copied().unwrap_or(0)
-    }
-
-    /// Steps done with; what a run that blew up does not have to take is done with, too.
-    fn steps(&self) -> u64 {
-        if self.course.divergence.is_some() { self.last() } else { self.world.steps() }
-    }
-}
-
-/// The steps of a run to note down: those of all frames with some between them, or of evenly chosen frames.
-fn moments(scene: &Scene, run: usize) -> Vec<u64> {
+/// The moments of a run to note down, rising: those of all frames with some between them, or of evenly chosen frames. Of the
+/// time between two that are looked at `closer` (s) there are as many as usually of the whole scene, and the steps nearest
+/// to each of `shown` (s).
+pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, shown: &[f64]) -> Vec<Moment> {
     let last = scene.last_frame();
-    let mut steps: Vec<u64> = if last == 0 {
-        vec![0]
+    let rate = scene.frames_per_second;
+    let mut moments: Vec<Moment> = if last == 0 {
+        vec![scene.moment(0)]
     } else if last > MOST_MOMENTS {
         let frame = |at: u64| (u128::from(at) * u128::from(last) / u128::from(MOST_MOMENTS)) as u64;
-        (0..=MOST_MOMENTS).map(|at| scene.frame_step(run, frame(at))).collect()
+        (0..=MOST_MOMENTS).map(|at| scene.moment(frame(at))).collect()
     } else {
         let parts = FEWEST_MOMENTS.div_ceil(last);
-        let pace = scene.frames_per_second * scene.runs[run].step;
         // At whole frames that is the frame's own step, to the bit.
-        (0..=last * parts).map(|at| (at as f64 / parts as f64 / pace).round() as u64).collect()
+        (0..=last * parts).map(|at| Moment { count: at as f64 / parts as f64, rate }).collect()
     };
-    steps.dedup();
-    steps
+    let end = world.steps_at(scene.moment(last));
+    let closely = closer.into_iter().flat_map(|[start, end]| {
+        (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
+    });
+    let more = closely.chain(shown.iter().copied()).map(Moment::at);
+    moments.extend(more.map(|moment| if world.steps_at(moment) > end { scene.moment(last) } else { moment }));
+    moments.sort_by_key(|&moment| world.steps_at(moment));
+    moments.dedup_by_key(|moment| world.steps_at(*moment));
+    moments
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Limits;
-    use crate::sequence::Sequence;
 
     fn scene(duration: &str, rate: &str, step: &str) -> Scene {
         let text = format!(
@@ -206,9 +110,9 @@ mod tests {
     fn every_frame_is_in_it_with_moments_between_them() {
         let scene = scene("0.5", "60", "T/70");
         let history = History::new(&scene, &[0, 1]);
-        let mut sequence = Sequence::new(&scene, &[0, 1]);
+        let mut runner = Runner::new(&scene, &[0, 1]);
         for index in 0..=scene.last_frame() {
-            for (run, course) in sequence.frame(index).runs.iter().zip(&history.courses) {
+            for (run, course) in runner.frame(index).runs.iter().zip(&history.courses) {
                 let at = course.times.iter().position(|time| time.to_bits() == run.snapshot.time.to_bits());
                 let at = at.unwrap_or_else(|| panic!("frame {index} is missing"));
                 // NaN equals nothing: compared as text.
@@ -228,14 +132,15 @@ mod tests {
     #[test]
     fn however_it_is_cut_up_it_is_the_same() {
         let scene = scene("0.1", "20", "T/2");
+        let end = scene.moment(scene.last_frame());
         let whole = format!("{:?}", History::new(&scene, &[0, 1]));
         for slice in [1, 3, 1000] {
-            let mut rehearsal = Rehearsal::new(&scene, &[0, 1]);
-            while !rehearsal.advance(slice) {
-                assert!(rehearsal.steps() < rehearsal.steps_at_end());
+            let mut runner = Runner::new(&scene, &[0, 1]).with_course();
+            while !runner.advance_towards(end, slice) {
+                assert!(runner.steps() < runner.steps_at(end));
             }
-            assert_eq!(rehearsal.steps(), rehearsal.steps_at_end());
-            assert_eq!(format!("{:?}", rehearsal.finish()), whole);
+            assert_eq!(runner.steps(), runner.steps_at(end));
+            assert_eq!(format!("{:?}", runner.history()), whole);
         }
         assert_eq!(History::new(&scene, &[1]).courses[0].run, 1);
     }
@@ -243,24 +148,27 @@ mod tests {
     #[test]
     fn many_frames_are_sampled_and_few_moments_are_all_taken() {
         let long = scene("100", "600", "T/70");
-        let steps = moments(&long, 0);
-        assert_eq!(steps.len() as u64, MOST_MOMENTS + 1);
-        assert_eq!((steps[0], steps[2000]), (0, long.frame_step(0, long.last_frame())));
+        let steps = |scene: &Scene, run: usize| -> Vec<u64> {
+            let world = scene.world(run);
+            moments(scene, &world, None, &[]).into_iter().map(|moment| world.steps_at(moment)).collect()
+        };
+        let sampled = steps(&long, 0);
+        assert_eq!(sampled.len() as u64, MOST_MOMENTS + 1);
+        assert_eq!((sampled[0], sampled[2000]), (0, long.frame_step(0, long.last_frame())));
         // Fewer steps than moments: each of them once.
         let short = scene("0.01", "100", "T/70");
-        let steps = moments(&short, 1);
-        assert_eq!(steps, (0..=short.frame_step(1, 1)).collect::<Vec<_>>());
+        assert_eq!(steps(&short, 1), (0..=short.frame_step(1, 1)).collect::<Vec<_>>());
         // A scene of one frame.
-        assert_eq!(moments(&scene("0.1", "1", "T/70"), 0), [0]);
+        assert_eq!(steps(&scene("0.1", "1", "T/70"), 0), [0]);
     }
 
     #[test]
     fn what_is_looked_at_closely_has_more_moments() {
         let scene = scene("3", "60", "T/70");
         let usual = History::new(&scene, &[0, 1]);
-        let mut rehearsal = Rehearsal::new(&scene, &[0, 1]).with(&scene, Some([0.0, 0.1]), &[1.2345, 9.0]);
-        while !rehearsal.advance(u64::MAX) {}
-        let closer = rehearsal.finish();
+        let mut runner = Runner::new(&scene, &[0, 1]).with_closer_course(Some([0.0, 0.1]), &[1.2345, 9.0]);
+        runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+        let closer = runner.history();
         for (usual, closer) in usual.courses.iter().zip(&closer.courses) {
             assert!(closer.times.windows(2).all(|two| two[0] < two[1]));
             let step = scene.runs[closer.run].step;

@@ -10,13 +10,13 @@
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
 //! use localshape::gpu::{AdapterChoice, Gpu};
 //! use localshape::scene::{Limits, Scene};
-//! use localshape::sequence::Sequence;
+//! use localshape::runner::Runner;
 //! use localshape::{picture, render::Renderer};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = Scene::load("scenes/fig4b.toml".as_ref(), &Limits::default())?;
 //! // Both runs, half a second after they touched the floor.
-//! let frame = Sequence::new(&scene, &[0, 1]).frame(30);
+//! let frame = Runner::new(&scene, &[0, 1]).frame(30);
 //! assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 0);
 //! assert_eq!(frame.runs[1].snapshot.diagnostics.turned_over, 9);
 //! # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
@@ -38,8 +38,8 @@
 //! scene file ─▶ Scene ─▶ World (one per run) ─▶ Frame of Snapshots ─▶ Picture ─▶ image ─▶ files
 //! ```
 //!
-//! [`scene`] reads and resolves, [`sim`] simulates in double precision, [`sequence`] hands out frames, `picture` makes
-//! plain data of a frame, `render` draws it, [`history`] tells what comes before and after it, [`moments`] takes the
+//! [`scene`] reads and resolves, [`sim`] simulates in double precision, [`runner`] advances runs and hands out frames,
+//! `picture` makes plain data of a frame, `render` draws it, `artist` does both, [`history`] tells what comes before and after it, [`moments`] takes the
 //! states that a figure shows, [`table`] measures what the paper tells in numbers, [`output`] writes files, `animation` makes
 //! one file of frames, [`cli`] is the program. Without the feature `render` (on by default) the crate simulates and needs no
 //! graphics library.
@@ -49,6 +49,8 @@ pub use glam;
 
 #[cfg(feature = "render")]
 pub mod animation;
+#[cfg(feature = "render")]
+pub mod artist;
 pub mod cli;
 pub mod colour;
 pub mod golden;
@@ -62,8 +64,8 @@ pub mod paper;
 pub mod picture;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod runner;
 pub mod scene;
-pub mod sequence;
 mod shell;
 pub mod sim;
 pub mod table;

@@ -1,12 +1,13 @@
 //! What figures need of their simulations: states of runs at chosen moments, and the course of a scene for strips.
 
-use crate::history::{History, Rehearsal};
+use crate::history::History;
+use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
-use crate::sim::snapshot::{RunFrame, Snapshot, Status};
-use crate::sim::world::World;
+use crate::sim::snapshot::{RunFrame, Snapshot};
+use crate::sim::world::Moment;
+use glam::DVec3;
 use rayon::prelude::*;
-use std::borrow::Cow;
 
 /// What a figure shows of its simulations.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +16,17 @@ pub struct Moments {
     pub cells: Vec<Vec<RunFrame>>,
     /// The course of the first scene, if strips are shown.
     pub history: Option<History>,
+    /// What a diagram of forces shows of each run of each scene; empty for other figures.
+    pub forces: Vec<Vec<Forces>>,
+}
+
+/// A run at its start and the forces there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Forces {
+    /// The state.
+    pub snapshot: Snapshot,
+    /// The internal forces on each node (N), after Eq. (1) or Eq. (4) of the paper, without gravity.
+    pub on_nodes: Vec<DVec3>,
 }
 
 impl Moments {
@@ -29,12 +41,12 @@ impl Moments {
 
     /// The states behind a figure, each with a name of its own: those of a contact sheet cell by cell; of a diagram of
     /// forces those at the start of all runs of its scenes.
-    pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, Cow<'a, Snapshot>)> {
+    pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, &'a Snapshot)> {
         self.runs_and_states(figure).into_iter().map(|(name, _, state)| (name, state)).collect()
     }
 
     /// The same with the scene and the run in it that each is of.
-    pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, Cow<'a, Snapshot>)> {
+    pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, &'a Snapshot)> {
         let mut states = self.named_states(figure);
         // Two scenes may have one title.
         for at in 1..states.len() {
@@ -46,7 +58,7 @@ impl Moments {
         states
     }
 
-    fn named_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, Cow<'a, Snapshot>)> {
+    fn named_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, &'a Snapshot)> {
         let named = |scene: &Scene, run: usize| format!("{} · {}", scene.title, scene.runs[run].name);
         match &figure.content {
             Content::Sheet(sheet) => {
@@ -56,18 +68,15 @@ impl Moments {
                         let (scene, run, _) = sheet.cell(row, column);
                         let scene = &sheet.scenes[scene];
                         let name = format!("{}, row {}, column {}", named(scene, run), row + 1, column + 1);
-                        (name, (scene, run), Cow::Borrowed(&cell.snapshot))
+                        (name, (scene, run), &cell.snapshot)
                     })
                 })
                 .collect()
             }
             Content::Forces(forces) => {
-                let runs = |scene: &'a Scene| (0..scene.runs.len()).map(move |run| (scene, run));
-                let states = forces.scenes.iter().flat_map(runs);
-                let state = |(scene, run): OfRun<'a>| {
-                    (named(scene, run), (scene, run), Cow::Owned(scene.world(run).snapshot()))
-                };
-                states.map(state).collect()
+                let scenes = forces.scenes.iter().zip(&self.forces);
+                let states = scenes.flat_map(|(scene, runs)| (0..).zip(runs).map(move |(run, of)| (scene, run, of)));
+                states.map(|(scene, run, of)| (named(scene, run), (scene, run), &of.snapshot)).collect()
             }
         }
     }
@@ -77,82 +86,90 @@ impl Moments {
 type OfRun<'a> = (&'a Scene, usize);
 
 /// A figure's simulations on their way, in slices.
-pub struct Taking {
-    rows: usize,
-    columns: usize,
-    parts: Vec<Part>,
-    course: Option<Rehearsal>,
+pub struct Taking<'a> {
+    figure: &'a Figure,
+    parts: Vec<Part<'a>>,
+    /// The parts with the courses of the first scene's runs, if strips are shown.
+    courses: Option<Vec<usize>>,
 }
 
 /// One run on its way through the moments that are shown of it.
-struct Part {
-    run: usize,
-    world: World,
-    /// Steps to stop at, rising, with the cells (row by row) that show the state then.
-    stops: Vec<(u64, Vec<usize>)>,
-    taken: Vec<Snapshot>,
+struct Part<'a> {
+    /// Index of the scene, and of the run in it.
+    of: [usize; 2],
+    runner: Runner<'a>,
+    /// Moments to stop at, rising, with the cells (row by row) that show the state then.
+    stops: Vec<(Moment, Vec<usize>)>,
+    taken: Vec<RunFrame>,
+    /// Where it ends.
+    end: Moment,
 }
 
-impl Taking {
+impl<'a> Taking<'a> {
     /// The simulations of a figure at their start.
-    pub fn new(figure: &Figure) -> Self {
+    pub fn new(figure: &'a Figure) -> Self {
         match &figure.content {
-            Content::Sheet(sheet) => Self::of_sheet(sheet),
-            Content::Forces(_) => Self { rows: 0, columns: 0, parts: Vec::new(), course: None },
+            Content::Sheet(sheet) => Self::of_sheet(figure, sheet),
+            Content::Forces(_) => Self { figure, parts: Vec::new(), courses: None },
         }
     }
 
-    fn of_sheet(sheet: &Sheet) -> Self {
-        let (rows, columns) = (sheet.rows.len(), sheet.columns.len());
-        let mut parts: Vec<(usize, Part)> = Vec::new();
-        for at in 0..rows * columns {
-            let (scene_at, run, time) = sheet.cell(at / columns, at % columns);
-            let scene = &sheet.scenes[scene_at];
-            let step = (time / scene.runs[run].step).round() as u64;
-            let known = parts.iter().position(|(scene, part)| (*scene, part.run) == (scene_at, run));
-            let known = known.unwrap_or_else(|| {
-                let part = Part { run, world: scene.world(run), stops: Vec::new(), taken: Vec::new() };
-                parts.push((scene_at, part));
+    fn of_sheet(figure: &'a Figure, sheet: &'a Sheet) -> Self {
+        let mut parts: Vec<Part<'a>> = Vec::new();
+        let mut part = |of: [usize; 2]| match parts.iter().position(|part| part.of == of) {
+            Some(known) => known,
+            None => {
+                let runner = Runner::new(&sheet.scenes[of[0]], &[of[1]]);
+                parts.push(Part { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
-            });
-            let stops = &mut parts[known].1.stops;
-            match stops.binary_search_by_key(&step, |stop| stop.0) {
-                Ok(place) => stops[place].1.push(at),
-                Err(place) => stops.insert(place, (step, vec![at])),
             }
-        }
-        let course = (!sheet.strips.is_empty()).then(|| {
-            let scene = &sheet.scenes[0];
+        };
+        let (rows, columns) = (sheet.rows.len(), sheet.columns.len());
+        let cells = (0..rows * columns).map(|at| sheet.cell(at / columns, at % columns));
+        let shown: Vec<_> = cells.map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
+        let scene = &sheet.scenes[0];
+        let courses = (!sheet.strips.is_empty()).then(|| {
             // The runs shown, in the order of the scene.
-            let runs: Vec<_> = (0..scene.runs.len())
-                .filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name))
-                .collect();
-            let shown: Vec<_> = sheet.columns.iter().filter_map(|column| column.time).collect();
-            Rehearsal::new(scene, &runs).with(scene, sheet.split.map(|split| [sheet.from, split]), &shown)
+            let runs =
+                (0..scene.runs.len()).filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name));
+            runs.map(|run| part([0, run])).collect::<Vec<_>>()
         });
-        Self { rows, columns, parts: parts.into_iter().map(|(_, part)| part).collect(), course }
+        for (at, (part, moment)) in shown.into_iter().enumerate() {
+            let Part { runner, stops, end, .. } = &mut parts[part];
+            let steps = runner.steps_at(moment);
+            match stops.binary_search_by_key(&steps, |stop| runner.steps_at(stop.0)) {
+                Ok(place) => stops[place].1.push(at),
+                Err(place) => stops.insert(place, (moment, vec![at])),
+            }
+            *end = stops.last().expect("one at least").0;
+        }
+        let times: Vec<_> = sheet.columns.iter().filter_map(|column| column.time).collect();
+        let closer = sheet.split.map(|split| [sheet.from, split]);
+        let parts = parts.into_iter().enumerate().map(|(at, mut part)| {
+            if courses.as_ref().is_some_and(|courses| courses.contains(&at)) {
+                part.runner = part.runner.with_closer_course(closer, &times);
+                let last = scene.moment(scene.last_frame());
+                if part.runner.steps_at(last) > part.runner.steps_at(part.end) {
+                    part.end = last;
+                }
+            }
+            part
+        });
+        Self { figure, parts: parts.collect(), courses }
     }
 
     /// Goes on, each run by `most_steps` at most, and returns whether all are at their end. However the way is cut up,
     /// the result has the same bits.
     pub fn advance(&mut self, most_steps: u64) -> bool {
-        let Self { parts, course, .. } = self;
-        let (arrived, ended) = rayon::join(
-            || parts.par_iter_mut().map(|part| part.advance(most_steps)).reduce(|| true, |one, other| one && other),
-            || course.as_mut().is_none_or(|course| course.advance(most_steps)),
-        );
-        arrived && ended
+        let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
+        arrived.reduce(|| true, |one, other| one && other)
     }
 
     /// Steps done with so far, and steps at the end, of all simulations together.
     pub fn steps(&self) -> [u64; 2] {
-        let last = |part: &Part| part.stops.last().map_or(0, |stop| stop.0);
-        let of_parts = self.parts.iter().fold([0_u64; 2], |[done, all], part| {
-            let end = last(part);
-            [done.saturating_add(part.world.steps().min(end)), all.saturating_add(end)]
-        });
-        let of_course = self.course.as_ref().map_or([0; 2], |course| [course.steps(), course.steps_at_end()]);
-        [0, 1].map(|at| of_parts[at].saturating_add(of_course[at]))
+        self.parts.iter().fold([0_u64; 2], |[done, all], part| {
+            [done.saturating_add(part.runner.steps()), all.saturating_add(part.runner.steps_at(part.end))]
+        })
     }
 
     /// What was taken.
@@ -160,43 +177,56 @@ impl Taking {
     /// # Panics
     /// If the simulations are not at their end.
     pub fn finish(self) -> Moments {
-        let mut cells: Vec<Option<RunFrame>> = vec![None; self.rows * self.columns];
-        for part in self.parts {
-            assert_eq!(part.taken.len(), part.stops.len(), "finished when all moments are taken");
-            for ((_, places), snapshot) in part.stops.iter().zip(part.taken) {
-                for &place in places {
-                    cells[place] = Some(RunFrame { run: part.run, snapshot: snapshot.clone() });
+        match &self.figure.content {
+            Content::Sheet(sheet) => {
+                let mut cells: Vec<Option<RunFrame>> = vec![None; sheet.rows.len() * sheet.columns.len()];
+                for part in &self.parts {
+                    assert_eq!(part.taken.len(), part.stops.len(), "finished when all moments are taken");
+                    for ((_, places), taken) in part.stops.iter().zip(&part.taken) {
+                        places.iter().for_each(|&place| cells[place] = Some(taken.clone()));
+                    }
                 }
+                let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
+                let rows = cells.chunks(sheet.columns.len().max(1)).map(<[RunFrame]>::to_vec).collect();
+                let history = self.courses.map(|courses| {
+                    let mut all = courses.into_iter().map(|part| self.parts[part].runner.history());
+                    let mut history = all.next().unwrap_or_default();
+                    history.courses.extend(all.flat_map(|one| one.courses));
+                    history
+                });
+                Moments { cells: rows, history, forces: Vec::new() }
+            }
+            Content::Forces(forces) => {
+                let of_run = |scene: &Scene, run: usize| Forces {
+                    snapshot: scene.world(run).snapshot(),
+                    on_nodes: scene.runs[run].model.forces_at_start(&scene.body, &scene.initial),
+                };
+                let of_scene = |scene: &Scene| (0..scene.runs.len()).map(|run| of_run(scene, run)).collect();
+                Moments { forces: forces.scenes.iter().map(of_scene).collect(), ..Moments::default() }
             }
         }
-        let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
-        let rows = cells.chunks(self.columns.max(1)).map(<[RunFrame]>::to_vec).collect();
-        Moments { cells: rows, history: self.course.map(Rehearsal::finish) }
     }
 }
 
-impl Part {
+impl Part<'_> {
     fn advance(&mut self, most_steps: u64) -> bool {
         let mut left = most_steps;
         while let Some(&(stop, _)) = self.stops.get(self.taken.len()) {
-            let steps = stop - self.world.steps();
-            // What blew up only lets its clock go on.
-            let through = if self.world.status() == Status::Ok { left } else { u64::MAX };
-            self.world.advance(steps.min(through));
-            if steps > through {
+            let before = self.runner.steps();
+            if !self.runner.advance_towards(stop, left) {
                 return false;
             }
-            left = left.saturating_sub(steps);
-            self.taken.push(self.world.snapshot());
+            // What blew up only lets its clock go on.
+            left = left.saturating_sub(self.runner.steps() - before);
+            self.taken.extend(self.runner.snapshots());
         }
-        true
+        self.runner.advance_towards(self.end, left)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sequence::Sequence;
 
     #[test]
     fn moments_are_those_of_the_scene_however_the_way_is_cut_up() {
@@ -211,7 +241,7 @@ mod tests {
         // A run without rotations has no residual, and NaN equals nothing: compared as text.
         assert_eq!(format!("{:?}", taking.finish()), format!("{whole:?}"));
         let last = sheet.scenes[0].last_frame();
-        let frame = Sequence::new(&sheet.scenes[0], &[0, 1]).frame(last);
+        let frame = Runner::new(&sheet.scenes[0], &[0, 1]).frame(last);
         let time = Some(sheet.scenes[0].frame_time(last));
         let column = sheet.columns.iter().position(|column| column.time == time).expect("the last moment is shown");
         assert_eq!(whole.cells[1][column].snapshot.position, frame.runs[1].snapshot.position);

@@ -237,6 +237,7 @@ impl Compare {
         let drawn = draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested());
         let drawn = drawn.map_err(|error| match error {
             DrawError::Render(error) => super::render::failed(error),
+            DrawError::Disk(_) => Failure::files(error.to_string()),
             DrawError::Wish(message) => Failure::usage(message),
         })?;
         // Whoever stopped it while the last picture was drawn does not want it accepted.

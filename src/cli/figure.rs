@@ -6,11 +6,10 @@ use super::interrupt;
 use super::options::processors;
 use super::record;
 use super::render::{failed, samples, size};
+use crate::artist::{FigureError, draw_figure};
 use crate::gpu::{AdapterChoice, Gpu};
-use crate::moments::{Moments, Taking};
+use crate::moments::{Forces, Moments, Taking};
 use crate::output::{self, AtomicFile, FolderLock, OutputError};
-use crate::picture::compose_figure;
-use crate::render::Renderer;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, Theme, nearest_name};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
@@ -163,12 +162,13 @@ impl FigureCommand {
     fn make(&self, figure: &Figure, path: &Path, gpu: &Gpu) -> Result<Option<Value>, Failure> {
         let mut file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
-        let picture = compose_figure(figure, &moments).map_err(|error| {
-            let [width, height] = figure.size;
-            Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
+        let image = draw_figure(gpu, figure, &moments, self.samples).map_err(|error| match error {
+            FigureError::Render(error) => failed(error),
+            FigureError::NoRoom(error) => {
+                let [width, height] = figure.size;
+                Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
+            }
         })?;
-        let drawn = Renderer::new(gpu, figure.size, self.samples).and_then(|mut renderer| renderer.draw(&picture));
-        let image = drawn.map_err(failed)?;
         if interrupt::requested() {
             return Ok(None);
         }
@@ -269,15 +269,15 @@ impl FigureCommand {
 fn numbers(figure: &Figure, moments: &Moments) -> Value {
     match &figure.content {
         Content::Forces(forces) => {
-            let of_scene = |scene: &Scene| {
-                let runs = scene.runs.iter().enumerate().map(|(at, run)| {
+            let of_scene = |(scene, found): (&Scene, &Vec<Forces>)| {
+                let runs = scene.runs.iter().zip(found).map(|(run, found)| {
                     let unit = run.model.stiffness() * scene.view.side;
-                    let forces: Vec<_> = scene.forces(at).iter().map(|force| (*force / unit).to_array()).collect();
+                    let forces: Vec<_> = found.on_nodes.iter().map(|force| (*force / unit).to_array()).collect();
                     json!({ "run": run.name, "forces_over_stiffness_and_side": forces })
                 });
                 json!({ "scene": scene.title, "runs": runs.collect::<Vec<_>>() })
             };
-            Value::Array(forces.scenes.iter().map(of_scene).collect())
+            Value::Array(forces.scenes.iter().zip(&moments.forces).map(of_scene).collect())
         }
         Content::Sheet(sheet) => {
             let cell = |row: usize, column: usize| {

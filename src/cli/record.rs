@@ -6,13 +6,13 @@ use super::interrupt;
 use super::options::RunOptions;
 use super::report;
 use super::scenes::Job;
-use crate::history::{History, Rehearsal};
+use crate::history::History;
 use crate::output::{
     Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, STATES_FILE, Spent, StatesWriter, Summary,
     Timings, thread_time,
 };
+use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
-use crate::sequence::Sequence;
 use crate::sim::body::Body;
 use crate::sim::snapshot::Frame;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -153,21 +153,12 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(self.folder, self.scene, &self.runs)).transpose()?;
 
-        if let Some(pictures) = pictures.as_mut().filter(|pictures| pictures.need_history())
-            && let Some(history) = self.rehearse(pool, options.quiet)
-        {
-            pictures.take_history(&history);
-        }
-        let with_field = pictures.is_some();
-        let made = self.frames(pool, options.quiet, with_field, |frame| {
+        let made = self.simulate(pool, options.quiet, pictures.as_deref_mut(), |frame, pictures| {
             diagnostics.write(frame)?;
             if let Some(states) = &mut states {
                 states.write(frame)?;
             }
-            if let Some(pictures) = &mut pictures {
-                pictures.draw(frame)?;
-            }
-            Ok(())
+            pictures.map_or(Ok(()), |pictures| pictures.draw(frame))
         });
 
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
@@ -204,53 +195,51 @@ impl Recording<'_> {
         result.and(written)
     }
 
-    /// Simulates once from start to end, whichever frames were asked for: a frame drawn alone must look as it does among
-    /// others. `None` if the user wants to stop, and then no frame is begun, either.
-    fn rehearse(&mut self, pool: &ThreadPool, quiet: bool) -> Option<History> {
-        let mut rehearsal = pool.install(|| Rehearsal::new(self.scene, &self.runs));
-        let bar = console::progress(&self.scene.title, rehearsal.steps_at_end(), quiet);
-        bar.set_message("simulating once ahead for the strips");
-        let slice = slice(&self.scene.body);
-        let mut arrived = false;
-        while !arrived && !interrupt::requested() {
-            let clock = Clock::thread();
-            arrived = pool.install(|| rehearsal.advance(slice));
-            self.times.simulate += Spent { cpu: None, ..clock.spent() };
-            bar.set_position(rehearsal.steps());
-        }
-        bar.finish_and_clear();
-        arrived.then(|| rehearsal.finish())
-    }
-
-    /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field.
-    fn frames(
+    /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field, and
+    /// some of them its course before the first frame.
+    fn simulate<'p>(
         &mut self,
         pool: &ThreadPool,
         quiet: bool,
-        with_field: bool,
-        mut take: impl FnMut(&Frame) -> Result<(), Failure>,
+        mut pictures: Option<&mut (dyn Pictures + 'p)>,
+        mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
+        let needs_field = pictures.is_some();
+        let needs_course = pictures.as_ref().is_some_and(|pictures| pictures.need_history());
         // In the pool from the beginning, so that no other threads are ever started.
-        let mut sequence = pool.install(|| Sequence::new(self.scene, &self.runs));
-        if !with_field {
-            sequence = sequence.without_field();
-        }
-        let steps = sequence.steps_at(self.frames.last().copied().unwrap_or(0));
-        let bar = console::progress(&self.scene.title, steps, quiet);
-        let slice = slice(&self.scene.body);
-        for (number, &index) in self.frames.iter().enumerate() {
-            bar.set_message(format!("frame {number} of {}", self.frames.len()));
-            let mut frame = None;
-            while frame.is_none() && !interrupt::requested() {
-                let clock = Clock::thread();
-                frame = pool.install(|| sequence.advance_towards(index, slice).then(|| sequence.frame(index)));
-                self.times.simulate += Spent { cpu: None, ..clock.spent() };
-                bar.set_position(sequence.steps());
+        let mut frames = pool.install(|| {
+            let mut runner = Runner::new(self.scene, &self.runs);
+            if !needs_field {
+                runner = runner.without_field();
             }
-            let Some(frame) = frame else { break };
-            take(&frame)?;
-            self.summary.frames.recorded += 1;
-            self.last = Some(frame);
+            if needs_course {
+                runner = runner.with_course();
+            }
+            Frames::new(runner, &self.frames, needs_course)
+        });
+        let bar = console::progress(&self.scene.title, frames.steps()[1], quiet);
+        if needs_course {
+            bar.set_message("simulating ahead for the strips");
+        }
+        let slice = slice(&self.scene.body);
+        while !interrupt::requested() {
+            let clock = Clock::thread();
+            let next = pool.install(|| frames.next(slice));
+            self.times.simulate += Spent { cpu: None, ..clock.spent() };
+            bar.set_position(frames.steps()[0]);
+            match next.map_err(|error| Failure::files(format!("states cannot be kept on disk: {error}")))? {
+                Next::Working => {}
+                Next::Course(history) => {
+                    pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(&history));
+                }
+                Next::Frame(frame) => {
+                    bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
+                    take(&frame, pictures.as_deref_mut())?;
+                    self.summary.frames.recorded += 1;
+                    self.last = Some(frame);
+                }
+                Next::Done => break,
+            }
         }
         bar.finish_and_clear();
         Ok(())

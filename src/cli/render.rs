@@ -7,11 +7,11 @@ use super::interrupt;
 use super::options::{RunOptions, SceneOptions};
 use super::record::{self, Pictures, Studio};
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
+use crate::artist::Artist;
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::history::History;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
-use crate::picture::Composer;
-use crate::render::{RenderError, Renderer};
+use crate::render::RenderError;
 use crate::scene::Scene;
 use crate::sim::snapshot::Frame;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -256,7 +256,6 @@ impl Drop for Films<'_> {
 
 impl Studio for Device {
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
-        let transparent = scene.view.look.transparent;
         let films = match &self.shared {
             Some(shared) => {
                 let (spool, kept) = (Spool::new(folder, scene.view.size)?, self.keep.then(|| folder.to_owned()));
@@ -271,9 +270,7 @@ impl Studio for Device {
         });
         Ok(Box::new(Drawing {
             scene,
-            composer: if transparent { Composer::on_ground(scene, [255; 3]) } else { Composer::new(scene) },
-            on_black: transparent.then(|| Composer::on_ground(scene, [0; 3])),
-            renderer: Renderer::new(&self.gpu, scene.view.size, self.samples).map_err(failed)?,
+            artist: Artist::new(&self.gpu, scene, self.samples).map_err(failed)?,
             writer: FrameWriter::start_with(self.keep.then_some(folder), self.writers, tap),
             films,
             keep: self.keep,
@@ -288,11 +285,7 @@ impl Studio for Device {
 /// The pictures of one scene.
 struct Drawing<'a> {
     scene: &'a Scene,
-    /// On the scene's background, or on white if it has none.
-    composer: Composer<'a>,
-    /// On black, if the scene has no background.
-    on_black: Option<Composer<'a>>,
-    renderer: Renderer,
+    artist: Artist<'a>,
     writer: FrameWriter,
     films: Option<Films<'a>>,
     /// Whether frames stay.
@@ -319,20 +312,15 @@ impl Pictures for Drawing<'_> {
     }
 
     fn take_history(&mut self, history: &History) {
-        let composers = std::iter::once(&mut self.composer).chain(&mut self.on_black);
-        composers.for_each(|composer| composer.set_history(history));
+        self.artist.set_history(history);
     }
 
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
         let clock = Clock::thread();
-        let picture = self.composer.compose(frame);
-        let on_black = self.on_black.as_ref().map(|composer| composer.compose(frame));
+        let composed = self.artist.compose(frame);
         self.compose += clock.spent();
         let clock = Clock::thread();
-        let pixels = match &on_black {
-            None => self.renderer.draw(&picture).map_err(failed)?.into_raw(),
-            Some(on_black) => self.renderer.draw_transparent(&picture, on_black).map_err(failed)?.into_raw(),
-        };
+        let pixels = self.artist.draw(&composed).map_err(failed)?;
         self.draw += clock.spent();
         let tags = Tags::new(self.scene, frame, &self.adapter);
         Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, tags })?)

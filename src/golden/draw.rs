@@ -4,16 +4,15 @@ use super::distance::kind;
 use super::record::{Drawn, Plan, Record};
 use super::side::{Kind, Side, Source};
 use super::states::{State, States, Step};
+use crate::artist::{Artist, FigureError, draw_figure as draw_figure_on};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
-use crate::history::{History, Rehearsal};
 use crate::moments::Taking;
 use crate::output::{FigureTags, Label, Tags, frame_file_name};
-use crate::picture::{Composer, compose_figure};
-use crate::render::{RenderError, Renderer};
+use crate::render::RenderError;
+use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
-use crate::sequence::Sequence;
-use crate::sim::snapshot::{Divergence, Frame, Status};
+use crate::sim::snapshot::{Divergence, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -85,6 +84,9 @@ pub(crate) enum DrawError {
     /// The device stopped working or refused.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// States that wait to be drawn could not be kept.
+    #[error("states cannot be kept on disk: {0}")]
+    Disk(#[from] std::io::Error),
     /// What was asked for is not there.
     #[error("{0}")]
     Wish(String),
@@ -168,27 +170,29 @@ fn draw_scene(
     if let Some(old) = old {
         plan = plan.with(old, last);
     }
-    let mut history = None;
-    if gpu.is_some() && scene.view.strip.is_some() {
-        let mut rehearsal = Rehearsal::new(&scene, &runs);
-        while !rehearsal.advance(SLICE) {
-            if !go_on() {
-                return Ok(None);
-            }
-        }
-        history = Some(rehearsal.finish());
-    }
-    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples, history.as_ref())).transpose()?;
+    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples)).transpose()?;
+    let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
-    let mut sequence = Sequence::new(&scene, &runs);
-    for index in plan.frames() {
-        while !sequence.advance_towards(index, SLICE) {
-            if !go_on() {
-                return Ok(None);
-            }
+    let needs_course = artist.is_some() && scene.view.strip.is_some();
+    let runner = Runner::new(&scene, &runs);
+    let runner = if needs_course { runner.with_course() } else { runner };
+    let frames: Vec<_> = plan.frames().into_iter().collect();
+    let mut frames = Frames::new(runner, &frames, needs_course);
+    loop {
+        if !go_on() {
+            return Ok(None);
         }
-        let frame = sequence.frame(index);
+        let frame = match frames.next(SLICE)? {
+            Next::Working => continue,
+            Next::Course(history) => {
+                artist.iter_mut().for_each(|artist| artist.set_history(&history));
+                continue;
+            }
+            Next::Frame(frame) => frame,
+            Next::Done => break,
+        };
+        let index = frame.index;
         for run in &frame.runs {
             let state = State::of(&run.snapshot, plan.places.contains(&index));
             let name = &scene.runs[run.run].name;
@@ -199,13 +203,12 @@ fn draw_scene(
             }
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
-            let (label, bytes) = artist.draw(&frame)?;
+            let pixels = artist.draw(&artist.compose(&frame))?;
+            let label = Label::Frame(Tags::new(&scene, &frame, &adapter));
+            let bytes = label.encode(size, &pixels);
             let file = frame_file_name(index);
             drawn.push(Drawn::new(&file, &label));
             pictures.insert(file, bytes);
-        }
-        if !go_on() {
-            return Ok(None);
         }
     }
     let cycle = scene.cycle();
@@ -242,11 +245,13 @@ fn draw_figure(
     }
     let (mut pictures, mut drawn) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = gpu {
-        let picture = compose_figure(&figure, &moments).map_err(|error| {
-            let [width, height] = figure.size;
-            DrawError::Wish(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
+        let image = draw_figure_on(gpu, &figure, &moments, samples).map_err(|error| match error {
+            FigureError::Render(error) => DrawError::Render(error),
+            FigureError::NoRoom(error) => {
+                let [width, height] = figure.size;
+                DrawError::Wish(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
+            }
         })?;
-        let image = Renderer::new(gpu, figure.size, samples)?.draw(&picture)?;
         let label = Label::Figure(FigureTags::new(&figure, &moments, &gpu.description().to_string()));
         let file = format!("{}.png", figure.name);
         drawn.push(Drawn::new(&file, &label));
@@ -271,42 +276,6 @@ fn samples(wish: &Wish, old: Option<&Record>) -> u32 {
     wish.samples.or(old.map(|old| old.samples)).unwrap_or(4)
 }
 
-/// Draws frames of one scene.
-struct Artist<'a> {
-    scene: &'a Scene,
-    /// On the scene's background, or on white and on black if it has none.
-    composers: Vec<Composer<'a>>,
-    renderer: Renderer,
-    adapter: String,
-}
-
-impl<'a> Artist<'a> {
-    fn new(gpu: &Gpu, scene: &'a Scene, samples: u32, history: Option<&History>) -> Result<Self, RenderError> {
-        let mut composers = match scene.view.look.transparent {
-            false => vec![Composer::new(scene)],
-            true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
-        };
-        if let Some(history) = history {
-            composers.iter_mut().for_each(|composer| composer.set_history(history));
-        }
-        let renderer = Renderer::new(gpu, scene.view.size, samples)?;
-        Ok(Self { scene, composers, renderer, adapter: gpu.description().to_string() })
-    }
-
-    /// A frame as a PNG file, and what it says about itself.
-    fn draw(&mut self, frame: &Frame) -> Result<(Label, Vec<u8>), RenderError> {
-        let pixels = match &self.composers[..] {
-            [on_white, on_black] => {
-                self.renderer.draw_transparent(&on_white.compose(frame), &on_black.compose(frame))?.into_raw()
-            }
-            composers => self.renderer.draw(&composers[0].compose(frame))?.into_raw(),
-        };
-        let label = Label::Frame(Tags::new(self.scene, frame, &self.adapter));
-        let bytes = label.encode(self.scene.view.size, &pixels);
-        Ok((label, bytes))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::Comparison;
@@ -328,9 +297,9 @@ mod tests {
         let mut states = States::default();
         for (number, run) in scene.runs.iter().enumerate() {
             let scene = if number == moved_run { moved } else { scene };
-            let mut sequence = Sequence::new(scene, &[number]);
+            let mut runner = Runner::new(scene, &[number]);
             for frame in (0..=scene.last_frame()).take(4) {
-                let snapshot = &sequence.frame(frame).runs[0].snapshot;
+                let snapshot = &runner.frame(frame).runs[0].snapshot;
                 states.add(&run.name, frame, State::of(snapshot, true));
             }
         }

@@ -4,9 +4,10 @@ use super::file::ViewFile;
 use super::resolve;
 use super::view::{View, Visible};
 use super::{Run, Scene};
-use crate::sim::body::{Body, State};
+use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ impl Run {
     /// A run of a name that is unique in its scene, with a time step (s). Its lines get their
     /// look from [`Scene::framed`].
     pub fn new(name: &str, model: Arc<dyn ElasticModel>, integrator: Integrator, step: f64) -> Self {
-        Self { name: name.into(), model, integrator, step, place: 0, colour: None }
+        Self { name: name.into(), model, integrator, step, kernel: Default::default(), place: 0, colour: None }
     }
 }
 
@@ -28,7 +29,7 @@ impl Scene {
     /// use localshape::glam::DVec3;
     /// use localshape::gpu::{AdapterChoice, Gpu};
     /// use localshape::scene::{Run, Scene};
-    /// use localshape::sequence::Sequence;
+    /// use localshape::runner::Runner;
     /// use localshape::sim::body::{Body, Dimension, Solids};
     /// use localshape::sim::integrate::Integrator;
     /// use localshape::sim::model::shape_based::ShapeBased;
@@ -52,7 +53,7 @@ impl Scene {
     /// scene.gravity = -9.8 * DVec3::Y;
     /// scene.initial.velocity.fill(DVec3::Y);
     ///
-    /// let frame = Sequence::new(&scene, &[0]).frame(6);
+    /// let frame = Runner::new(&scene, &[0]).frame(6);
     /// # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
     /// let gpu = Gpu::new(&AdapterChoice::Auto)?;
     /// let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;

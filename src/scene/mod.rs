@@ -49,11 +49,13 @@ pub use view::{
 pub(crate) use words::nearest as nearest_name;
 
 use crate::colour::Colour;
-use crate::sim::body::{Body, State};
+use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
+use crate::sim::world::{Kernel, Moment};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -103,6 +105,8 @@ pub struct Run {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// How a step is computed.
+    pub kernel: Kernel,
     /// Its place in the palette, which says what its lines look like ([`Palette::line`]). In a figure of several scenes,
     /// runs of one name have one place.
     pub(crate) place: usize,
@@ -128,10 +132,14 @@ impl Scene {
         frame as f64 / self.frames_per_second
     }
 
+    /// The moment that a frame shows.
+    pub fn moment(&self, frame: u64) -> Moment {
+        Moment { count: frame as f64, rate: self.frames_per_second }
+    }
+
     /// The step of a run after which a frame shows it: `round(n / (frames_per_second · ΔT))`.
     pub fn frame_step(&self, run: usize, frame: u64) -> u64 {
-        // As written: dividing twice would round ties to other steps.
-        (frame as f64 / (self.frames_per_second * self.runs[run].step)).round() as u64
+        self.moment(frame).step(self.runs[run].step)
     }
 }
 

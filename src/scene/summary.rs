@@ -7,7 +7,6 @@ use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::words;
-use crate::sim::world::cycle;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -110,7 +109,7 @@ impl Scene {
 
     /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), of which a scene's steps are fractions.
     pub fn cycle(&self) -> f64 {
-        self.runs.iter().map(|run| cycle(&self.body, run.model.stiffness())).fold(f64::INFINITY, f64::min)
+        self.runs.iter().map(|run| run.model.shortest_period(&self.body)).fold(f64::INFINITY, f64::min)
     }
 
     fn picture(&self) -> String {

@@ -1,4 +1,4 @@
-//! What is simulated: a [`Body`], which never changes, and its [`State`], which does.
+//! What is simulated: a [`Body`], which never changes.
 
 use super::hull::Hulls;
 pub use super::lists::IndexLists;
@@ -96,23 +96,6 @@ fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
 pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
-}
-
-/// The positions (m) and velocities (m/s) of a body's nodes at one moment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
-    /// Position of each node (m).
-    pub position: Vec<DVec3>,
-    /// Velocity of each node (m/s).
-    pub velocity: Vec<DVec3>,
-}
-
-impl State {
-    /// The nodes at `position`, at rest.
-    pub fn at_rest(position: Vec<DVec3>) -> Self {
-        let velocity = vec![DVec3::ZERO; position.len()];
-        Self { position, velocity }
-    }
 }
 
 #[cfg(test)]

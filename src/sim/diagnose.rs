@@ -1,9 +1,10 @@
 //! Diagnostics: energies, momenta, turned-over elements, volume and shape error.
 
-use super::body::{Body, ElementKind, State};
-use super::model::Measure;
+use super::body::{Body, ElementKind};
+use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::{Diagnostics, Placement};
+use super::state::Nodes;
 use super::topology;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -51,27 +52,27 @@ impl Diagnose {
     }
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
-    pub fn state(&self, state: &State, gravity: DVec3, measure: Measure) -> (Diagnostics, Vec<bool>, Placement) {
+    pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
         let mut diagnostics = Diagnostics {
-            elastic: measure.energy.unwrap_or(f64::NAN),
-            residual: measure.residual.unwrap_or(f64::NAN),
+            elastic: report.energy.unwrap_or(f64::NAN),
+            residual: report.residual(Report::ROTATION).unwrap_or(f64::NAN),
             ..Diagnostics::default()
         };
-        for ((&mass, &position), &velocity) in self.body.mass.iter().zip(&state.position).zip(&state.velocity) {
+        for ((&mass, &position), &velocity) in self.body.mass.iter().zip(state.position).zip(state.velocity) {
             diagnostics.kinetic += 0.5 * mass * velocity.length_squared();
             diagnostics.gravitational -= mass * gravity.dot(position);
             diagnostics.momentum += velocity * mass;
             diagnostics.angular_momentum += position.cross(velocity) * mass;
         }
         let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
-        let volumes: Vec<_> = elements.map(|element| self.volume(element, &state.position)).collect();
+        let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
         // Summed in the order of the elements, whoever measured them.
         let volume: f64 = volumes.iter().fold(0.0, |sum, (now, _)| sum + now);
         let turned_over: Vec<_> = volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect();
         diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
         diagnostics.volume_ratio = volume / self.volume_at_rest;
-        let placement = self.placement(&state.position);
-        diagnostics.shape_error = self.shape_error(&state.position, &placement);
+        let placement = self.placement(state.position);
+        diagnostics.shape_error = self.shape_error(state.position, &placement);
         (diagnostics, turned_over, placement)
     }
 
@@ -191,6 +192,7 @@ mod tests {
     use crate::sim::body::IndexLists;
     use crate::sim::body::Solids;
     use crate::sim::snapshot::Diagnostics;
+    use crate::sim::state::State;
     use glam::DQuat;
 
     fn at_rest(rest: Vec<DVec3>) -> Diagnostics {
@@ -198,8 +200,7 @@ mod tests {
         elements.push(&(0..rest.len() as u32).collect::<Vec<_>>());
         let body =
             Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, Solids::Ordered, None));
-        let nothing = Measure { energy: None, residual: None };
-        Diagnose::new(&body).state(&State::at_rest(rest), DVec3::ZERO, nothing).0
+        Diagnose::new(&body).state(State::at_rest(rest).nodes(), DVec3::ZERO, &Report::default()).0
     }
 
     /// Seven corners have no faces of their own: the affine estimate stands in.
@@ -239,7 +240,7 @@ mod tests {
             let tilt = DQuat::from_xyzw(0.1, -0.2, 0.01 * f64::from(turn), 0.9).normalize();
             let place = |at: &DVec3| tilt * (*at * DVec3::new(1.0, 1.0, height)) + DVec3::new(3.0, -2.0, 1.0);
             let now = State::at_rest(rest.iter().map(place).collect());
-            diagnose.state(&now, DVec3::ZERO, Measure { energy: None, residual: None }).0.turned_over
+            diagnose.state(now.nodes(), DVec3::ZERO, &Report::default()).0.turned_over
         };
         assert!((0..100).all(|turn| over(0.0, turn) == 0));
         assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
@@ -265,8 +266,10 @@ mod tests {
         let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 14], elements, Solids::Convex, None);
         let mut now = rest;
         now[..6].iter_mut().for_each(|corner| corner.y *= 0.5);
-        let nothing = Measure { energy: None, residual: None };
-        let ratio = Diagnose::new(&Arc::new(body)).state(&State::at_rest(now), DVec3::ZERO, nothing).0.volume_ratio;
+        let ratio = Diagnose::new(&Arc::new(body))
+            .state(State::at_rest(now).nodes(), DVec3::ZERO, &Report::default())
+            .0
+            .volume_ratio;
         assert!((ratio - (2.0 / 3.0 + 1.0) / (4.0 / 3.0 + 1.0)).abs() < 1e-12, "{ratio}");
     }
 }

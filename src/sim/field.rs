@@ -1,8 +1,9 @@
 //! Scalar fields over a body: what a picture can colour it by.
 
-use super::body::{Body, State};
+use super::body::Body;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
+use super::state::Nodes;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,26 +62,16 @@ impl Field {
         }
     }
 
-    /// The field at a state. `share_energy` adds to each node its part of the elastic energy (J).
-    pub(super) fn values(
-        self,
-        body: &Body,
-        state: &State,
-        placement: &Placement,
-        share_energy: impl FnOnce(&mut [f64]),
-    ) -> Vec<f64> {
+    /// The field at a state. `energies` is each node's part of the elastic energy (J), for the field that shows it.
+    pub(super) fn values(self, body: &Body, state: Nodes<'_>, placement: &Placement, energies: Vec<f64>) -> Vec<f64> {
         match self {
-            Self::Strain => body.elements.iter().map(|nodes| strain(body, nodes, &state.position)).collect(),
+            Self::Strain => body.elements.iter().map(|nodes| strain(body, nodes, state.position)).collect(),
             Self::Displacement => {
-                let nodes = body.rest.iter().zip(&state.position);
+                let nodes = body.rest.iter().zip(state.position);
                 nodes.map(|(&rest, &now)| now.distance(placement.place(rest))).collect()
             }
             Self::Speed => state.velocity.iter().map(|velocity| velocity.length()).collect(),
-            Self::ElasticEnergy => {
-                let mut energies = vec![0.0; body.len()];
-                share_energy(&mut energies);
-                energies
-            }
+            Self::ElasticEnergy => energies,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Hands: nodes that are held, or grabbed, dragged along a path and let go (the manipulation of the paper's title).
 
-use super::body::State;
 use super::motion::{Motion, Pose};
+use super::state::State;
 use glam::DVec3;
 
 /// Nodes that follow a hand from one time to another, whatever forces act on them.
@@ -30,82 +30,80 @@ impl Grip {
     }
 }
 
-/// A hand at work.
-#[derive(Clone, Debug)]
-pub(super) struct Hand {
-    grip: Grip,
-    held: Option<Held>,
+/// One step in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// When it begins (s).
+    pub begin: f64,
+    /// When it ends (s).
+    pub end: f64,
+    /// How long it takes (s): ΔT, of which the times above are multiples, rounded.
+    pub step: f64,
 }
 
-/// What a hand holds.
-#[derive(Clone, Debug)]
-struct Held {
-    /// The nodes as they were gripped (m).
-    gripped: Vec<DVec3>,
-    /// The mean of them (m).
-    middle: DVec3,
-    /// Where they are (m).
-    now: Vec<DVec3>,
-    /// How fast the last step has moved them (m/s).
-    velocity: Vec<DVec3>,
-}
-
-impl Hand {
-    pub(super) fn new(grip: Grip) -> Self {
-        Self { grip, held: None }
+/// What a grip remembers: whether it holds its nodes (0 or 1), then where each was when it was gripped (m).
+impl Grip {
+    /// How many numbers it remembers.
+    pub(super) fn width(&self) -> usize {
+        1 + 3 * self.nodes.len()
     }
 
-    /// Brings to a stop what it holds from the beginning.
-    pub(super) fn start(&mut self, state: &mut State) {
-        if self.grip.holds(0.0) {
-            self.grip.nodes.iter().for_each(|&node| state.velocity[node as usize] = DVec3::ZERO);
-            self.take(&state.position);
+    /// Its memory at the start. What it holds from the beginning is brought to a stop.
+    pub(super) fn start(&self, state: &mut State) -> Vec<f64> {
+        let mut memory = vec![0.0; self.width()];
+        if self.holds(0.0) {
+            self.nodes.iter().for_each(|&node| state.velocity[node as usize] = DVec3::ZERO);
+            self.take(&mut memory, |node| state.position[node as usize]);
         }
+        memory
     }
 
-    /// Takes the nodes where they are at the start of a step, if it is to hold them at the step's end (s).
-    pub(super) fn reach(&mut self, time: f64, state: &State) {
-        if self.held.is_none() && self.moves(time) {
-            self.take(&state.position);
+    /// Takes the nodes where they are at the start of a step, if it is to hold them at its end (s).
+    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
+        if memory[0] == 0.0 && self.moves(end) {
+            self.take(memory, position);
         }
     }
 
     /// Whether it moves nodes in a step that ends at a time (s): not in the one that ends just as it grips them.
-    fn moves(&self, time: f64) -> bool {
-        self.grip.from < time && time <= self.grip.until
+    fn moves(&self, end: f64) -> bool {
+        self.from < end && end <= self.until
     }
 
-    fn take(&mut self, position: &[DVec3]) {
-        let gripped: Vec<_> = self.grip.nodes.iter().map(|&node| position[node as usize]).collect();
-        let middle = gripped.iter().sum::<DVec3>() / gripped.len().max(1) as f64;
-        let velocity = vec![DVec3::ZERO; gripped.len()];
-        self.held = Some(Held { now: gripped.clone(), velocity, gripped, middle });
-    }
-
-    /// Moves what it holds at the end of a step (s) that ends at a time (s).
-    ///
-    /// A node's velocity is the way it has gone in the step, over the step: with that it flies on when it is let go.
-    pub(super) fn drag(&mut self, time: f64, step: f64, state: &mut State) {
-        if !self.moves(time) {
-            return;
-        }
-        let Some(Held { gripped, middle, now, velocity }) = &mut self.held else { return };
-        let way = self.grip.way(time);
-        for (((&node, &start), now), velocity) in self.grip.nodes.iter().zip(&*gripped).zip(now).zip(velocity) {
-            let to = way.apply(*middle, start);
-            *velocity = (to - *now) / step;
-            *now = to;
-            state.position[node as usize] = to;
-            state.velocity[node as usize] = *velocity;
+    fn take(&self, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
+        memory[0] = 1.0;
+        for (&node, gripped) in self.nodes.iter().zip(memory[1..].as_chunks_mut::<3>().0) {
+            *gripped = position(node).to_array();
         }
     }
 
-    /// Gives what it holds at the end of a step that ends at a time (s) the hand's velocity again.
-    pub(super) fn hold(&self, time: f64, state: &mut State) {
-        if let Some(Held { velocity, .. }) = self.held.as_ref().filter(|_| self.moves(time)) {
-            for (&node, &velocity) in self.grip.nodes.iter().zip(velocity) {
-                state.velocity[node as usize] = velocity;
-            }
+    /// For each node that it holds at the end of a step: where it is then (m), and its velocity (m/s), the way that it has
+    /// gone in the step over the step: with that it flies on when it is let go.
+    pub(super) fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
+        let Interval { begin, end, step } = interval;
+        let is_held = self.moves(end) && memory[0] == 1.0;
+        let gripped = memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at));
+        let middle = gripped.clone().sum::<DVec3>() / self.nodes.len().max(1) as f64;
+        let (way, before) = (self.way(end), self.moves(begin).then(|| self.way(begin)));
+        let nodes = self.nodes.iter().zip(gripped).take(if is_held { usize::MAX } else { 0 });
+        nodes.map(move |(&node, start)| {
+            let to = way.apply(middle, start);
+            let from = before.map_or(start, |before| before.apply(middle, start));
+            (node as usize, to, (to - from) / step)
+        })
+    }
+
+    /// Moves what it holds at the end of a step.
+    pub(super) fn drag(&self, interval: Interval, memory: &[f64], position: &mut [DVec3], velocity: &mut [DVec3]) {
+        for (node, to, speed) in self.moved(interval, memory) {
+            (position[node], velocity[node]) = (to, speed);
+        }
+    }
+
+    /// Gives what it holds at the end of a step the grip's velocity again.
+    pub(super) fn hold(&self, interval: Interval, memory: &[f64], velocity: &mut [DVec3]) {
+        for (node, _, speed) in self.moved(interval, memory) {
+            velocity[node] = speed;
         }
     }
 }

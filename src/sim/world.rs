@@ -1,21 +1,26 @@
 //! The world of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
-use super::body::{Body, State, bounds};
+use super::body::Body;
 use super::contact::Obstacle;
 use super::diagnose::Diagnose;
+use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
-use super::grip::{Grip, Hand};
-use super::integrate::{Acting, Integrator, Step, Stepper};
-use super::model::{ElasticModel, ForceModel, Measure};
+use super::grip::Grip;
+use super::integrate::{ByForces, Integrator};
+use super::kernel::ByKernel;
+use super::model::{ElasticModel, Report};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
-use glam::DVec3;
+use super::state::{Memory, State};
+use super::system::{Part, System};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What acts on a body from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// Acceleration of gravity (m/s²).
-    pub gravity: DVec3,
+    pub gravity: glam::DVec3,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
     /// What holds and drags nodes, after all obstacles.
@@ -29,25 +34,61 @@ pub struct Stepping {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// How a step is computed.
+    pub kernel: Kernel,
 }
 
-/// One body with one elastic model, on its way through time. It cannot fail: when it blows up it stops at its last
+impl Stepping {
+    /// In the fastest way.
+    pub fn new(integrator: Integrator, step: f64) -> Self {
+        Self { integrator, step, kernel: Kernel::default() }
+    }
+}
+
+/// How a step is computed. The choice moves states by round-off alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kernel {
+    /// Vectorised, as far as there is a kernel for the model, the body and the integrator. Its results have the same bits on
+    /// every machine and for any number of threads.
+    #[default]
+    Fast,
+    /// The plain code that reads like the paper.
+    Reference,
+}
+
+/// A moment of simulated time: so many counts of a clock that counts at a rate, such as frames. A run with fixed steps shows
+/// at a moment its nearest step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Counts since the start.
+    pub count: f64,
+    /// Counts per second (1/s).
+    pub rate: f64,
+}
+
+impl Moment {
+    /// A time (s).
+    pub fn at(time: f64) -> Self {
+        Self { count: time, rate: 1.0 }
+    }
+
+    /// `round(n / (rate · ΔT))`: the nearest step of a run with a time step ΔT (s).
+    pub fn step(self, step: f64) -> u64 {
+        // As written: dividing twice would round ties to other steps.
+        (self.count / (self.rate * step)).round() as u64
+    }
+}
+
+/// Bodies with their elastic models, on their way through time. It cannot fail: when it blows up it stops at its last
 /// finite state and says so.
 pub struct World {
-    body: Arc<Body>,
-    surroundings: Surroundings,
-    stepping: Stepping,
-    forces_of: Box<dyn ForceModel>,
-    stepper: Stepper,
-    hands: Vec<Hand>,
-    diagnose: Diagnose,
+    system: System,
+    dynamics: Box<dyn Dynamics>,
+    limit: SpeedLimit,
     /// What snapshots show besides positions and velocities.
     field: Option<Field>,
     state: State,
-    /// Steps of the clock, which goes on after a divergence.
-    steps: u64,
-    bounds: SpeedBounds,
-    status: Status,
 }
 
 impl World {
@@ -62,24 +103,58 @@ impl World {
         surroundings: Surroundings,
         stepping: Stepping,
     ) -> Self {
-        assert!(initial.position.len() == body.len() && initial.velocity.len() == body.len(), "one entry per node");
-        let mut state = initial;
-        let mut hands: Vec<_> = surroundings.grips.iter().cloned().map(Hand::new).collect();
-        hands.iter_mut().for_each(|hand| hand.start(&mut state));
-        Self {
-            forces_of: model.prepare(body, &state),
-            stepper: Stepper::new(stepping.integrator, body.len()),
-            hands,
-            diagnose: Diagnose::new(body),
-            bounds: SpeedBounds::new(body, &state, model.stiffness(), &surroundings, stepping.step),
-            body: Arc::clone(body),
-            surroundings,
-            stepping,
-            field: None,
-            state,
-            steps: 0,
-            status: Status::Ok,
+        Self::of_parts(&[(Arc::clone(body), model)], initial, surroundings, stepping)
+    }
+
+    /// Several bodies, each with its model, about to be stepped together. `initial` has the nodes of the first, then those
+    /// of the second, and so on; in this order grips count nodes, too.
+    ///
+    /// # Panics
+    /// If `initial` has not one position and one velocity per node.
+    pub fn of_parts(
+        bodies: &[(Arc<Body>, &dyn ElasticModel)],
+        initial: State,
+        surroundings: Surroundings,
+        stepping: Stepping,
+    ) -> Self {
+        let nodes = bodies.iter().map(|(body, _)| body.len()).sum();
+        assert!(initial.position.len() == nodes && initial.velocity.len() == nodes, "one entry per node");
+        let mut state = State::new(initial.position, initial.velocity);
+        for grip in &surroundings.grips {
+            let memory = grip.start(&mut state);
+            state.memory.constraints.extend(memory);
         }
+        let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
+        let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
+        for (body, model) in bodies {
+            let forces = model.prepare(body);
+            let nodes = first_node..first_node + body.len();
+            let start = forces.start(&state.position[nodes.clone()]);
+            let first = state.memory.model.len();
+            state.memory.model.extend(start);
+            let memory = first..state.memory.model.len();
+            let part = Part { body: Arc::clone(body), forces, nodes, memory, diagnose: Diagnose::new(body) };
+            let period = model.shortest_period(body);
+            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, stepping.step);
+            limit = Some(limit.map_or(own, |limit| limit.max(own)));
+            mass.extend_from_slice(&body.mass);
+            first_node = part.nodes.end;
+            parts.push(part);
+        }
+        let Surroundings { gravity, obstacles, grips } = surroundings;
+        let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step: stepping.step };
+        let Stepping { integrator, step, kernel } = stepping;
+        let fast = match bodies {
+            [(body, model)] if kernel == Kernel::Fast => {
+                model.known().and_then(|model| ByKernel::new(body, model, integrator, gravity, step))
+            }
+            _ => None,
+        };
+        let dynamics: Box<dyn Dynamics> = match fast {
+            Some(kernel) => Box::new(kernel),
+            None => Box::new(ByForces::new(integrator, &state)),
+        };
+        Self { system, dynamics, limit: limit.unwrap_or_default(), field: None, state }
     }
 
     /// Makes snapshots show a field from now on, or none.
@@ -89,170 +164,124 @@ impl World {
 
     /// Goes on by a number of steps. A diverged world only lets its clock go on.
     pub fn advance(&mut self, steps: u64) {
-        let last = self.steps + steps;
-        while self.steps < last && self.status == Status::Ok {
-            self.step();
-            self.steps += 1;
-        }
-        self.steps = last;
+        self.advance_steps(steps);
+        self.dynamics.settle(&mut self.state);
     }
 
-    /// One step: forces, Eqs. (2)–(3), collisions (paper, section 2), and hands.
-    fn step(&mut self) {
-        let Self { body, surroundings, stepping: Stepping { step, .. }, stepper, hands, forces_of, state, .. } = self;
-        let (time, step) = ((self.steps + 1) as f64 * *step, *step);
-        hands.iter_mut().for_each(|hand| hand.reach(time, state));
-        let bounds = Step { mass: &body.mass, step, speed_limit: self.bounds.at(time) };
-        let mut acting = StepOfWorld { body, surroundings, forces_of: &mut **forces_of, hands, time, step };
-        if let Err(runaway) = stepper.advance(&bounds, state, &mut acting) {
-            let element = body.elements.iter().position(|nodes| nodes.contains(&(runaway.node as u32)));
-            self.status = Status::Diverged(Divergence { time, step: self.steps + 1, element });
+    /// Goes on towards a moment by a number of steps at most, and returns whether it is there. However the way is cut up,
+    /// the states have the same bits.
+    ///
+    /// # Panics
+    /// If the moment has passed.
+    pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let left = self.steps_at(moment).checked_sub(self.state.steps).expect("moments are taken in rising order");
+        // What blew up only lets its clock go on.
+        let most_steps = if self.state.status == Status::Ok { most_steps } else { u64::MAX };
+        self.advance_steps(left.min(most_steps));
+        let is_there = left <= most_steps;
+        if is_there {
+            self.dynamics.settle(&mut self.state);
         }
+        is_there
+    }
+
+    /// How many steps have been taken at a moment.
+    pub fn steps_at(&self, moment: Moment) -> u64 {
+        moment.step(self.system.step)
+    }
+
+    fn advance_steps(&mut self, steps: u64) {
+        let Self { system, dynamics, limit, state, .. } = self;
+        let last = state.steps + steps;
+        if state.status == Status::Ok
+            && let Err(runaway) = dynamics.advance(system, limit, state, steps)
+        {
+            dynamics.settle(state);
+            let (time, step) = (system.interval(state.steps).end, state.steps + 1);
+            state.status = Status::Diverged(Divergence { time, step, element: system.element_of(runaway.node) });
+        }
+        state.steps = last;
     }
 
     /// Steps taken so far.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.state.steps
     }
 
-    /// The present positions and velocities.
+    /// The state at the last moment that was reached.
     pub fn state(&self) -> &State {
         &self.state
     }
 
+    /// Goes on from another state of the same bodies under the same conditions.
+    ///
+    /// # Panics
+    /// If it is a state of something else.
+    pub fn set_state(&mut self, state: State) {
+        let lengths = |state: &State| {
+            let Memory { model, constraints, .. } = &state.memory;
+            [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
+        };
+        assert_eq!(lengths(&state), lengths(&self.state), "a state of the same bodies");
+        self.state = state;
+        self.dynamics.restart();
+    }
+
     /// Whether it goes on.
     pub fn status(&self) -> Status {
-        self.status
+        self.state.status
     }
 
-    /// What the model says of the present state: its energy, and the error α of Eq. (18) with the rotations of the forces
-    /// here. Every integrator evaluates its forces here, so asked before each step this is α at every evaluation, with
-    /// velocity Verlet as with both Euler methods. Costs about one evaluation, and changes nothing.
-    pub fn measure(&self) -> Measure {
-        self.forces_of.measure(&self.state)
+    /// What the model of a part says of the present state: its energy, and the error α of Eq. (18) with the rotations of
+    /// the forces here. Every integrator evaluates its forces here, so asked before each step this is α at every
+    /// evaluation, with velocity Verlet as with both Euler methods. Costs about one evaluation, and changes nothing.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn report(&self, part: usize) -> Report {
+        self.report_with(&self.system.parts[part], &mut |_, _, _| {})
     }
 
-    /// The numbers of the present moment alone, without copies of all positions and velocities.
+    fn report_with(&self, part: &Part, share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+        part.forces.report(part.nodes_of(self.state.nodes()), &self.state.memory.model[part.memory.clone()], share)
+    }
+
+    /// The numbers of the present moment alone, of the first part, without copies of all positions and velocities.
     pub fn diagnostics(&self) -> Diagnostics {
-        self.diagnose.state(&self.state, self.surroundings.gravity, self.measure()).0
+        let part = &self.system.parts[0];
+        part.diagnose.state(part.nodes_of(self.state.nodes()), self.system.gravity, &self.report(0)).0
     }
 
-    /// The present moment with its diagnostics.
+    /// The present moment of the first part with its diagnostics.
     pub fn snapshot(&self) -> Snapshot {
-        let (diagnostics, turned_over, placement) =
-            self.diagnose.state(&self.state, self.surroundings.gravity, self.measure());
-        let field = self.field.map_or_else(Vec::new, |field| {
-            field.values(&self.body, &self.state, &placement, |out| self.forces_of.share_energy(&self.state, out))
+        self.snapshot_of(0)
+    }
+
+    /// The present moment of a part with its diagnostics.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn snapshot_of(&self, part: usize) -> Snapshot {
+        let part = &self.system.parts[part];
+        let nodes = part.nodes_of(self.state.nodes());
+        let mut energies = vec![0.0; if self.field == Some(Field::ElasticEnergy) { part.body.len() } else { 0 }];
+        let report = self.report_with(part, &mut |_, nodes, shares| {
+            if !energies.is_empty() {
+                nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
+            }
         });
+        let (diagnostics, turned_over, placement) = part.diagnose.state(nodes, self.system.gravity, &report);
+        let field = self.field.map_or_else(Vec::new, |field| field.values(&part.body, nodes, &placement, energies));
         Snapshot {
-            step: self.steps,
-            time: self.steps as f64 * self.stepping.step,
-            position: self.state.position.clone(),
-            velocity: self.state.velocity.clone(),
+            step: self.state.steps,
+            time: self.state.steps as f64 * self.system.step,
+            position: nodes.position.to_vec(),
+            velocity: nodes.velocity.to_vec(),
             turned_over,
             placement,
             field,
             diagnostics,
-            status: self.status,
+            status: self.state.status,
         }
     }
-}
-
-/// All that acts on the nodes in one step.
-struct StepOfWorld<'a> {
-    body: &'a Body,
-    surroundings: &'a Surroundings,
-    forces_of: &'a mut dyn ForceModel,
-    hands: &'a mut [Hand],
-    /// When the step ends (s).
-    time: f64,
-    /// How long it takes (s).
-    step: f64,
-}
-
-impl Acting for StepOfWorld<'_> {
-    /// Gravity, then the elastic model's Eq. (1) or Eq. (4).
-    fn forces(&mut self, state: &State, forces: &mut [DVec3]) {
-        for (force, &mass) in forces.iter_mut().zip(&self.body.mass) {
-            *force = self.surroundings.gravity * mass;
-        }
-        self.forces_of.add_forces(state, forces);
-    }
-
-    fn commit(&mut self) {
-        self.forces_of.commit();
-    }
-
-    fn is_damped(&self) -> bool {
-        self.forces_of.is_damped()
-    }
-
-    fn constrain(&mut self, state: &mut State, acceleration: Option<&[DVec3]>) {
-        for obstacle in &self.surroundings.obstacles {
-            obstacle.at(self.time, self.step).rebound_all(state, acceleration);
-        }
-        for hand in &mut *self.hands {
-            hand.drag(self.time, self.step, state);
-        }
-    }
-
-    fn hold(&mut self, state: &mut State) {
-        for hand in &*self.hands {
-            hand.hold(self.time, state);
-        }
-    }
-}
-
-/// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
-///
-/// Swinging through its whole extent, a body moves at 2π extents per cycle. The factor leaves a wide margin above that,
-/// and keeps the last state within some extents. What it had at the start and what gravity, obstacles and hands add
-/// comes on top.
-struct SpeedBounds {
-    own: f64,
-    gravity: f64,
-}
-
-impl SpeedBounds {
-    /// For a node of one element; more elements pull harder, and its frequency grows with the root of their number.
-    const EXTENTS_PER_CYCLE: f64 = 50.0;
-    const MARGIN: f64 = 10.0;
-
-    fn new(body: &Body, initial: &State, stiffness: f64, surroundings: &Surroundings, step: f64) -> Self {
-        let (low, high) = bounds(&initial.position);
-        let extent = body.extent().max((high - low).max_element());
-        let cycle = cycle(body, stiffness);
-        let start = initial.velocity.iter().fold(0.0, |fastest: f64, v| fastest.max(v.length()));
-        let mut elements_of_node = vec![0u32; body.len()];
-        body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
-        let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
-        let Surroundings { gravity, obstacles, grips } = surroundings;
-        let pushing = obstacles.iter().map(|obstacle| {
-            // A half-space turns under a body that is somewhere near.
-            let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
-            let near = (low - obstacle.pivot).length().max((high - obstacle.pivot).length());
-            (&obstacle.motion, if reach.is_finite() { reach } else { near + extent })
-        });
-        let dragging = grips.iter().map(|grip| (&grip.motion, extent));
-        // What it meets in one step is never faster than its whole way in that step.
-        let moving = pushing.chain(dragging).map(|(motion, distance)| {
-            let way = motion.longest_way(distance);
-            (way, motion.greatest_speed(distance).min(way / step))
-        });
-        // A hand may draw a body out to many times its size.
-        let (farthest, fastest) =
-            moving.fold((0.0, start), |(far, fast), (way, speed)| (way.max(far), speed.max(fast)));
-        let extent = extent + farthest;
-        let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / cycle + Self::MARGIN * fastest;
-        Self { own, gravity: Self::MARGIN * gravity.length() }
-    }
-
-    fn at(&self, time: f64) -> f64 {
-        self.own + self.gravity * time
-    }
-}
-
-/// The cycle `T = 2π√(m/k)` (s) of a body's lightest node with stiffness `k` (N/m).
-pub fn cycle(body: &Body, stiffness: f64) -> f64 {
-    std::f64::consts::TAU * (body.lightest() / stiffness).sqrt()
 }

@@ -10,6 +10,7 @@ use super::sheet::figure;
 use super::{Sheet, Spread, Watch, scene};
 use crate::output::exact;
 use crate::scene::{Scene, random};
+use crate::sim::model::Report;
 use crate::sim::snapshot::Status;
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use rayon::prelude::*;
@@ -319,7 +320,7 @@ fn course(start: &Scene, case: usize, evaluations: u64, watch: &Watch<'_>) -> Op
     let mut told = 0;
     while residuals.taken < evaluations && world.status() == Status::Ok {
         // The step that follows evaluates its forces here.
-        residuals.add(world.measure().residual.unwrap_or(f64::NAN));
+        residuals.add(world.report(0).residual(Report::ROTATION).unwrap_or(f64::NAN));
         world.advance(1);
         if residuals.taken % SLICE == 0 {
             if !watch(residuals.taken - told) {

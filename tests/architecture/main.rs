@@ -52,6 +52,11 @@ fn rooms_named_by(room: &str) -> BTreeSet<String> {
 }
 
 #[test]
+fn pictures_do_not_simulate() {
+    assert_eq!(offenders("picture", &["World", "Runner", ".prepare(", "forces_at_start", ".world("]), [""; 0]);
+}
+
+#[test]
 fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
     let outside =
         ["std::fs", "std::io", "std::time", "std::env", "std::net", "std::process", "std::thread", "println!"];

@@ -2,8 +2,8 @@
 
 use crate::support::{Place, SMALL, run};
 use localshape::output::{Tags, encode};
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
     let tags = Tags {
@@ -187,9 +187,9 @@ fn no_damaged_picture_is_ever_accepted() {
 fn put_scene(place: &Place, name: &str) {
     place.run(&format!("simulate {name}.toml --states -o {name} -q")).good();
     let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
-    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let mut runner = Runner::new(&scene, &[0, 1]);
     for index in 0..=scene.last_frame() {
-        let tags = Tags::new(&scene, &sequence.frame(index), "one");
+        let tags = Tags::new(&scene, &runner.frame(index), "one");
         put(place, &format!("{name}/frame_{index:05}.png"), &encode([16, 8], &GREY, &tags));
     }
 }
@@ -251,7 +251,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
     // The distance as anybody can compute it from the archives.
     let positions = |name: &str, frame: u64| {
         let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
-        Sequence::new(&scene, &[1]).frame(frame).runs[0].snapshot.position.clone()
+        Runner::new(&scene, &[1]).frame(frame).runs[0].snapshot.position.clone()
     };
     for key in ["displacement", "largest"] {
         let displacement = &moved[key];

@@ -2,8 +2,8 @@
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, documented, lasting};
 use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use serde_json::Value;
 use std::io::Read;
 
@@ -52,10 +52,10 @@ fn columns_are_what_their_heads_say() {
     let table = place.read("output/small/diagnostics.csv");
     let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
     let scene = Scene::load(&place.path("small.toml"), &Limits::default()).unwrap();
-    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let mut runner = Runner::new(&scene, &[0, 1]);
     let rows = rows(&table);
     for (number, row) in rows.iter().enumerate() {
-        let frame = sequence.frame(number as u64 / 2);
+        let frame = runner.frame(number as u64 / 2);
         let d = &frame.runs[number % 2].snapshot.diagnostics;
         let columns = [
             ("kinetic", d.kinetic),

@@ -1,11 +1,13 @@
 //! What any elastic model must do, whatever it is made of, on elements of every kind. A new model or reading joins by
 //! one line in [`cases`].
 
-use crate::support::{Noise, body, forces, lattice, mass_spring, shape_based};
+use crate::example_model::Rods;
+use crate::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, ElementKind, IndexLists, Solids, State};
+use localshape::sim::body::{Body, Dimension, ElementKind, IndexLists, Solids};
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use std::sync::Arc;
 
@@ -49,6 +51,9 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
         let spring = mass_spring(body, STIFFNESS, damping, named);
         assert!(!spring.springs.is_empty(), "{named:?} on {:?}", body.kinds);
         all.push(sound(Box::new(spring)));
+    }
+    if damping == 0.0 {
+        all.push(sound(Box::new(Rods { stiffness: STIFFNESS })));
     }
     all
 }
@@ -187,7 +192,7 @@ fn damping_has_neither_resultant_nor_work_that_is_gained() {
         for Case { model, .. } in cases(&body, 7.0) {
             let mut noise = Noise(5);
             let velocity: Vec<_> = body.rest.iter().map(|_| in_dimension(&body, noise.vector())).collect();
-            let state = State { position: body.rest.clone(), velocity };
+            let state = State::new(body.rest.clone(), velocity);
             let forces = forces(&body, model.as_ref(), &state);
             let resultant: DVec3 = forces.iter().sum();
             assert!(resultant.length() < 1e-10, "{model:?}: {resultant}");
@@ -207,7 +212,7 @@ fn damping_of_deformation_and_of_springs_leaves_rigid_motion_alone() {
             }
             let spin = if body.dimension == Dimension::Plane { DVec3::Z } else { DVec3::new(0.3, -1.0, 0.8) };
             let velocity = body.rest.iter().map(|&rest| spin.cross(rest) + in_dimension(&body, DVec3::ONE)).collect();
-            let state = State { position: body.rest.clone(), velocity };
+            let state = State::new(body.rest.clone(), velocity);
             let largest = largest(&forces(&body, model.as_ref(), &state));
             assert!(largest < 1e-10, "{model:?} {:?}: {largest:e}", body.kinds);
         }
@@ -218,14 +223,12 @@ fn damping_of_deformation_and_of_springs_leaves_rigid_motion_alone() {
 #[test]
 fn rotations_are_followed_all_the_way_round() {
     each(|body, Case { model, forgets_turns, .. }| {
-        let mut worker = model.prepare(body, &State::at_rest(body.rest.clone()));
+        let mut worker = Remembering::new(body, model.as_ref(), &State::at_rest(body.rest.clone()));
         let axis = if body.dimension == Dimension::Plane { DVec3::Z } else { DVec3::new(2.0, -1.0, 2.0) / 3.0 };
         let mut last = vec![];
         for step in 1..=200 {
             let turn = glam::DQuat::from_axis_angle(axis, 0.04 * f64::from(step));
-            last = vec![DVec3::ZERO; body.len()];
-            worker.add_forces(&State::at_rest(body.rest.iter().map(|&rest| turn * rest).collect()), &mut last);
-            worker.commit();
+            last = worker.follow(&State::at_rest(body.rest.iter().map(|&rest| turn * rest).collect()));
         }
         let force = largest(&last);
         match forgets_turns {
@@ -240,13 +243,29 @@ fn rotations_are_followed_all_the_way_round() {
 fn the_energy_of_the_nodes_is_that_of_the_body() {
     each(|body, Case { model, .. }| {
         let state = deformed(body, 0.2, 4);
-        let worker = model.prepare(body, &state);
-        let mut shares = vec![0.0; body.len()];
-        worker.share_energy(&state, &mut shares);
-        let whole = worker.measure(&state).energy.expect("an energy");
+        let (report, shares) = Remembering::new(body, model.as_ref(), &state).report(&state);
+        let whole = report.energy.expect("an energy");
         assert!(shares.iter().all(|&share| share >= 0.0));
         assert!((shares.iter().sum::<f64>() - whole).abs() < 1e-12 * whole, "{model:?}");
     });
+}
+
+/// The same nodes and the same memory give the same forces and the same next memory, to the bit, whatever was evaluated in
+/// between; and all of the next memory is written.
+#[test]
+fn evaluations_leave_nothing_behind() {
+    for body in bodies() {
+        for Case { model, .. } in cases(&body, 7.0) {
+            let start = State::at_rest(body.rest.clone());
+            let model = Remembering::new(&body, model.as_ref(), &start);
+            let (state, other) = (deformed(&body, 0.1, 3), deformed(&body, 0.3, 4));
+            let first = model.evaluate(&state);
+            assert!(first.1.iter().all(|number| number.is_finite()));
+            model.evaluate(&other);
+            model.report(&other);
+            assert_eq!(model.evaluate(&state), first);
+        }
+    }
 }
 
 /// Integrators that evaluate forces once where velocities do not count must be told the truth.
@@ -263,7 +282,7 @@ fn forces_depend_on_velocities_if_and_only_if_the_model_says_so() {
             let moving = State { velocity, ..rest.clone() };
             let depends = forces(&body, model.as_ref(), &rest) != forces(&body, model.as_ref(), &moving);
             assert_eq!(depends, damping > 0.0, "{model:?}");
-            assert_eq!(model.prepare(&body, &rest).is_damped(), depends, "{model:?}");
+            assert_eq!(model.prepare(&body).is_damped(), depends, "{model:?}");
         }
     }
 }
@@ -274,10 +293,8 @@ fn forces_depend_on_velocities_if_and_only_if_the_model_says_so() {
 fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     let whole = lattice(2, 0.1);
     let mut noise = Noise(21);
-    let state = State {
-        position: whole.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect(),
-        velocity: whole.rest.iter().map(|_| noise.vector()).collect(),
-    };
+    let position = whole.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect();
+    let state = State::new(position, whole.rest.iter().map(|_| noise.vector()).collect());
     let shape = shape_based(STIFFNESS, 7.0);
     let spring = mass_spring(&whole, STIFFNESS, 7.0, Springs::EdgesOneDiagonal);
     let elements: Vec<Vec<u32>> = whole.elements.iter().map(<[u32]>::to_vec).collect();
@@ -292,7 +309,7 @@ fn a_node_sums_its_forces_in_the_order_of_the_elements() {
             let own: IndexLists = [(0..nodes.len() as u32).collect::<Vec<_>>().as_slice()].into_iter().collect();
             let mass = vec![1.0; nodes.len()];
             let part = Body::new(Dimension::Space, of(&whole.rest), mass, own, Solids::Ordered, None);
-            let now = State { position: of(&state.position), velocity: of(&state.velocity) };
+            let now = State::new(of(&state.position), of(&state.velocity));
             for (&node, force) in nodes.iter().zip(forces(&Arc::new(part), alone, &now)) {
                 expected[node as usize] += force;
             }
@@ -311,11 +328,9 @@ fn an_element_at_a_point_keeps_its_rotation() {
         };
         let turned: Vec<_> = body.rest.iter().map(|&rest| turn * rest).collect();
         let centre = turned.iter().sum::<DVec3>() / turned.len() as f64;
-        let mut worker = shape_based(STIFFNESS, 0.0).prepare(&body, &State::at_rest(turned.clone()));
+        let mut worker = Remembering::new(&body, &shape_based(STIFFNESS, 0.0), &State::at_rest(turned.clone()));
         for _ in 0..3 {
-            let mut forces = vec![DVec3::ZERO; body.len()];
-            worker.add_forces(&State::at_rest(vec![DVec3::ONE; body.len()]), &mut forces);
-            worker.commit();
+            let forces = worker.follow(&State::at_rest(vec![DVec3::ONE; body.len()]));
             for (force, corner) in forces.iter().zip(&turned) {
                 let off = *force - (*corner - centre) * STIFFNESS;
                 assert!(off.length() < 1e-11 * STIFFNESS, "{:?}: {off}", body.kinds);
@@ -344,9 +359,9 @@ fn force_is_the_negative_gradient_of_energy() {
         }
         let model = model.as_ref();
         let state = deformed(body, 0.15, 9);
-        let worker = model.prepare(body, &state);
+        let worker = Remembering::new(body, model, &state);
         let force = forces(body, model, &state);
-        let energy = |state: &State| worker.measure(state).energy;
+        let energy = |state: &State| worker.report(state).0.energy;
         if energy(&state).is_none() {
             return;
         }

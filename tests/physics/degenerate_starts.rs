@@ -2,9 +2,10 @@
 
 use crate::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Dimension, State};
+use localshape::sim::body::Dimension;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use std::f64::consts::TAU;
 

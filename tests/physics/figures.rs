@@ -3,9 +3,10 @@
 
 use crate::support::{body, forces, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Dimension, State};
+use localshape::sim::body::Dimension;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
+use localshape::sim::state::State;
 
 fn at(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     points.iter().map(|&[x, y]| [x, y, 0.0]).collect()

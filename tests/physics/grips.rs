@@ -2,9 +2,9 @@
 
 use crate::support::{after, lattice, shape_based, shipped, world};
 use glam::{DQuat, DVec3};
-use localshape::sim::body::State;
 use localshape::sim::grip::Grip;
 use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::state::State;
 use localshape::sim::world::Surroundings;
 
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.8, 0.0);

@@ -4,6 +4,8 @@ mod closed_forms;
 mod conformance;
 mod contact;
 mod degenerate_starts;
+#[allow(unreachable_pub, reason = "documentation shows it, too")]
+mod example_model;
 mod fig4a;
 mod fig4b;
 mod fig4c;
@@ -15,6 +17,7 @@ mod masses;
 mod readings;
 mod restore;
 mod runaway;
+mod state;
 mod support;
 mod table1;
 mod threads;

@@ -3,14 +3,15 @@
 use crate::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::body::{Body, Dimension, Solids, State};
+use localshape::sim::body::{Body, Dimension, Solids};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
-use localshape::sim::model::ModelParameters;
 use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::model::{ModelParameters, Report};
 use localshape::sim::motion::{Ease, Key, Motion, Place};
 use localshape::sim::rotation::{linearised, moment, torque};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
 
@@ -27,10 +28,10 @@ fn uneven() -> Arc<Body> {
 fn momenta_and_energy_weigh_each_node_with_its_mass() {
     let body = uneven();
     let mut noise = Noise(6);
-    let state = State { position: body.rest.clone(), velocity: body.rest.iter().map(|_| noise.vector()).collect() };
+    let state = State::new(body.rest.clone(), body.rest.iter().map(|_| noise.vector()).collect());
     let gravity = DVec3::new(1.0, -9.8, 2.0);
     let around = Surroundings { gravity, ..Surroundings::default() };
-    let stepping = Stepping { integrator: Integrator::default(), step: 1e-3 };
+    let stepping = Stepping::new(Integrator::default(), 1e-3);
     let found = World::new(&body, state.clone(), &shape_based(1e4, 0.0), around, stepping).diagnostics();
     let nodes = || body.mass.iter().zip(&state.position).zip(&state.velocity).map(|((&m, &p), &v)| (m, p, v));
     let momentum: DVec3 = nodes().map(|(m, _, v)| v * m).sum();
@@ -56,7 +57,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
     let around = Surroundings { grips: vec![grip], ..Surroundings::default() };
     let model = ShapeBased { passes: 1, ..shape_based(stiffness, 0.0) };
-    let stepping = Stepping { integrator: Integrator::default(), step };
+    let stepping = Stepping::new(Integrator::default(), step);
     let start = State::at_rest(body.rest.iter().map(|&rest| rest * DVec3::new(1.2, 0.9, 1.0)).collect());
     let mut world = World::new(&body, start, &model, around, stepping);
     let centred = |points: &[DVec3]| -> Vec<DVec3> {
@@ -73,7 +74,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let second = linearised::follow(at_rest(&world), first, 1, solve);
     let inertia: f64 = body.mass.iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
     let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
-    let found = world.measure().residual.expect("the shape model has one");
+    let found = world.report(0).residual(Report::ROTATION).expect("the shape model has one");
     assert!(expected > 1e-3 && (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 

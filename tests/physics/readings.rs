@@ -2,14 +2,15 @@
 
 use crate::support::{after, free, lattice, shape_based, shipped};
 use glam::DVec3;
-use localshape::sim::body::{Body, State};
+use localshape::sim::body::Body;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 
 fn spinning(body: &Body, spin: DVec3) -> State {
     let centre = body.rest.iter().sum::<DVec3>() / body.len() as f64;
     let velocity = body.rest.iter().map(|&rest| spin.cross(rest - centre)).collect();
-    State { position: body.rest.clone(), velocity }
+    State::new(body.rest.clone(), velocity)
 }
 
 /// One free element, as printed: its spin falls as `exp(−D t/m)`; of deformation only: it stays.

@@ -3,19 +3,19 @@
 
 use crate::support::{lattice, shape_based};
 use glam::DVec3;
-use localshape::sim::body::State;
 use localshape::sim::contact::{Obstacle, Shape};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::motion::{Ease, Key, Motion, Place};
 use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
 use localshape::sim::world::{Stepping, Surroundings, World};
 
 /// The fastest node (m/s) of a cube of 1 cm with a cycle of 2 s, after some seconds.
 fn fastest(around: Surroundings, seconds: f64) -> f64 {
     let body = lattice(1, 0.01);
     let step = 0.001;
-    let stepping = Stepping { integrator: Integrator::default(), step };
+    let stepping = Stepping::new(Integrator::default(), step);
     let start = State::at_rest(body.rest.clone());
     let mut world = World::new(&body, start, &shape_based(10.0, 0.0), around, stepping);
     world.advance((seconds / step).round() as u64);

@@ -3,12 +3,13 @@
 use glam::{DQuat, DVec3};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::Snapshot;
-use localshape::sim::body::{Body, Dimension, IndexLists, Solids, State};
+use localshape::sim::body::{Body, Dimension, IndexLists, Solids};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::integrate::Integrator;
-use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch};
+use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
@@ -65,7 +66,7 @@ pub(crate) fn world(
     step: f64,
     around: Surroundings,
 ) -> World {
-    World::new(body, initial, model, around, Stepping { integrator: Integrator::SemiImplicitEuler, step })
+    World::new(body, initial, model, around, Stepping::new(Integrator::SemiImplicitEuler, step))
 }
 
 /// A world without gravity and obstacles, stepped by some integrator.
@@ -76,14 +77,49 @@ pub(crate) fn stepped(
     integrator: Integrator,
     step: f64,
 ) -> World {
-    World::new(body, initial, model, Surroundings::default(), Stepping { integrator, step })
+    World::new(body, initial, model, Surroundings::default(), Stepping::new(integrator, step))
 }
 
 /// Internal forces (N) at a state.
 pub(crate) fn forces(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> Vec<DVec3> {
-    let mut forces = vec![DVec3::ZERO; body.len()];
-    model.prepare(body, state).add_forces(state, &mut forces);
-    forces
+    model.forces_at_start(body, state)
+}
+
+/// A model's forces with the memory that goes with them.
+pub(crate) struct Remembering {
+    pub(crate) forces: Box<dyn ForceModel>,
+    pub(crate) memory: Vec<f64>,
+}
+
+impl Remembering {
+    pub(crate) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &State) -> Self {
+        let forces = model.prepare(body);
+        Self { memory: forces.start(&start.position), forces }
+    }
+
+    /// The forces (N) and the next memory.
+    pub(crate) fn evaluate(&self, state: &State) -> (Vec<DVec3>, Vec<f64>) {
+        let (mut forces, mut next) = (vec![DVec3::ZERO; state.position.len()], vec![f64::NAN; self.memory.len()]);
+        self.forces.add_forces(state.nodes(), &self.memory, &mut next, &mut Scratch::default(), &mut forces);
+        (forces, next)
+    }
+
+    /// The forces (N); what they found is remembered.
+    pub(crate) fn follow(&mut self, state: &State) -> Vec<DVec3> {
+        let (forces, next) = self.evaluate(state);
+        self.memory = next;
+        forces
+    }
+
+    /// What the model says, with the energy of each node (J).
+    pub(crate) fn report(&self, state: &State) -> (Report, Vec<f64>) {
+        let mut energies = vec![0.0; state.position.len()];
+        let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
+            nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
+        };
+        let report = self.forces.report(state.nodes(), &self.memory, &mut share);
+        (report, energies)
+    }
 }
 
 /// A scene that ships, with some of its text replaced.

@@ -2,13 +2,13 @@
 
 use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::State;
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::motion::Place;
+use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Stepping, Surroundings, World};
 
@@ -19,7 +19,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     let mut noise = Noise(2);
     let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
     let velocity = vec![DVec3::new(0.3, -5.0, 0.1); body.len()];
-    let start = State { position, velocity };
+    let start = State::new(position, velocity);
     let amplitude = Place { shift: DVec3::new(0.1, 0.2, 0.0), turn: DVec3::Z * 0.3 };
     let swinging = Obstacle {
         shape: Shape::Sphere { centre: DVec3::new(0.6, -0.2, 0.6), radius: 0.4 },
@@ -50,7 +50,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         let ends = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
             pool.install(|| {
-                let stepping = Stepping { integrator, step: 1e-3 };
+                let stepping = Stepping::new(integrator, 1e-3);
                 let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
                 world.advance(60);
                 world.state().clone()

@@ -6,7 +6,7 @@ use localshape::render::Renderer;
 use localshape::scene::{ColourMap, ColourScale, Look, Scene, Theme, Visible};
 use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
-use localshape::{scene::Limits, sequence::Sequence};
+use localshape::{runner::Runner, scene::Limits};
 
 const NOTHING: Visible = Visible { surfaces: false, nodes: false, springs: false, displacements: false };
 const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true };
@@ -16,7 +16,7 @@ const FIELDS: [Field; 4] = [Field::Strain, Field::Displacement, Field::Speed, Fi
 fn with_field(field: Field, range: [f64; 2], index: u64) -> (Scene, Frame) {
     let (mut scene, _) = fig4b(0);
     scene.view.colour = Some(ColourScale { field, range, map: ColourMap::default() });
-    let frame = Sequence::new(&scene, &[0, 1]).frame(index);
+    let frame = Runner::new(&scene, &[0, 1]).frame(index);
     (scene, frame)
 }
 
@@ -35,7 +35,7 @@ fn plane(view: &str) -> (Scene, Frame) {
         {view}"
     );
     let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-    let frame = Sequence::new(&scene, &[0]).frame(0);
+    let frame = Runner::new(&scene, &[0]).frame(0);
     (scene, frame)
 }
 
@@ -115,7 +115,7 @@ fn odd_values_are_drawn_like_any_others() {
             // A field that was never computed colours nothing, and stops nothing.
             frame.runs[0].snapshot.field.clear();
             compose(&scene, &frame);
-            frame = Sequence::new(&scene, &[0, 1]).frame(4);
+            frame = Runner::new(&scene, &[0, 1]).frame(4);
         }
     }
 }
@@ -211,7 +211,7 @@ fn many_nodes_are_drawn_when_asked_for() {
     };
     for (view, expected) in [("", 0), ("show = ['surfaces', 'nodes']", 21 * 21)] {
         let scene = Scene::parse(&text(view), "many.toml", &Limits::default()).expect("sound");
-        let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+        let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         let discs = marks(&picture, MarkShape::Node);
         assert_eq!(discs.len(), expected);
         assert!(discs.iter().all(|disc| disc.rectangle[2] < 8.0), "small ones");
@@ -278,7 +278,7 @@ fn the_key_arrow_is_as_long_as_it_says() {
     scene.view.visible.displacements = true;
     let mut said = Vec::new();
     for index in [0, 4, 40] {
-        let frame = Sequence::new(&scene, &[0, 1]).frame(index);
+        let frame = Runner::new(&scene, &[0, 1]).frame(index);
         let picture = compose(&scene, &frame);
         let arrows = marks(&picture, MarkShape::Arrow);
         let key = arrows.iter().find(|arrow| arrow.colour == picture.palette.text).expect("a key");

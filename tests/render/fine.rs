@@ -5,8 +5,8 @@ use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::{MarkShape, Picture, compose};
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 
 /// How much larger the truth is drawn.
 const TIMES: u32 = 4;
@@ -132,7 +132,7 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
             std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/primitives/{name}.toml"));
         let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
         let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let frame = Sequence::new(&scene, &runs).frame(scene.last_frame());
+        let frame = Runner::new(&scene, &runs).frame(scene.last_frame());
         let picture = compose(&scene, &frame);
         let small = draw(gpu, &picture);
         let large = draw(gpu, &larger(&picture));

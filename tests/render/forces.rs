@@ -13,7 +13,7 @@ fn picture_with(name: &str, size: [u32; 2], text_scale: f64) -> Picture {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.size = size;
     figure.look.text_scale = text_scale;
-    compose_figure(&figure, &Moments::default()).expect("room")
+    compose_figure(&figure, &Moments::new(&figure)).expect("room")
 }
 
 fn texts(picture: &Picture) -> Vec<&str> {

@@ -6,8 +6,8 @@ use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::{LineKind, Picture, compose};
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 
 fn draw(gpu: &Gpu, scene: &Scene, frame: &Frame) -> RgbImage {
@@ -82,7 +82,7 @@ fn solids_are_seen_through_clear_surfaces_only() {
     };
     let middle = |ball: &str, opacity: f64| {
         let scene = scene(ball, opacity);
-        let frame = Sequence::new(&scene, &[0]).frame(0);
+        let frame = Runner::new(&scene, &[0]).frame(0);
         let (at, side) = ([640 - 12, 365 - 12], 24);
         let image = draw(gpu, &scene, &frame);
         let inner = image::imageops::crop_imm(&image, at[0], at[1], side, side).to_image();
@@ -121,7 +121,7 @@ fn many_apart() -> (Scene, Frame) {
         elements.join(", ")
     );
     let scene = Scene::parse(&text, "many.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-    let mut frame = Sequence::new(&scene, &[0]).frame(0);
+    let mut frame = Runner::new(&scene, &[0]).frame(0);
     frame.runs[0].snapshot.turned_over[0] = true;
     (scene, frame)
 }

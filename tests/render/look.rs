@@ -7,8 +7,8 @@ use localshape::gpu::Gpu;
 use localshape::history::History;
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Follow, FontFiles, Limits, Look, Scene, Theme};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 
 const SIZE: [u32; 2] = [640, 360];
@@ -54,7 +54,7 @@ fn scenes() -> Vec<(String, Scene, Frame)> {
     for (name, text, frame) in texts {
         let mut scene = Scene::parse(text, name, &Limits::default()).expect("a scene that ships");
         let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let frame = Sequence::new(&scene, &runs).frame(frame);
+        let frame = Runner::new(&scene, &runs).frame(frame);
         scene.view.size = SIZE;
         scenes.push((name.to_owned(), scene, frame));
     }
@@ -140,7 +140,7 @@ fn thin_and_thick(text: &str, frame: u64, thickness: f64) -> [Picture; 2] {
     let mut scene = Scene::parse(text, "thick.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
     scene.view.size = [1280, 720];
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Sequence::new(&scene, &runs).frame(frame);
+    let frame = Runner::new(&scene, &runs).frame(frame);
     let history = History::new(&scene, &runs);
     [1.0, thickness].map(|line_scale| {
         scene.view.look.line_scale = line_scale;
@@ -244,7 +244,7 @@ fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
     for text in [include_str!("../../scenes/obstacles.toml"), include_str!("../../scenes/wheel.toml")] {
         let mut scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("a scene that ships");
         scene.view.outline = false;
-        let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+        let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         assert!(picture.panels[0].lines.iter().all(|line| line.kind != LineKind::ObstacleContour));
         let solids = &picture.panels[0].obstacles.solids;
         assert!(solids.iter().all(|solid| solid.rim.is_none_or(|rim| rim == solid.colour)));
@@ -294,7 +294,7 @@ fn without_a_hatch_turned_over_elements_have_one_colour() {
             let text = text(&format!("theme = '{theme}'\n{colour}"));
             let mut scene =
                 Scene::parse(&text, "hatch.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-            let frame = Sequence::new(&scene, &[1]).frame(scene.last_frame());
+            let frame = Runner::new(&scene, &[1]).frame(scene.last_frame());
             assert!(frame.runs[0].snapshot.turned_over.contains(&true));
             let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
             let alarm = scene.view.look.palette.alarm;
@@ -324,7 +324,7 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
     let picture = |colour: &str| {
         let text = format!("{}\nhatch = false\n{colour}", super::plain());
         let scene = Scene::parse(&text, "hatch.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        let mut frame = Sequence::new(&scene, &[0]).frame(0);
+        let mut frame = Runner::new(&scene, &[0]).frame(0);
         // The one in the middle.
         frame.runs[0].snapshot.turned_over[13] = true;
         compose(&scene, &frame)

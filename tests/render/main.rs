@@ -18,8 +18,8 @@ mod strips;
 mod words;
 
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 use std::sync::LazyLock;
 
@@ -51,7 +51,7 @@ fn plain() -> String {
 /// The scene of Fig. 4(b), plainly drawn, and one of its frames.
 fn fig4b(frame: u64) -> (Scene, Frame) {
     let scene = Scene::parse(&plain(), "fig4b.toml", &Limits::default()).expect("the shipped scene is sound");
-    let frame = Sequence::new(&scene, &[0, 1]).frame(frame);
+    let frame = Runner::new(&scene, &[0, 1]).frame(frame);
     (scene, frame)
 }
 

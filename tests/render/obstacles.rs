@@ -6,8 +6,8 @@ use localshape::picture::{
     Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
 };
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Follow, Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 
@@ -29,7 +29,7 @@ fn scene(parts: &[&str]) -> Scene {
 
 fn frame(scene: &Scene, index: u64) -> Frame {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    Sequence::new(scene, &runs).frame(index)
+    Runner::new(scene, &runs).frame(index)
 }
 
 fn picture(scene: &Scene, index: u64) -> Picture {

@@ -2,8 +2,8 @@
 
 use super::fig4b;
 use localshape::picture::{Composer, LineKind, MarkShape, Mesh, Picture, TextRun, Weight, compose};
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ fn scene(change: impl Fn(String) -> String) -> (Scene, Frame) {
     let text = change(super::plain());
     let scene = Scene::parse(&text, "changed.toml", &Limits::default()).expect("the change keeps the scene sound");
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Sequence::new(&scene, &runs).frame(0);
+    let frame = Runner::new(&scene, &runs).frame(0);
     (scene, frame)
 }
 
@@ -124,10 +124,10 @@ fn words_keep_inside_their_panels_and_apart() {
 fn words_do_not_move_from_frame_to_frame() {
     let (scene, _) = fig4b(0);
     let composer = Composer::new(&scene);
-    let mut sequence = Sequence::new(&scene, &[0, 1]);
+    let mut runner = Runner::new(&scene, &[0, 1]);
     let mut ends = Vec::new();
     for index in [0, 3, 7, 40] {
-        let picture = composer.compose(&sequence.frame(index));
+        let picture = composer.compose(&runner.frame(index));
         let run = |text: &str| picture.words.iter().find(|run| run.text.ends_with(text)).unwrap().clone();
         let (clock, count) = (run(" ms"), run("of 27"));
         ends.push((picture.words[0].span, clock.span[1], clock.baseline, count.span[0]));
@@ -248,7 +248,7 @@ fn lines_of_large_bodies_in_the_plane_are_before_the_near_plane() {
         name = 'a'
         model = { kind = 'shape-based', stiffness = 1e3 }";
     let scene = Scene::parse(text, "plane.toml", &Limits::default()).expect("sound");
-    let sight = compose(&scene, &Sequence::new(&scene, &[0]).frame(0)).panels[0].sight;
+    let sight = compose(&scene, &Runner::new(&scene, &[0]).frame(0)).panels[0].sight;
     assert!(sight.near < sight.clip.w_axis.w, "{sight:?}");
 }
 
@@ -308,7 +308,7 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
             floor(normal)
         );
         let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+        let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         for shape in [MarkShape::Smooth, MarkShape::Fading] {
             assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
         }
@@ -351,7 +351,7 @@ fn one_element(nodes: &str, count: usize) -> (Scene, Picture) {
         model = {{ kind = 'shape-based', stiffness = 1e3 }}"
     );
     let scene = Scene::parse(&text, "one.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-    let picture = compose(&scene, &Sequence::new(&scene, &[0]).frame(0));
+    let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
     (scene, picture)
 }
 

@@ -5,8 +5,8 @@ use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::Frame;
 
 const WORLD: &str = "
@@ -33,8 +33,8 @@ fn scene(parts: &[&str]) -> Scene {
 
 fn frames(scene: &Scene, indices: std::ops::Range<u64>) -> Vec<Frame> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let mut sequence = Sequence::new(scene, &runs);
-    indices.map(|index| sequence.frame(index)).collect()
+    let mut runner = Runner::new(scene, &runs);
+    indices.map(|index| runner.frame(index)).collect()
 }
 
 fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {

@@ -5,8 +5,8 @@ use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::Composer;
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sequence::Sequence;
 use localshape::sim::body::Dimension;
 use localshape::sim::snapshot::Frame;
 
@@ -150,8 +150,8 @@ fn nothing_flickers_in_slow_motion() {
         }
         scene.view.strip = None;
         let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let mut sequence = Sequence::new(&scene, &runs);
-        let [from, to] = [index, index + 1].map(|index| sequence.frame(index));
+        let mut runner = Runner::new(&scene, &runs);
+        let [from, to] = [index, index + 1].map(|index| runner.frame(index));
         // Obstacles move at most two pixels from one frame of these scenes to the next.
         let part = SLOW / way(&scene, &from, &to).max(2.0);
         assert_steady(&format!("{file} {index}"), &film(gpu, &scene, &between([&from, &to], part)));
@@ -187,8 +187,8 @@ fn what_is_pressed_flat_does_not_flicker() {
     let Some(gpu) = gpu("what_is_pressed_flat_does_not_flicker") else { return };
     for show in ["", "show = ['surfaces', 'nodes', 'springs']", "colour = { by = 'speed' }"] {
         let scene = parse(&[PRESSED, show].concat());
-        let mut sequence = Sequence::new(&scene, &[0]);
-        let frames: Vec<_> = (0..FRAMES).map(|index| sequence.frame(index)).collect();
+        let mut runner = Runner::new(&scene, &[0]);
+        let frames: Vec<_> = (0..FRAMES).map(|index| runner.frame(index)).collect();
         assert!(way(&scene, &frames[0], &frames[1]) <= SLOW);
         assert!(frames.iter().all(|frame| frame.runs[0].snapshot.diagnostics.turned_over == 0));
         assert_steady(&format!("pressed {show}"), &film(gpu, &scene, &frames));
@@ -212,6 +212,6 @@ const CROSSING: &str = "
 fn plates_that_cross_do_not_flicker() {
     let Some(gpu) = gpu("plates_that_cross_do_not_flicker") else { return };
     let mut scene = parse(CROSSING);
-    let frame = Sequence::new(&scene, &[0]).frame(0);
+    let frame = Runner::new(&scene, &[0]).frame(0);
     assert_steady("crossing", &around(gpu, &mut scene, &frame));
 }

@@ -2,19 +2,25 @@
 
 use super::{fig4b, gpu};
 use localshape::history::History;
-use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, compose};
+use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun};
 use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::{Limits, Look, Scene, Theme};
-use localshape::sequence::Sequence;
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
 fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
     let (mut scene, _) = fig4b(0);
     scene.view.strip = Some(strip);
-    let mut sequence = Sequence::new(&scene, &[0, 1]);
-    let frames = frames.map(|index| sequence.frame(index));
+    let mut runner = Runner::new(&scene, &[0, 1]);
+    let frames = frames.map(|index| runner.frame(index));
     (scene, frames)
+}
+
+/// The picture of a frame by a composer that knows the scene's course.
+fn compose(scene: &Scene, frame: &Frame) -> Picture {
+    let [picture] = pictures(scene, &[frame.clone()]);
+    picture
 }
 
 /// Pictures of frames by one composer that knows the scene's course.
@@ -194,8 +200,8 @@ fn what_a_model_does_not_have_is_said() {
 fn a_run_that_blows_up_ends_with_a_cross() {
     let text = include_str!("../../scenes/explicit-euler.toml").replace("[view]", "[view]\nstrip = 'energy'");
     let scene = Scene::parse(&text, "explicit-euler.toml", &Limits::default()).expect("sound");
-    let mut sequence = Sequence::new(&scene, &[1, 2]);
-    let frame = sequence.frame(scene.last_frame());
+    let mut runner = Runner::new(&scene, &[1, 2]);
+    let frame = runner.frame(scene.last_frame());
     let Status::Diverged(divergence) = frame.runs[1].snapshot.status else { panic!("this one blows up") };
     let picture = compose(&scene, &frame);
     let is_arm = |curve: &&Curve| {
@@ -285,7 +291,7 @@ fn eight_runs_of_one_model_are_told_apart() {
     for theme in ["light", "dark"] {
         let scene = Scene::parse(&alike(8, theme), "alike.toml", &Limits::default()).expect("sound");
         let all: Vec<_> = (0..8).collect();
-        let frame = Sequence::new(&scene, &all).frame(scene.last_frame());
+        let frame = Runner::new(&scene, &all).frame(scene.last_frame());
         let picture = compose(&scene, &frame);
         // In each strip the own curve is the widest, and below the name stands the same line.
         let widest =
@@ -339,7 +345,7 @@ fn strips_of_many_runs_name_their_curves() {
             let text = alike(runs, "light").replace("[1600, 900]", &format!("{size:?}")).replace("panels = 'grid'", "");
             let scene = Scene::parse(&text, "alike.toml", &Limits::default()).expect("sound");
             let all: Vec<_> = (0..runs).collect();
-            let picture = compose(&scene, &Sequence::new(&scene, &all).frame(scene.last_frame()));
+            let picture = compose(&scene, &Runner::new(&scene, &all).frame(scene.last_frame()));
             let case = format!("{runs} runs in {size:?}");
             assert_eq!(picture.curves.iter().filter(|curve| curve.alpha == 0.55).count(), runs * (runs - 1), "{case}");
             for (run, panel) in scene.runs.iter().zip(&picture.panels) {

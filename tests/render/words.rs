@@ -2,8 +2,8 @@
 
 use super::fig4b;
 use localshape::picture::{Composer, Mark, MarkShape, Picture, TextRun, compose};
+use localshape::runner::Runner;
 use localshape::scene::{Labels, Limits, Scene};
-use localshape::sequence::Sequence;
 
 /// Everything that can be written, in a scene that blows up, beside one that does not.
 const ALL: &str = r#"
@@ -78,7 +78,7 @@ pub(crate) fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
 fn no_words_overlap_and_none_leaves_the_picture() {
     for scene in scenes() {
         let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let picture = compose(&scene, &Sequence::new(&scene, &runs).frame(scene.last_frame()));
+        let picture = compose(&scene, &Runner::new(&scene, &runs).frame(scene.last_frame()));
         if let Some([one, other]) = overlapping(&picture) {
             panic!("“{}” lies over “{}” in {:?}", one.text, other.text, picture.size);
         }
@@ -144,7 +144,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
                 // Any two of margin, view and size once at least.
                 for size in [sizes[(number + at) % 5], sizes[(number + at + 2) % 5]] {
                     scene.view.size = size;
-                    let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(3));
+                    let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
                     let place = format!("{size:?} with {scales} {strip} {view}");
                     if let Some([one, other]) = overlapping(&picture) {
                         panic!(
@@ -184,7 +184,7 @@ fn margins_move_everything_that_stands_on_them() {
     let mut scene = load(&format!("{ALL}\nshow = ['springs', 'displacements']\nsize = [1920, 1080]\n"));
     let mut bounds = |margin: f64, word: &str| {
         scene.view.look.margin = margin;
-        let picture = compose(&scene, &Sequence::new(&scene, &[0, 1]).frame(3));
+        let picture = compose(&scene, &Runner::new(&scene, &[0, 1]).frame(3));
         let found = picture.words.iter().find(|found| found.text.starts_with(word));
         let [left, top, right, bottom] = found.unwrap_or_else(|| panic!("{word} at {margin}")).bounds();
         [left, top, 1920.0 - right, 1080.0 - bottom]
@@ -231,7 +231,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
         let text = format!("{text}\nsize = {size:?}\ntext_scale = {text_scale}\nshow = [\"springs\"]\n");
         let mut scene = load(&text.replace(&long, &long[..900]));
         scene.view.spring_strain = None;
-        let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(3));
+        let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
         let [top, bottom] = [0, 1].map(|end| {
             let ends = picture.panels.iter().map(|panel| panel.viewport[1] + end * panel.viewport[3]);
             if end == 0 { ends.min() } else { ends.max() }.expect("panels") as f32
@@ -251,9 +251,9 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     let text = ALL.replace("spring_colour = {}", "").replace("name = 'Local shape'", "name = 'Local'");
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
     let scene = load(&text.replace("step = 0.005", "step = 0.02"));
-    let (composer, mut sequence) = (Composer::new(&scene), Sequence::new(&scene, &[0]));
+    let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
     let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with(" m")).map(|word| word.span);
-    let frames = [0, scene.last_frame()].map(|frame| composer.compose(&sequence.frame(frame)));
+    let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
     assert!(frames[1].words.iter().any(|word| word.text == "diverged"), "it blows up");
     assert!(bar(&frames[0]).is_some());
     assert_eq!(bar(&frames[0]), bar(&frames[1]));
@@ -262,7 +262,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
 #[test]
 fn everything_is_written_where_there_is_room() {
     let scene = load(&format!("{ALL}\nsize = [1920, 1080]\nshow = ['springs', 'displacements']\n"));
-    let picture = compose(&scene, &Sequence::new(&scene, &[0, 1, 2]).frame(scene.last_frame()));
+    let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(scene.last_frame()));
     let said: Vec<_> = picture.words.iter().map(|word| word.text.as_str()).collect();
     let expected = [
         "a",
@@ -298,10 +298,10 @@ fn words_stay_where_they_are() {
     ] {
         let scene = load(&text);
         let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let (composer, mut sequence) = (Composer::new(&scene), Sequence::new(&scene, &runs));
-        let first = composer.compose(&sequence.frame(0));
+        let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &runs));
+        let first = composer.compose(&runner.frame(0));
         for frame in 1..=scene.last_frame().min(60) {
-            let picture = composer.compose(&sequence.frame(frame));
+            let picture = composer.compose(&runner.frame(frame));
             assert_eq!(picture.words.len(), first.words.len(), "words come or go in frame {frame}");
             for (now, before) in picture.words.iter().zip(&first.words) {
                 assert_eq!((now.baseline, now.size), (before.baseline, before.size), "{}", now.text);

@@ -2,8 +2,8 @@
 
 use super::{WORLD, bad, good};
 use glam::DVec3;
+use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sequence::Sequence;
 use localshape::sim::body::{Dimension, ElementKind};
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ fn sizes(scene: &Scene) -> Vec<(usize, usize)> {
 /// The positions of all runs at the last frame.
 fn end(scene: &Scene) -> Vec<Vec<DVec3>> {
     let all: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Sequence::new(scene, &all).frame(scene.last_frame());
+    let frame = Runner::new(scene, &all).frame(scene.last_frame());
     frame.runs.into_iter().map(|run| run.snapshot.position.clone()).collect()
 }
 

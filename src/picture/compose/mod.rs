@@ -90,14 +90,9 @@ pub struct Composer<'a> {
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
 ///
-/// If the scene asks for strips, the runs of the frame are simulated from start to end for them.
+/// The places of strips stay empty: they need [`Composer::set_history`].
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
-    let mut composer = Composer::new(scene);
-    if scene.view.strip.is_some() {
-        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        composer.set_history(&History::new(scene, &runs));
-    }
-    composer.compose(frame)
+    Composer::new(scene).compose(frame)
 }
 
 impl<'a> Composer<'a> {

@@ -8,8 +8,9 @@ use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{Demand, Excess, Limits};
 use crate::scene::report::{Report, Way};
 use crate::scene::words::quoted;
-use crate::sim::body::{Body, Dimension, Solids, State};
+use crate::sim::body::{Body, Dimension, Solids};
 use crate::sim::census::Census;
+use crate::sim::state::State;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -235,7 +236,7 @@ fn start(
         // In this order the lowest node stands at the very height that was typed.
         position.iter_mut().for_each(|point| point.y = height + (point.y - lowest));
     }
-    State { position, velocity }
+    State::new(position, velocity)
 }
 
 /// A start of another shape (with a unit direction and a seed), a turn (unit axis, angle), a spin (rad/s), a shift and a

@@ -6,7 +6,6 @@ use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::report::{Report, Way};
 use crate::scene::words;
 use crate::sim::model::ElasticModel;
-use crate::sim::world::cycle;
 use std::sync::Arc;
 
 /// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
@@ -31,7 +30,7 @@ pub(super) fn resolve(
         .collect();
     // One missing model would make another T, and with it mistakes that are none.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
-    let cycle = models.iter().map(|model| cycle(&body.body, model.stiffness())).reduce(f64::min)?;
+    let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
     let mut runs = Vec::with_capacity(models.len());
     for (at, (run, model)) in typed.iter().zip(models).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
@@ -63,7 +62,8 @@ pub(super) fn resolve(
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
         let colour = run.colour.map(|colour| colour.0);
-        runs.push(Run { name: run.name.clone(), model, integrator, step, place: 0, colour });
+        let kernel = run.kernel.unwrap_or_default();
+        runs.push(Run { name: run.name.clone(), model, integrator, step, kernel, place: 0, colour });
     }
     Some(runs)
 }

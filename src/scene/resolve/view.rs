@@ -6,12 +6,12 @@ use crate::scene::Run;
 use crate::scene::file::{ArrangementFile, CameraFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use crate::scene::report::{Report, Way};
 use crate::scene::view::{Camera, ColourScale, Follow, FontFiles, Labels, Light, StrainScale, View, Visible};
-use crate::sim::body::{Body, Dimension, State, bounds};
+use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::field::Field;
 use crate::sim::grip::Grip;
+use crate::sim::state::State;
 use crate::sim::words::rounded;
-use crate::sim::world::cycle;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -255,11 +255,13 @@ impl Around<'_> {
         /// The strain, and the displacement in edges of an element, that count as large.
         const LARGE: f64 = 0.5;
         let side = self.side;
-        let stiffness = self.runs.iter().fold(0.0, |most: f64, run| most.max(run.model.stiffness()));
         match field {
             Field::Strain => LARGE,
             Field::Displacement => LARGE * side,
-            Field::ElasticEnergy => 0.5 * stiffness * (LARGE * side) * (LARGE * side),
+            Field::ElasticEnergy => {
+                let stiffness = self.runs.iter().fold(0.0, |most: f64, run| most.max(run.model.stiffness()));
+                0.5 * stiffness * (LARGE * side) * (LARGE * side)
+            }
             Field::Speed => {
                 let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
                 let (_, high) = bounds(&self.initial.position);
@@ -268,7 +270,8 @@ impl Around<'_> {
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
                 // A body that nothing moves swings by itself at the most.
-                let swing = LARGE * side * TAU / cycle(self.body, stiffness);
+                let periods = self.runs.iter().map(|run| run.model.shortest_period(self.body));
+                let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
                 if fastest > 0.0 { fastest } else { swing }
             }
         }

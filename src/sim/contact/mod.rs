@@ -5,7 +5,10 @@ mod shape;
 pub use super::motion::{Motion, Pose};
 pub use shape::{Contact, Shape};
 
-use super::body::State;
+use super::grip::Interval;
+use super::kernel::Bound;
+use super::state::Nodes;
+use super::system::Part;
 use glam::DVec3;
 
 /// Something rigid that nodes bounce off.
@@ -23,6 +26,47 @@ pub struct Obstacle {
     pub friction: f64,
 }
 
+/// A way to treat contact at the end of each step.
+pub trait ContactStage: Send + Sync {
+    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step, which were at `before` when it began.
+    /// `acceleration` (m/s²) is that with which each node has moved in the step; `None` if it has moved at constant velocity.
+    fn resolve(
+        &self,
+        parts: &[Part],
+        interval: Interval,
+        before: Nodes<'_>,
+        position: &mut [DVec3],
+        velocity: &mut [DVec3],
+        acceleration: Option<&[DVec3]>,
+    );
+
+    /// The obstacles, if nothing else is met than each of them by each node alone, which kernels do on their way.
+    fn obstacles(&self) -> Option<&[Obstacle]> {
+        None
+    }
+}
+
+/// The paper's collision processing: each node that is found inside an obstacle rebounds, whatever way it has come.
+impl ContactStage for Vec<Obstacle> {
+    fn resolve(
+        &self,
+        _parts: &[Part],
+        interval: Interval,
+        _before: Nodes<'_>,
+        position: &mut [DVec3],
+        velocity: &mut [DVec3],
+        acceleration: Option<&[DVec3]>,
+    ) {
+        for obstacle in self {
+            obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+        }
+    }
+
+    fn obstacles(&self) -> Option<&[Obstacle]> {
+        Some(self)
+    }
+}
+
 /// What a body can stand on at a time (s): unit normal and distance from the origin (m) of the first floor that faces
 /// upwards.
 pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
@@ -33,6 +77,11 @@ pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
 }
 
 impl Obstacle {
+    /// Whether it stays where it is.
+    pub fn is_still(&self) -> bool {
+        self.motion == Motion::Still
+    }
+
     /// Where it is at a time (s).
     pub fn pose(&self, time: f64) -> Pose {
         self.motion.pose(time)
@@ -105,11 +154,28 @@ impl Placed<'_> {
         Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
     }
 
+    /// A region outside of which no node is met, with a margin (m) for round-off.
+    pub(super) fn bound(&self, margin: f64) -> Bound {
+        let now = |point: DVec3| self.moving.as_ref().map_or(point, |moving| moving.now.apply(moving.pivot, point));
+        let middle = now(self.obstacle.shape.middle());
+        match self.obstacle.shape {
+            Shape::Floor { normal, .. } | Shape::Plate { normal, .. } => {
+                let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.turn * normal);
+                Bound::HalfSpace { normal, height: normal.dot(middle) + margin }
+            }
+            // In the plane they are endless across it, but all nodes are at zero there.
+            Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Box { .. } => {
+                let reach = DVec3::splat(self.obstacle.shape.reach() + margin);
+                Bound::Box { low: middle - reach, high: middle + reach }
+            }
+        }
+    }
+
     /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is that of each node (m/s²); `None` for nodes that
     /// have moved at constant velocity.
-    pub fn rebound_all(&self, state: &mut State, acceleration: Option<&[DVec3]>) {
+    fn rebound_all(&self, position: &mut [DVec3], velocity: &mut [DVec3], acceleration: Option<&[DVec3]>) {
         let acceleration = |node: usize| acceleration.map_or(DVec3::ZERO, |all| all[node]);
-        let nodes = state.position.iter_mut().zip(&mut state.velocity).enumerate();
+        let nodes = position.iter_mut().zip(velocity).enumerate();
         match (&self.moving, &self.obstacle.shape) {
             // Nearly every scene stands on one, and most of its nodes are far above: its shape is asked for only once.
             (None, shape @ &Shape::Floor { normal, height }) => nodes.for_each(|(node, (position, velocity))| {

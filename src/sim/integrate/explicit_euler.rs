@@ -3,16 +3,20 @@
 //! The eigenvalues of an undamped oscillation are `1 ± iωΔT`, outside the unit circle for every step: energy grows
 //! without bound. The results that the paper shows need the new velocity.
 
-use super::{Runaway, Step};
-use crate::sim::body::State;
-use glam::DVec3;
+use super::{Interval, Runaway, State, System, Trial};
 
-/// Takes a step; `forces` (N) become the new velocities (m/s).
-pub(super) fn advance(step: &Step<'_>, state: &mut State, forces: &mut [DVec3]) -> Result<(), Runaway> {
-    step.velocities(state, forces)?;
-    for (position, &velocity) in state.position.iter_mut().zip(&state.velocity) {
-        *position += velocity * step.step;
+/// Tries a step; `limit` (m/s) is the greatest speed.
+pub(super) fn step(
+    system: &System,
+    interval: Interval,
+    limit: f64,
+    state: &State,
+    trial: &mut Trial,
+) -> Result<(), Runaway> {
+    trial.velocities(system, interval, limit, state)?;
+    for ((position, &from), &velocity) in trial.next.position.iter_mut().zip(&state.position).zip(&state.velocity) {
+        *position = from + velocity * interval.step;
     }
-    state.velocity.copy_from_slice(forces);
+    system.constrain(interval, state, &mut trial.next, None);
     Ok(())
 }

@@ -4,7 +4,11 @@ mod explicit_euler;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
-use super::body::State;
+use super::dynamics::{Dynamics, Runaway, SpeedLimit};
+use super::grip::Interval;
+use super::model::Scratch;
+use super::state::State;
+use super::system::System;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,115 +28,86 @@ pub enum Integrator {
     VelocityVerlet,
 }
 
-/// A node whose new velocity is no number or beyond all reason: the step is not taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Runaway {
-    /// The first such node.
-    pub(super) node: usize,
+/// Forces, then an integrator: the plain way, which every faster one is tested against.
+pub(super) struct ByForces {
+    integrator: Integrator,
+    trial: Trial,
 }
 
-/// One step to be taken.
-pub(super) struct Step<'a> {
-    /// Mass of each node (kg).
-    pub(super) mass: &'a [f64],
-    /// ΔT (s).
-    pub(super) step: f64,
-    /// The speed (m/s) beyond which a node is lost.
-    pub(super) speed_limit: f64,
+/// A step on its way. Until it is accepted the state is as it was.
+struct Trial {
+    /// The state at the end of the step.
+    next: State,
+    /// What integrators of several evaluations find on their way.
+    evaluations: [Vec<f64>; 2],
+    scratch: Scratch,
 }
 
-/// What acts on the nodes in a step.
-pub(super) trait Acting {
-    /// Writes the forces (N) at a state.
-    fn forces(&mut self, state: &State, forces: &mut [DVec3]);
-
-    /// Makes what the last evaluation of the forces found the memory from which the next one starts.
-    fn commit(&mut self);
-
-    /// Whether the forces depend on velocities.
-    fn is_damped(&self) -> bool;
-
-    /// Collisions and hands at the end of the step. `acceleration` (m/s²) is that with which each node has moved in the
-    /// step; `None` if it has moved at constant velocity.
-    fn constrain(&mut self, state: &mut State, acceleration: Option<&[DVec3]>);
-
-    /// Gives the nodes that hands hold the velocities of the hands again.
-    fn hold(&mut self, state: &mut State);
-}
-
-/// An integrator at work, with the memory it needs.
-pub(super) enum Stepper {
-    /// For both Euler methods: the forces, then the new velocities.
-    Euler {
-        order: Order,
-        scratch: Vec<DVec3>,
-    },
-    VelocityVerlet(velocity_verlet::Memory),
-}
-
-/// Which velocity moves the positions.
-#[derive(Clone, Copy)]
-pub(super) enum Order {
-    NewVelocity,
-    OldVelocity,
-}
-
-impl Stepper {
-    pub(super) fn new(integrator: Integrator, nodes: usize) -> Self {
-        let euler = |order| Self::Euler { order, scratch: vec![DVec3::ZERO; nodes] };
-        match integrator {
-            Integrator::SemiImplicitEuler => euler(Order::NewVelocity),
-            Integrator::ExplicitEuler => euler(Order::OldVelocity),
-            Integrator::VelocityVerlet => Self::VelocityVerlet(velocity_verlet::Memory::new(nodes)),
-        }
+impl ByForces {
+    pub(super) fn new(integrator: Integrator, state: &State) -> Self {
+        let (evaluations, scratch) = Default::default();
+        Self { integrator, trial: Trial { next: state.clone(), evaluations, scratch } }
     }
+}
 
-    /// Takes a step.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit; `state` is then as it was.
-    pub(super) fn advance(
-        &mut self,
-        step: &Step<'_>,
-        state: &mut State,
-        acting: &mut dyn Acting,
-    ) -> Result<(), Runaway> {
-        match self {
-            Self::Euler { order, scratch } => {
-                acting.forces(state, scratch);
-                acting.commit();
-                match order {
-                    Order::NewVelocity => semi_implicit_euler::advance(step, state, scratch)?,
-                    Order::OldVelocity => explicit_euler::advance(step, state, scratch)?,
+impl Dynamics for ByForces {
+    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
+        for _ in 0..count {
+            let interval = system.interval(state.steps);
+            let limit = limit.at(interval.end);
+            self.trial.begin(system, interval, state);
+            match self.integrator {
+                Integrator::SemiImplicitEuler => {
+                    semi_implicit_euler::step(system, interval, limit, state, &mut self.trial)
                 }
-                acting.constrain(state, None);
-                Ok(())
-            }
-            Self::VelocityVerlet(memory) => velocity_verlet::advance(step, state, memory, acting),
+                Integrator::ExplicitEuler => explicit_euler::step(system, interval, limit, state, &mut self.trial),
+                Integrator::VelocityVerlet => velocity_verlet::step(system, interval, limit, state, &mut self.trial),
+            }?;
+            self.trial.accept(state);
         }
+        Ok(())
     }
 }
 
-impl Step<'_> {
-    /// Eq. (2): turns forces (N) into the velocities (m/s) at the end of the step, `V + F/m ΔT`, in their place.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit.
-    #[doc(alias = "Eq. 2")]
-    fn velocities(&self, state: &State, forces: &mut [DVec3]) -> Result<(), Runaway> {
-        for ((force, &mass), &velocity) in forces.iter_mut().zip(self.mass).zip(&state.velocity) {
-            *force = velocity + *force / mass * self.step;
-        }
-        self.check(forces)
+impl Trial {
+    fn begin(&mut self, system: &System, interval: Interval, state: &State) {
+        let constraints = &mut self.next.memory.constraints;
+        constraints.clone_from(&state.memory.constraints);
+        system.change_grips(constraints, |grip, memory| {
+            grip.reach(interval.end, memory, |node| state.position[node as usize])
+        });
     }
 
-    fn check(&self, velocities: &[DVec3]) -> Result<(), Runaway> {
-        let limit = self.speed_limit * self.speed_limit;
-        // NaN is within no bounds.
-        let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
-        match velocities.iter().position(|velocity| !within_bounds(velocity)) {
-            Some(node) => Err(Runaway { node }),
-            None => Ok(()),
+    fn accept(&mut self, state: &mut State) {
+        std::mem::swap(&mut state.position, &mut self.next.position);
+        std::mem::swap(&mut state.velocity, &mut self.next.velocity);
+        std::mem::swap(&mut state.memory, &mut self.next.memory);
+        state.steps += 1;
+    }
+
+    /// Eq. (2): evaluates the forces and writes the velocities (m/s) at the end of the step, `V + F/m ΔT`.
+    ///
+    /// # Errors
+    /// When a node would become faster than the limit (m/s).
+    #[doc(alias = "Eq. 2")]
+    fn velocities(&mut self, system: &System, interval: Interval, limit: f64, state: &State) -> Result<(), Runaway> {
+        let Self { next, scratch, .. } = self;
+        let (memory, forces) = (&state.memory.model, &mut next.velocity);
+        system.forces(state.nodes(), memory, &mut next.memory.model, scratch, forces);
+        for ((force, &mass), &velocity) in forces.iter_mut().zip(&system.mass).zip(&state.velocity) {
+            *force = velocity + *force / mass * interval.step;
         }
+        check(forces, limit)
+    }
+}
+
+/// Whether all velocities (m/s) are within the limit.
+fn check(velocities: &[DVec3], limit: f64) -> Result<(), Runaway> {
+    let limit = limit * limit;
+    // NaN is within no bounds.
+    let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
+    match velocities.iter().position(|velocity| !within_bounds(velocity)) {
+        Some(node) => Err(Runaway { node }),
+        None => Ok(()),
     }
 }

@@ -1,16 +1,21 @@
 //! Eqs. (2) and (3), the second with the velocity of the first: `V += F/m ΔT`, then `P += V ΔT`.
 
-use super::{Runaway, Step};
-use crate::sim::body::State;
-use glam::DVec3;
+use super::{Interval, Runaway, State, System, Trial};
 
-/// Takes a step; `forces` (N) become the new velocities (m/s).
+/// Tries a step; `limit` (m/s) is the greatest speed.
 #[doc(alias = "Eq. 3")]
-pub(super) fn advance(step: &Step<'_>, state: &mut State, forces: &mut [DVec3]) -> Result<(), Runaway> {
-    step.velocities(state, forces)?;
-    state.velocity.copy_from_slice(forces);
-    for (position, &velocity) in state.position.iter_mut().zip(&state.velocity) {
-        *position += velocity * step.step;
+pub(super) fn step(
+    system: &System,
+    interval: Interval,
+    limit: f64,
+    state: &State,
+    trial: &mut Trial,
+) -> Result<(), Runaway> {
+    trial.velocities(system, interval, limit, state)?;
+    let State { position, velocity, .. } = &mut trial.next;
+    for ((position, &from), &velocity) in position.iter_mut().zip(&state.position).zip(&*velocity) {
+        *position = from + velocity * interval.step;
     }
+    system.constrain(interval, state, &mut trial.next, None);
     Ok(())
 }

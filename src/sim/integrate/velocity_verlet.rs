@@ -10,59 +10,66 @@
 //!
 //! W. Swope, H. Andersen, P. Berens, K. Wilson, J. Chem. Phys. 76, 637 (1982).
 
-use super::{Acting, Runaway, Step};
-use crate::sim::body::State;
+//!
+//! Without damping it remembers the evaluation at the present state: the accelerations, then the memory of the models that
+//! was found with them.
+
+use super::{Interval, Runaway, State, System, Trial, check};
+use crate::sim::model::Scratch;
+use crate::sim::state::Nodes;
 use glam::DVec3;
 
-/// What lasts from one step to the next.
-pub(in crate::sim) struct Memory {
-    /// The accelerations at the present state (m/s²), if they are known.
-    acceleration: Vec<DVec3>,
-    known: bool,
-    next: State,
-    next_acceleration: Vec<DVec3>,
-}
-
-impl Memory {
-    pub(super) fn new(nodes: usize) -> Self {
-        let zeros = || vec![DVec3::ZERO; nodes];
-        Self { acceleration: zeros(), known: false, next: State::at_rest(zeros()), next_acceleration: zeros() }
-    }
-}
-
-/// Takes a step.
-pub(super) fn advance(
-    step: &Step<'_>,
-    state: &mut State,
-    memory: &mut Memory,
-    acting: &mut dyn Acting,
+/// Tries a step; `limit` (m/s) is the greatest speed.
+pub(super) fn step(
+    system: &System,
+    interval: Interval,
+    limit: f64,
+    state: &State,
+    trial: &mut Trial,
 ) -> Result<(), Runaway> {
-    let Memory { acceleration, known, next, next_acceleration } = memory;
-    let accelerate = |acting: &mut dyn Acting, state: &State, out: &mut [DVec3]| {
-        acting.forces(state, out);
-        out.iter_mut().zip(step.mass).for_each(|(force, &mass)| *force /= mass);
-    };
-    if !*known {
-        accelerate(acting, state, acceleration);
+    let Trial { next, evaluations: [at_start, at_end], scratch } = trial;
+    let step = interval.step;
+    let known = &state.memory.integrator;
+    if known.is_empty() {
+        evaluate(system, state.nodes(), &state.memory.model, at_start, scratch);
     }
-    acting.commit();
+    let (acceleration, model) = split(if known.is_empty() { at_start } else { known }, system);
+    next.memory.model.copy_from_slice(model);
     // The way, and the velocity at its end if the acceleration stays.
     for (node, &acceleration) in acceleration.iter().enumerate() {
         let (from, old) = (state.position[node], state.velocity[node]);
-        let predicted = old + acceleration * step.step;
+        let predicted = old + acceleration * step;
         next.velocity[node] = predicted;
-        next.position[node] = from + (old + predicted) * (0.5 * step.step);
+        next.position[node] = from + (old + predicted) * (0.5 * step);
     }
-    step.check(&next.velocity)?;
-    acting.constrain(next, Some(acceleration));
-    accelerate(acting, next, next_acceleration);
-    for ((velocity, &before), &after) in next.velocity.iter_mut().zip(&*acceleration).zip(&*next_acceleration) {
-        *velocity += (after - before) * (0.5 * step.step);
+    check(&next.velocity, limit)?;
+    system.constrain(interval, state, next, Some(acceleration));
+    evaluate(system, next.nodes(), &next.memory.model, at_end, scratch);
+    let (next_acceleration, _) = split(at_end, system);
+    for ((velocity, &before), &after) in next.velocity.iter_mut().zip(acceleration).zip(next_acceleration) {
+        *velocity += (after - before) * (0.5 * step);
     }
-    acting.hold(next);
-    step.check(&next.velocity)?;
-    std::mem::swap(state, next);
-    std::mem::swap(acceleration, next_acceleration);
-    *known = !acting.is_damped();
+    system.hold(interval, next);
+    check(&next.velocity, limit)?;
+    if system.is_damped() {
+        next.memory.integrator.clear();
+    } else {
+        std::mem::swap(&mut next.memory.integrator, at_end);
+    }
     Ok(())
+}
+
+/// Accelerations (m/s²) and the next memory of the models, one after the other.
+fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, scratch: &mut Scratch) {
+    out.resize(3 * at.position.len() + memory.len(), 0.0);
+    let (acceleration, next) = out.split_at_mut(3 * at.position.len());
+    let acceleration: &mut [DVec3] = bytemuck::cast_slice_mut(acceleration);
+    system.forces(at, memory, next, scratch, acceleration);
+    acceleration.iter_mut().zip(&system.mass).for_each(|(force, &mass)| *force /= mass);
+}
+
+/// An evaluation in its two parts.
+fn split<'a>(evaluation: &'a [f64], system: &System) -> (&'a [DVec3], &'a [f64]) {
+    let (acceleration, model) = evaluation.split_at(3 * system.mass.len());
+    (bytemuck::cast_slice(acceleration), model)
 }

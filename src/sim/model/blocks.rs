@@ -12,36 +12,39 @@ use std::ops::Range;
 /// 150 ns, a hand-over some microseconds); more and small bodies find no second thread.
 const BLOCK: usize = 512;
 
-/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks.
-pub(super) fn for_each<M: Send>(
+/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. Each element has
+/// `width` numbers of the memory.
+pub(super) fn for_each<T: Send>(
     elements: &IndexLists,
-    memory: &mut [M],
-    corners: &mut [DVec3],
-    work: &(impl Fn(usize, &mut M, &mut [DVec3]) + Sync),
+    width: usize,
+    memory: &mut [f64],
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
-    split(elements, 0..elements.len(), memory, corners, work);
+    split(elements, 0..elements.len(), width, memory, corners, work);
 }
 
-fn split<M: Send>(
+fn split<T: Send>(
     elements: &IndexLists,
     range: Range<usize>,
-    memory: &mut [M],
-    corners: &mut [DVec3],
-    work: &(impl Fn(usize, &mut M, &mut [DVec3]) + Sync),
+    width: usize,
+    memory: &mut [f64],
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
     if range.len() > BLOCK {
         let middle = range.start + range.len() / 2;
         let first_corner = |element: usize| elements.range(element).start;
-        let (memory_low, memory_high) = memory.split_at_mut(middle - range.start);
+        let (memory_low, memory_high) = memory.split_at_mut((middle - range.start) * width);
         let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
         rayon::join(
-            || split(elements, range.start..middle, memory_low, corners_low, work),
-            || split(elements, middle..range.end, memory_high, corners_high, work),
+            || split(elements, range.start..middle, width, memory_low, corners_low, work),
+            || split(elements, middle..range.end, width, memory_high, corners_high, work),
         );
         return;
     }
     let mut rest = corners;
-    for (element, memory) in range.zip(memory) {
+    for (element, memory) in range.zip(memory.chunks_exact_mut(width)) {
         let (own, others) = rest.split_at_mut(elements.range(element).len());
         work(element, memory, own);
         rest = others;

@@ -5,9 +5,10 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
 
-use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
-use crate::sim::body::{Body, Dimension, ElementKind, State};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use crate::sim::body::{Body, Dimension, ElementKind};
 use crate::sim::census::Census;
+use crate::sim::state::Nodes;
 use crate::sim::topology::Springs;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -145,36 +146,46 @@ impl ElasticModel for MassSpring {
         &self.springs
     }
 
-    fn prepare(&self, body: &Arc<Body>, _initial: &State) -> Box<dyn ForceModel> {
+    fn known(&self) -> Option<Known<'_>> {
+        Some(Known::MassSpring(self))
+    }
+
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
         Box::new(Lattice {
             natural_length: self.springs.iter().map(length).collect(),
-            spring_forces: vec![DVec3::ZERO; self.springs.len()],
             gather: blocks::SignedGather::new(body.len(), &self.springs),
             model: self.clone(),
         })
     }
 }
 
-/// A body's springs at work.
+/// A body's springs.
 struct Lattice {
     model: MassSpring,
     /// `L_ij` of each spring (m).
     natural_length: Vec<f64>,
-    /// Force of each spring on its first node (N); its second node gets the opposite.
-    spring_forces: Vec<DVec3>,
+    /// Of the force of each spring on its first node, of which its second gets the opposite, the sums for each node.
     gather: blocks::SignedGather,
 }
 
 impl ForceModel for Lattice {
-    fn add_forces(&mut self, state: &State, forces: &mut [DVec3]) {
-        let Self { model, natural_length, spring_forces, gather } = self;
-        blocks::for_each_one(spring_forces, &|at, out| {
-            let [i, j] = model.springs[at].map(|node| node as usize);
+    fn add_forces(
+        &self,
+        at: Nodes<'_>,
+        _memory: &[f64],
+        _next: &mut [f64],
+        scratch: &mut Scratch,
+        forces: &mut [DVec3],
+    ) {
+        let Self { model, natural_length, gather } = self;
+        let spring_forces = scratch.vectors(natural_length.len());
+        blocks::for_each_one(spring_forces, &|spring, out| {
+            let [i, j] = model.springs[spring].map(|node| node as usize);
             *out = spring_force(
-                state.position[i] - state.position[j],
-                state.velocity[i] - state.velocity[j],
-                natural_length[at],
+                at.position[i] - at.position[j],
+                at.velocity[i] - at.velocity[j],
+                natural_length[spring],
                 model.stiffness,
                 model.damping,
             );
@@ -186,24 +197,16 @@ impl ForceModel for Lattice {
         self.model.damping > 0.0
     }
 
-    fn measure(&self, state: &State) -> Measure {
-        Measure { energy: Some(self.energies(state).map(|(_, energy)| energy).sum()), residual: None }
-    }
-
-    fn share_energy(&self, state: &State, energies: &mut [f64]) {
-        for (ends, energy) in self.energies(state) {
-            ends.iter().for_each(|&node| energies[node as usize] += 0.5 * energy);
+    fn report(&self, at: Nodes<'_>, _memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+        let mut whole = 0.0;
+        for (spring, (ends, &natural)) in self.model.springs.iter().zip(&self.natural_length).enumerate() {
+            let [i, j] = ends.map(|node| at.position[node as usize]);
+            let stretch = (i - j).length() - natural;
+            let energy = 0.5 * self.model.stiffness * stretch * stretch;
+            share(spring, ends, &[0.5 * energy; 2]);
+            whole += energy;
         }
-    }
-}
-
-impl Lattice {
-    /// The ends of each spring and its energy (J).
-    fn energies(&self, state: &State) -> impl Iterator<Item = ([u32; 2], f64)> {
-        self.model.springs.iter().zip(&self.natural_length).map(|(&[i, j], &natural)| {
-            let stretch = (state.position[i as usize] - state.position[j as usize]).length() - natural;
-            ([i, j], 0.5 * self.model.stiffness * stretch * stretch)
-        })
+        Report { energy: Some(whole), residuals: Vec::new() }
     }
 }
 

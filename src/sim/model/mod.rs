@@ -1,14 +1,15 @@
 //! The elastic models. One file each; the list below is all that the rest of the crate knows of them.
 //!
 //! To add a model, write a file with `Parameters`, what a scene types, which implement `TypedModel`, a resolved
-//! description that implements [`ElasticModel`], and a worker that implements [`ForceModel`]; then name it in the list.
+//! description that implements [`ElasticModel`], and its forces, which implement [`ForceModel`]; then name it in the list.
 
 mod blocks;
 pub mod mass_spring;
 pub mod shape_based;
 
-use super::body::{Body, State};
+use super::body::Body;
 use super::census::Census;
+use super::state::{Nodes, State};
 use super::words;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -92,8 +93,14 @@ pub struct Misfit {
 /// An elastic model with all its parameters in SI units. It does not change; the work is done by what
 /// [`Self::prepare`] makes.
 pub trait ElasticModel: Debug + Send + Sync {
-    /// Elastic constant `k` (N/m), which sets the cycle `T = 2π√(m/k)`.
+    /// Elastic constant `k` (N/m), by which diagrams divide forces.
     fn stiffness(&self) -> f64;
+
+    /// The shortest period (s) with which a node of the body swings: `T = 2π√(m/k)` of its lightest node. Steps may be
+    /// given as a fraction of it.
+    fn shortest_period(&self, body: &Body) -> f64 {
+        std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
+    }
 
     /// A few words for a picture's second line, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
     fn describe(&self, body: &Body) -> String;
@@ -103,36 +110,102 @@ pub trait ElasticModel: Debug + Send + Sync {
         &[]
     }
 
-    /// Makes the worker that evaluates the forces on `body`, starting at `initial`.
-    fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel>;
+    /// Which model it is, for faster ways of computing it.
+    fn known(&self) -> Option<Known<'_>> {
+        None
+    }
+
+    /// Works out beforehand what evaluating the forces on `body` needs.
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
 }
 
-/// The internal forces of a body. It may keep a memory, such as the last rotation of each element.
-pub trait ForceModel: Send {
-    /// Adds elastic and damping forces (N) to `forces`, one per node. The same state gives the same forces however often
-    /// it is asked about: what an evaluation finds becomes the model's memory only with [`Self::commit`].
-    fn add_forces(&mut self, state: &State, forces: &mut [DVec3]);
+impl dyn ElasticModel + '_ {
+    /// The internal forces (N) on each node of a body at a state with which the model starts.
+    pub fn forces_at_start(&self, body: &Arc<Body>, state: &State) -> Vec<DVec3> {
+        let model = self.prepare(body);
+        let memory = model.start(&state.position);
+        let mut forces = vec![DVec3::ZERO; body.len()];
+        model.add_forces(state.nodes(), &memory, &mut memory.clone(), &mut Scratch::default(), &mut forces);
+        forces
+    }
+}
 
-    /// Makes what the last evaluation of the forces found the memory from which the next one starts.
-    fn commit(&mut self) {}
+/// Models that vectorised steps know.
+#[derive(Clone, Copy, Debug)]
+pub enum Known<'a> {
+    /// Section 3 of the paper.
+    ShapeBased(&'a shape_based::ShapeBased),
+    /// Section 2 of the paper.
+    MassSpring(&'a mass_spring::MassSpring),
+}
+
+/// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the same
+/// next memory. So trial evaluations and steps that are given up leave nothing behind.
+///
+/// # Example
+/// A whole model: between any two nodes of an element a rod with the energy `k/(8 L²) (|p|² − L²)²`.
+/// ```
+#[doc = include_str!("../../../tests/physics/example_model.rs")]
+/// # use localshape::sim::{Body, State, World, body::{Dimension, IndexLists, Solids}, world::{Stepping, Surroundings}};
+/// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
+/// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
+/// let stretched = State::at_rest(body.rest.iter().map(|&rest| rest * 1.1).collect());
+/// let stepping = Stepping::new(Default::default(), 1e-3);
+/// let mut world = World::new(&body, stretched, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
+/// let energy = world.diagnostics().elastic;
+/// world.advance(1000);
+/// assert!(world.diagnostics().energy() < energy * 1.01);
+/// ```
+pub trait ForceModel: Send + Sync {
+    /// The memory at the start, with the nodes at `position` (m); its length stays as it is.
+    fn start(&self, position: &[DVec3]) -> Vec<f64> {
+        let _ = position;
+        Vec::new()
+    }
+
+    /// Adds elastic and damping forces (N) to `forces`, one per node, and writes the whole `next` memory.
+    fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]);
 
     /// Whether the forces depend on velocities.
     fn is_damped(&self) -> bool;
 
-    /// Energy and errors at a state, with the rotations that an evaluation of the forces there finds.
-    fn measure(&self, state: &State) -> Measure;
+    /// Energy and errors, as an evaluation of the forces with the same nodes and memory finds them. `share` is called for
+    /// each element or spring in order, with its number, its nodes and the part of its energy (J) that is each node's.
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report;
+}
 
-    /// Adds to each node its part of the elastic energy (J); see [`Field::ElasticEnergy`](super::field::Field).
-    fn share_energy(&self, state: &State, energies: &mut [f64]);
+/// Room for intermediate results, kept from one evaluation to the next. What it holds in between means nothing.
+#[derive(Debug, Default)]
+pub struct Scratch(Vec<DVec3>);
+
+impl Scratch {
+    /// Room for so many vectors, with anything in them.
+    pub fn vectors(&mut self, count: usize) -> &mut [DVec3] {
+        if self.0.len() < count {
+            self.0.resize(count, DVec3::ZERO);
+        }
+        &mut self.0[..count]
+    }
 }
 
 /// What a model says about a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measure {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
     /// Elastic energy (J), of which the elastic forces are the negative gradient; `None` for a model without one.
     pub energy: Option<f64>,
-    /// The largest α of Eq. (18) over all elements (rad/s²); `None` for a model without rotations.
-    pub residual: Option<f64>,
+    /// What is left of conditions that the model meets only approximately, by name.
+    pub residuals: Vec<(&'static str, f64)>,
+}
+
+impl Report {
+    /// The name of the largest α of Eq. (18) over all elements (rad/s²).
+    pub const ROTATION: &'static str = "rotation";
+
+    /// A residual by its name; `None` for a model without it.
+    pub fn residual(&self, name: &str) -> Option<f64> {
+        self.residuals.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+    }
 }
 
 /// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0. `m` is the

@@ -9,10 +9,11 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Measure, Misfit, Needs, TypedModel, blocks};
-use crate::sim::body::{Body, Dimension, State};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use crate::sim::body::{Body, Dimension};
 use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
+use crate::sim::state::Nodes;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -145,12 +146,67 @@ impl ElasticModel for ShapeBased {
         text
     }
 
-    fn prepare(&self, body: &Arc<Body>, initial: &State) -> Box<dyn ForceModel> {
-        Box::new(Elements::new(self.clone(), body, initial))
+    fn known(&self) -> Option<Known<'_>> {
+        Some(Known::ShapeBased(self))
+    }
+
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
+        Box::new(Elements::new(self.clone(), body))
+    }
+}
+
+/// How the rotation of an element is found and remembered.
+#[derive(Clone, Copy, Debug)]
+enum Solver {
+    /// Eq. (9); remembered is `(cos θ, sin θ)`.
+    Plane,
+    /// Eq. (15) and its rivals; remembered is a unit quaternion.
+    Space,
+    /// Eq. (16); remembered is the matrix, which is no rotation for long.
+    Linear,
+}
+
+impl Solver {
+    /// How many numbers an element remembers.
+    fn width(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            Self::Space => 4,
+            Self::Linear => 9,
+        }
     }
 }
 
 impl ShapeBased {
+    fn solver(&self, dimension: Dimension) -> Solver {
+        match (dimension, self.rotation) {
+            (Dimension::Plane, _) => Solver::Plane,
+            (Dimension::Space, RotationReading::LinearUpdate) => Solver::Linear,
+            (Dimension::Space, _) => Solver::Space,
+        }
+    }
+
+    /// The rotation of an element from its last one, as read. `at_rest` is `Σ R0 rᵀ` (m²).
+    fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
+        match solver {
+            Solver::Plane => {
+                let found = planar::solve(at_rest, DVec2::from_slice(last));
+                found.write_to_slice(next);
+                planar::matrix(found)
+            }
+            Solver::Space => {
+                let found = self.follow(at_rest, DQuat::from_slice(last));
+                found.write_to_slice(next);
+                DMat3::from_quat(found)
+            }
+            Solver::Linear => {
+                let found = linear_update::follow(at_rest, DMat3::from_cols_slice(last), self.passes);
+                found.write_cols_to_slice(next);
+                found
+            }
+        }
+    }
+
     /// The rotation of an element in space from its last one, as read.
     fn follow(&self, at_rest: DMat3, last: DQuat) -> DQuat {
         use linearised::{follow, solve, solve_symmetric, turn, turn_by_length};
@@ -163,53 +219,31 @@ impl ShapeBased {
     }
 }
 
-/// The rotations of all elements: the model's memory from one evaluation to the next.
-#[derive(Clone, Debug)]
-enum Rotations {
-    /// `(cos θ, sin θ)` of each element in the plane.
-    Plane(Memory<DVec2>),
-    /// The unit quaternion of each element in space.
-    Space(Memory<DQuat>),
-    /// The matrix of each element under Eq. (16), which is no rotation for long.
-    Linear(Memory<DMat3>),
-}
-
-/// One entry per element.
-#[derive(Clone, Debug)]
-struct Memory<T> {
-    /// From what an evaluation of the forces starts.
-    last: Vec<T>,
-    /// What the last evaluation found.
-    found: Vec<T>,
-}
-
-impl<T: Clone> Memory<T> {
-    fn new(start: impl Iterator<Item = T>) -> Self {
-        let last: Vec<_> = start.collect();
-        Self { found: last.clone(), last }
-    }
-
-    fn commit(&mut self) {
-        std::mem::swap(&mut self.last, &mut self.found);
-    }
-}
-
-/// A body's elements at work.
+/// A body's elements.
 struct Elements {
     model: ShapeBased,
+    solver: Solver,
     body: Arc<Body>,
     /// `R0` of each corner (m), element after element.
     rest: Vec<DVec3>,
     /// `Σ m |R0|²` of each element (kg m²), Eq. (17).
     inertia: Vec<f64>,
-    rotations: Rotations,
-    /// Force on each corner (N), element after element; a node sums its own in this order.
-    corner_forces: Vec<DVec3>,
+    /// Of the forces on each corner, element after element, the sums for each node.
     gather: blocks::Gather,
 }
 
+/// Where the equilibrium shape of an element is.
+struct Fit {
+    /// The unweighted mean of its nodes (m).
+    centre: DVec3,
+    /// `Σ R0 rᵀ` (m²).
+    at_rest: DMat3,
+    /// The rotation.
+    turn: DMat3,
+}
+
 impl Elements {
-    fn new(model: ShapeBased, body: &Arc<Body>, initial: &State) -> Self {
+    fn new(model: ShapeBased, body: &Arc<Body>) -> Self {
         let elements = &body.elements;
         let mut rest = Vec::with_capacity(elements.indices().len());
         for nodes in elements.iter() {
@@ -219,151 +253,105 @@ impl Elements {
         let inertia = (0..elements.len())
             .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
             .collect();
-        // The start is the exact optimum of the initial positions, not the identity.
-        let at_rest = |element: usize| {
-            let nodes = &elements[element];
-            moment_at_rest(&rest[elements.range(element)], nodes, mean(nodes, &initial.position), &initial.position)
-        };
-        let all = 0..elements.len();
-        let rotations = match body.dimension {
-            Dimension::Plane => Rotations::Plane(Memory::new(all.map(|e| planar::solve(at_rest(e), DVec2::X)))),
-            Dimension::Space => {
-                let turns = all.map(|e| davenport1968::optimum(at_rest(e), DQuat::IDENTITY));
-                match model.rotation {
-                    RotationReading::LinearUpdate => Rotations::Linear(Memory::new(turns.map(DMat3::from_quat))),
-                    _ => Rotations::Space(Memory::new(turns)),
-                }
+        let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
+        Self { solver: model.solver(body.dimension), model, body: Arc::clone(body), rest, inertia, gather }
+    }
+
+    /// The nodes of an element and its shape at rest (m).
+    fn element(&self, element: usize) -> (&[u32], &[DVec3]) {
+        (&self.body.elements[element], &self.rest[self.body.elements.range(element)])
+    }
+
+    /// The part of the memory that is an element's.
+    fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
+        let width = self.solver.width();
+        &memory[element * width..][..width]
+    }
+
+    /// Finds an element's rotation from the last one.
+    fn fit(&self, element: usize, position: &[DVec3], last: &[f64], next: &mut [f64]) -> Fit {
+        let (nodes, rest) = self.element(element);
+        let centre = mean(nodes, position);
+        let at_rest = moment_at_rest(rest, nodes, centre, position);
+        Fit { centre, at_rest, turn: self.model.rotation(self.solver, at_rest, last, next) }
+    }
+
+    /// Eq. (4) for one element: writes the force on each of its corners (N).
+    #[doc(alias = "Eq. 4")]
+    fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) {
+        let ShapeBased { stiffness: k, damping: d, damping_of, .. } = self.model;
+        let (nodes, rest) = self.element(element);
+        let Fit { centre, turn, .. } = self.fit(element, at.position, last, next);
+        let drift = mean(nodes, at.velocity);
+        let spin = match damping_of {
+            DampingReading::RelativeMotion => None,
+            DampingReading::Deformation => {
+                let corners =
+                    nodes.iter().map(|&node| (at.position[node as usize] - centre, at.velocity[node as usize] - drift));
+                Some(best_spin(corners))
             }
         };
-        let corner_forces = vec![DVec3::ZERO; rest.len()];
-        let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
-        Self { model, body: Arc::clone(body), rest, inertia, rotations, corner_forces, gather }
-    }
-
-    /// The rotation that an evaluation of the forces finds for one element.
-    fn rotation(&self, element: usize, at_rest: DMat3) -> DMat3 {
-        match &self.rotations {
-            Rotations::Plane(memory) => planar::matrix(planar::solve(at_rest, memory.last[element])),
-            Rotations::Space(memory) => DMat3::from_quat(self.model.follow(at_rest, memory.last[element])),
-            Rotations::Linear(memory) => linear_update::follow(at_rest, memory.last[element], self.model.passes),
+        for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
+            let r = at.position[node as usize] - centre;
+            let displacement = r - turn * rest;
+            let mut relative_velocity = at.velocity[node as usize] - drift;
+            if let Some(spin) = spin {
+                relative_velocity -= spin.cross(r);
+            }
+            *force = -(displacement * k + relative_velocity * d);
         }
-    }
-
-    /// Calls `visit` with each node of an element and its squared distance from the equilibrium shape (m²), and returns
-    /// `Σ R rᵀ` (m²).
-    fn distances(&self, element: usize, state: &State, mut visit: impl FnMut(u32, f64)) -> DMat3 {
-        let nodes = &self.body.elements[element];
-        let rest = &self.rest[self.body.elements.range(element)];
-        let centre = mean(nodes, &state.position);
-        let at_rest = moment_at_rest(rest, nodes, centre, &state.position);
-        let turn = self.rotation(element, at_rest);
-        for (&node, &rest) in nodes.iter().zip(rest) {
-            visit(node, (state.position[node as usize] - centre - turn * rest).length_squared());
-        }
-        turn * at_rest
     }
 }
 
 impl ForceModel for Elements {
-    fn add_forces(&mut self, state: &State, forces: &mut [DVec3]) {
-        let Self { model, body, rest, rotations, corner_forces, gather, .. } = self;
-        let evaluate = Evaluate { model, body, rest, state };
-        match rotations {
-            Rotations::Plane(Memory { last, found }) => {
-                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
-                    evaluate.element(element, out, |at_rest| {
-                        *found = planar::solve(at_rest, last[element]);
-                        planar::matrix(*found)
-                    });
-                });
-            }
-            Rotations::Space(Memory { last, found }) => {
-                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
-                    evaluate.element(element, out, |at_rest| {
-                        *found = model.follow(at_rest, last[element]);
-                        DMat3::from_quat(*found)
-                    });
-                });
-            }
-            Rotations::Linear(Memory { last, found }) => {
-                blocks::for_each(&body.elements, found, corner_forces, &|element, found, out| {
-                    evaluate.element(element, out, |at_rest| {
-                        *found = linear_update::follow(at_rest, last[element], model.passes);
-                        *found
-                    });
-                });
+    /// The exact optimum of the initial positions, not the identity.
+    fn start(&self, position: &[DVec3]) -> Vec<f64> {
+        let mut memory = vec![0.0; self.solver.width() * self.body.elements.len()];
+        for (element, memory) in memory.chunks_exact_mut(self.solver.width()).enumerate() {
+            let (nodes, rest) = self.element(element);
+            let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
+            let turn = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
+            match self.solver {
+                Solver::Plane => planar::solve(at_rest, DVec2::X).write_to_slice(memory),
+                Solver::Space => turn().write_to_slice(memory),
+                Solver::Linear => DMat3::from_quat(turn()).write_cols_to_slice(memory),
             }
         }
-        gather.add(corner_forces, forces);
+        memory
     }
 
-    fn commit(&mut self) {
-        match &mut self.rotations {
-            Rotations::Plane(memory) => memory.commit(),
-            Rotations::Space(memory) => memory.commit(),
-            Rotations::Linear(memory) => memory.commit(),
-        }
+    fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
+        let corners = scratch.vectors(self.rest.len());
+        blocks::for_each(&self.body.elements, self.solver.width(), next, corners, &|element, next, corners| {
+            self.forces(element, at, self.of(element, memory), next, corners);
+        });
+        self.gather.add(corners, forces);
     }
 
     fn is_damped(&self) -> bool {
         self.model.damping > 0.0
     }
 
-    fn measure(&self, state: &State) -> Measure {
-        let (mut energy, mut residual) = (0.0, 0.0f64);
-        for element in 0..self.body.elements.len() {
-            let a = self.distances(element, state, |_, squared| energy += 0.5 * self.model.stiffness * squared);
-            residual = residual.max(angular_acceleration(a, self.model.stiffness, self.inertia[element]));
-        }
-        Measure { energy: Some(energy), residual: Some(residual) }
-    }
-
-    fn share_energy(&self, state: &State, energies: &mut [f64]) {
-        for element in 0..self.body.elements.len() {
-            self.distances(element, state, |node, squared| {
-                energies[node as usize] += 0.5 * self.model.stiffness * squared;
-            });
-        }
-    }
-}
-
-/// What one evaluation of the forces reads.
-struct Evaluate<'a> {
-    model: &'a ShapeBased,
-    body: &'a Body,
-    rest: &'a [DVec3],
-    state: &'a State,
-}
-
-impl Evaluate<'_> {
-    /// Eq. (4) for one element: writes the force on each of its corners (N). `solve` turns `Σ R0 rᵀ` into the
-    /// rotation matrix.
-    #[doc(alias = "Eq. 4")]
-    fn element(&self, element: usize, forces: &mut [DVec3], solve: impl FnOnce(DMat3) -> DMat3) {
-        let Self { model: &ShapeBased { stiffness: k, damping: d, damping_of, .. }, body, state, .. } = *self;
-        let nodes = &body.elements[element];
-        let rest = &self.rest[body.elements.range(element)];
-        let centre = mean(nodes, &state.position);
-        let drift = mean(nodes, &state.velocity);
-        let turn = solve(moment_at_rest(rest, nodes, centre, &state.position));
-        let spin = match damping_of {
-            DampingReading::RelativeMotion => None,
-            DampingReading::Deformation => {
-                let corners = nodes
-                    .iter()
-                    .map(|&node| (state.position[node as usize] - centre, state.velocity[node as usize] - drift));
-                Some(best_spin(corners))
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+        let mut shares = vec![0.0; self.rest.len()];
+        let mut alphas = vec![0.0; self.body.elements.len()];
+        blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
+            let (nodes, rest) = self.element(element);
+            let (last, mut next) = (self.of(element, memory), [0.0; 9]);
+            let Fit { centre, at_rest, turn } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
+                let squared = (at.position[node as usize] - centre - turn * rest).length_squared();
+                *share = 0.5 * self.model.stiffness * squared;
             }
-        };
-        for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
-            let r = state.position[node as usize] - centre;
-            let displacement = r - turn * rest;
-            let mut relative_velocity = state.velocity[node as usize] - drift;
-            if let Some(spin) = spin {
-                relative_velocity -= spin.cross(r);
-            }
-            *force = -(displacement * k + relative_velocity * d);
+            alpha[0] = angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]);
+        });
+        for (element, nodes) in self.body.elements.iter().enumerate() {
+            share(element, nodes, &shares[self.body.elements.range(element)]);
         }
+        // In the order of the corners, whoever measured them.
+        let energy = shares.iter().sum();
+        let residual = alphas.into_iter().fold(0.0, f64::max);
+        Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
     }
 }
 

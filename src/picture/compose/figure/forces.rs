@@ -4,6 +4,7 @@ use super::NoRoom;
 use super::header;
 use super::labels::Labels;
 use crate::colour::{Colour, mixed};
+use crate::moments::{self, Moments};
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::caption::Writer;
@@ -80,7 +81,7 @@ struct Cell<'a> {
 }
 
 /// Composes a diagram.
-pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoom> {
+pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Result<Picture, NoRoom> {
     let scenes: Vec<Scene> = forces.scenes.iter().map(|scene| bare(scene, figure)).collect();
     let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
     let fonts = Fonts::new(&figure.look.font);
@@ -108,7 +109,8 @@ pub(super) fn compose(figure: &Figure, forces: &Forces) -> Result<Picture, NoRoo
             let (scene, run) = if runs > 1 { (row, column) } else { (column, 0) };
             let left = width * column as f64 / columns as f64;
             let room = [left, cells_top, width / columns as f64, cells_bottom - cells_top];
-            cells.push(Cell::new(&composers[scene], run, forces.compare.filter(|&compare| compare != run), room));
+            let compare = forces.compare.filter(|&compare| compare != run);
+            cells.push(Cell::new(&composers[scene], &moments.forces[scene], run, compare, room));
         }
     }
     let side_room = if forces.numbers { scale.of_type(LABEL_ROOM) } else { BARE_ROOM } * unit;
@@ -214,12 +216,18 @@ fn fit(
 }
 
 impl<'a> Cell<'a> {
-    fn new(composer: &'a Composer<'a>, run: usize, compare: Option<usize>, room: [f64; 4]) -> Self {
+    fn new(
+        composer: &'a Composer<'a>,
+        runs: &[moments::Forces],
+        run: usize,
+        compare: Option<usize>,
+        room: [f64; 4],
+    ) -> Self {
         let scene = composer.scene;
-        let snapshot = scene.world(run).snapshot();
+        let snapshot = runs[run].snapshot.clone();
         let ways = |run: usize| {
             let stiffness = scene.runs[run].model.stiffness();
-            scene.forces(run).into_iter().map(|force| force / stiffness).collect::<Vec<_>>()
+            runs[run].on_nodes.iter().map(|&force| force / stiffness).collect::<Vec<_>>()
         };
         Self {
             composer,

@@ -24,6 +24,6 @@ pub struct NoRoom;
 pub fn compose_figure(figure: &Figure, moments: &Moments) -> Result<Picture, NoRoom> {
     match &figure.content {
         Content::Sheet(sheet) => Ok(sheet::compose(figure, sheet, moments)),
-        Content::Forces(forces) => forces::compose(figure, forces),
+        Content::Forces(forces) => forces::compose(figure, forces, moments),
     }
 }

@@ -1,0 +1,83 @@
+//! Makes images of frames and figures: composed, then drawn. Whoever needs pixels gets them here.
+
+use crate::gpu::Gpu;
+use crate::history::History;
+use crate::moments::Moments;
+use crate::picture::{Composer, NoRoom, Picture, compose_figure};
+use crate::render::{RenderError, Renderer};
+use crate::scene::Scene;
+use crate::scene::figure::Figure;
+use crate::sim::snapshot::Frame;
+use image::RgbImage;
+
+/// Draws frames of one scene.
+pub struct Artist<'a> {
+    /// On the scene's background, or on white and on black if it has none.
+    composers: Vec<Composer<'a>>,
+    renderer: Renderer,
+}
+
+/// A frame that is composed and can be drawn.
+#[derive(Clone, Debug)]
+pub struct Composed {
+    /// One, or two on white and on black.
+    pictures: Vec<Picture>,
+}
+
+impl<'a> Artist<'a> {
+    /// For frames of a scene with so many samples of each pixel.
+    ///
+    /// # Errors
+    /// If the device refuses.
+    pub fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
+        let composers = match scene.view.look.transparent {
+            false => vec![Composer::new(scene)],
+            true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
+        };
+        Ok(Self { composers, renderer: Renderer::new(gpu, scene.view.size, samples)? })
+    }
+
+    /// Takes note of the scene's course, which strips show; see [`Composer::set_history`].
+    pub fn set_history(&mut self, history: &History) {
+        self.composers.iter_mut().for_each(|composer| composer.set_history(history));
+    }
+
+    /// Composes a frame.
+    pub fn compose(&self, frame: &Frame) -> Composed {
+        Composed { pictures: self.composers.iter().map(|composer| composer.compose(frame)).collect() }
+    }
+
+    /// Draws a frame: its pixels row by row, red, green and blue, and alpha if the scene has no background.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn draw(&mut self, composed: &Composed) -> Result<Vec<u8>, RenderError> {
+        match &composed.pictures[..] {
+            [on_white, on_black] => Ok(self.renderer.draw_transparent(on_white, on_black)?.into_raw()),
+            pictures => Ok(self.renderer.draw(&pictures[0])?.into_raw()),
+        }
+    }
+}
+
+/// Why a figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// It shows more than fits.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    /// The device stopped working or refused.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// Draws a figure from what was simulated for it, with so many samples of each pixel.
+///
+/// # Errors
+/// A figure that is too small for what it shows, or a device that fails.
+///
+/// # Panics
+/// If `moments` are those of another figure.
+pub fn draw_figure(gpu: &Gpu, figure: &Figure, moments: &Moments, samples: u32) -> Result<RgbImage, FigureError> {
+    let picture = compose_figure(figure, moments)?;
+    Ok(Renderer::new(gpu, figure.size, samples)?.draw(&picture)?)
+}

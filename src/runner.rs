@@ -1,0 +1,386 @@
+//! Advances runs of a scene, side by side, to the moments that are asked for: frames, the states of a figure, the course
+//! that strips show. Nothing else does.
+
+use crate::history::{Course, History};
+use crate::scene::Scene;
+use crate::sim::snapshot::{Frame, RunFrame, Status};
+use crate::sim::state::State;
+use crate::sim::world::{Moment, Stepping, Surroundings, World};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+/// Simulates runs of a scene and hands out frames in rising order.
+///
+/// It works on the rayon pool it is called from; the frames have the same bits for any number of threads.
+pub struct Runner<'a> {
+    scene: &'a Scene,
+    runs: Vec<Running>,
+}
+
+/// One run on its way.
+struct Running {
+    run: usize,
+    world: World,
+    /// Time step (s).
+    step: f64,
+    /// Moments to be noted down in the course, rising.
+    notes: Vec<Moment>,
+    course: Course,
+}
+
+impl<'a> Runner<'a> {
+    /// The given runs of a scene at their start.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub fn new(scene: &'a Scene, runs: &[usize]) -> Self {
+        let running = |&run: &usize| Running {
+            run,
+            world: scene.world(run),
+            step: scene.runs[run].step,
+            notes: Vec::new(),
+            course: Course::new(run),
+        };
+        Self { scene, runs: runs.iter().map(running).collect() }
+    }
+
+    /// The same without the field that the scene colours its bodies by, for those who draw nothing.
+    pub fn without_field(mut self) -> Self {
+        self.runs.iter_mut().for_each(|running| running.world.show(None));
+        self
+    }
+
+    /// The same noting down the course of all runs on the way.
+    pub fn with_course(self) -> Self {
+        self.with_closer_course(None, &[])
+    }
+
+    /// The same with more moments: as many as usually of the whole scene between two that are looked at `closer` (s), if
+    /// there are any, and the steps nearest to each of `shown` (s).
+    pub fn with_closer_course(mut self, closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+        for running in &mut self.runs {
+            running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
+        }
+        self
+    }
+
+    /// Goes on towards a moment, each run by `most_steps` at most, and returns whether all runs are there. However the
+    /// way is cut up, the states have the same bits.
+    ///
+    /// # Panics
+    /// If the moment has passed.
+    pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(moment, most_steps));
+        arrived.reduce(|| true, |one, other| one && other)
+    }
+
+    /// Steps taken so far, of all runs together.
+    pub fn steps(&self) -> u64 {
+        self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps()))
+    }
+
+    /// Steps that all runs together have taken at a moment.
+    pub fn steps_at(&self, moment: Moment) -> u64 {
+        self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps_at(moment)))
+    }
+
+    /// The runs at the last moment that all have reached.
+    pub fn snapshots(&self) -> Vec<RunFrame> {
+        let runs = self.runs.par_iter();
+        runs.map(|running| RunFrame { run: running.run, snapshot: running.world.snapshot() }).collect()
+    }
+
+    /// Goes on to a frame and takes it.
+    ///
+    /// # Panics
+    /// If the frame lies before the last moment that was reached.
+    pub fn frame(&mut self, index: u64) -> Frame {
+        self.advance_towards(self.scene.moment(index), u64::MAX);
+        self.taken(index)
+    }
+
+    /// The present states as those of a frame.
+    fn taken(&self, index: u64) -> Frame {
+        let runs = self.snapshots();
+        let time = runs.first().map_or_else(|| self.scene.frame_time(index), |run| run.snapshot.time);
+        Frame { index, time, runs }
+    }
+
+    /// What was noted down until now.
+    pub fn history(&self) -> History {
+        let courses = self.runs.iter().map(|running| running.course.clone()).collect();
+        History { end: self.scene.frame_time(self.scene.last_frame()), courses }
+    }
+}
+
+impl Running {
+    fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let (target, mut left) = (self.world.steps_at(moment), most_steps);
+        while let (Some(&note), None) = (self.notes.get(self.course.times.len()), self.course.divergence) {
+            if self.world.steps_at(note) > target {
+                break;
+            }
+            let before = self.world.steps();
+            let is_there = self.world.advance_towards(note, left);
+            if let Status::Diverged(divergence) = self.world.status() {
+                // The last finite state is that before the step which was given up.
+                let (last, noted) = (divergence.step - 1, self.course.times.len());
+                if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
+                    self.note(last);
+                }
+                self.course.divergence = Some(divergence);
+            } else if is_there {
+                left -= self.world.steps() - before;
+                self.note(self.world.steps());
+            } else {
+                return false;
+            }
+        }
+        self.world.advance_towards(moment, left)
+    }
+
+    /// Notes down the present state as that after a step.
+    fn note(&mut self, step: u64) {
+        self.course.times.push(step as f64 * self.step);
+        self.course.diagnostics.push(self.world.diagnostics());
+    }
+}
+
+/// Frames of a scene in rising order, simulated once, also where the course of the whole scene must be known before the
+/// first of them is drawn.
+pub struct Frames<'a> {
+    runner: Runner<'a>,
+    frames: Vec<u64>,
+    /// How many were handed out.
+    taken: usize,
+    /// The states of frames that wait for the course.
+    waiting: Option<Waiting>,
+}
+
+/// The states of frames, kept until they are drawn.
+struct Waiting {
+    states: Store,
+    /// How many frames have been reached.
+    reached: usize,
+    is_known: bool,
+}
+
+/// What comes next.
+#[derive(Debug)]
+pub enum Next {
+    /// Some more steps were taken.
+    Working,
+    /// The course of the scene from start to end, before the first frame.
+    Course(History),
+    /// The next frame.
+    Frame(Frame),
+    /// There are no more.
+    Done,
+}
+
+impl<'a> Frames<'a> {
+    /// Frames of a runner at its start, in rising order. With `whole_course`, which it must note down, all is simulated
+    /// before the first.
+    pub fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool) -> Self {
+        let waiting = whole_course.then(|| Waiting { states: Store::default(), reached: 0, is_known: false });
+        Self { runner, frames: frames.to_vec(), taken: 0, waiting }
+    }
+
+    /// Goes on, each run by `most_steps` at most.
+    ///
+    /// # Errors
+    /// If states that wait do not fit into memory and cannot be kept on disk.
+    pub fn next(&mut self, most_steps: u64) -> io::Result<Next> {
+        let Self { runner, frames, taken, waiting } = self;
+        if let Some(waiting) = waiting
+            && !waiting.is_known
+        {
+            let frame = frames.get(waiting.reached).copied();
+            let moment = runner.scene.moment(frame.unwrap_or(runner.scene.last_frame()));
+            if !runner.advance_towards(moment, most_steps) {
+                return Ok(Next::Working);
+            }
+            if frame.is_some() {
+                runner.runs.iter().try_for_each(|running| waiting.states.put(&running.world.state().to_bytes()))?;
+                waiting.reached += 1;
+                return Ok(Next::Working);
+            }
+            waiting.is_known = true;
+            return Ok(Next::Course(runner.history()));
+        }
+        let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
+        if let Some(waiting) = waiting {
+            let first = *taken * runner.runs.len();
+            for (at, running) in runner.runs.iter_mut().enumerate() {
+                let state = State::from_bytes(&waiting.states.get(first + at)?);
+                running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+            }
+        } else if !runner.advance_towards(runner.scene.moment(frame), most_steps) {
+            return Ok(Next::Working);
+        }
+        *taken += 1;
+        Ok(Next::Frame(runner.taken(frame)))
+    }
+
+    /// Steps taken so far, and steps at the end, of all runs together.
+    pub fn steps(&self) -> [u64; 2] {
+        let scene = self.runner.scene;
+        let last = match self.waiting {
+            Some(_) => scene.last_frame(),
+            None => self.frames.last().copied().unwrap_or(0),
+        };
+        let end = self.runner.steps_at(scene.moment(last));
+        let is_known = self.waiting.as_ref().is_some_and(|waiting| waiting.is_known);
+        [if is_known { end } else { self.runner.steps() }, end]
+    }
+
+    /// How many frames were handed out.
+    pub fn taken(&self) -> usize {
+        self.taken
+    }
+}
+
+/// Pieces of bytes: the first in memory, those beyond a bound in a file without a name, which goes with it.
+#[derive(Default)]
+struct Store {
+    memory: Vec<u8>,
+    file: Option<File>,
+    /// Where each piece ends in memory, or behind it in the file.
+    ends: Vec<u64>,
+}
+
+impl Store {
+    /// So much is kept in memory (bytes).
+    const MOST_MEMORY: usize = 64 << 20;
+
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let end = self.ends.last().copied().unwrap_or(0);
+        if self.file.is_none() && self.memory.len() + bytes.len() <= Self::MOST_MEMORY {
+            self.memory.extend_from_slice(bytes);
+        } else {
+            let file = match &mut self.file {
+                Some(file) => file,
+                None => self.file.insert(tempfile::tempfile()?),
+            };
+            file.seek(SeekFrom::Start(end - self.memory.len() as u64))?;
+            file.write_all(bytes)?;
+        }
+        self.ends.push(end + bytes.len() as u64);
+        Ok(())
+    }
+
+    fn get(&mut self, piece: usize) -> io::Result<Vec<u8>> {
+        let (start, end) = (piece.checked_sub(1).map_or(0, |before| self.ends[before]), self.ends[piece]);
+        let in_memory = self.memory.len() as u64;
+        match &mut self.file {
+            Some(file) if start >= in_memory => {
+                let mut bytes = vec![0; (end - start) as usize];
+                file.seek(SeekFrom::Start(start - in_memory))?;
+                file.read_exact(&mut bytes)?;
+                Ok(bytes)
+            }
+            _ => Ok(self.memory[start as usize..end as usize].to_vec()),
+        }
+    }
+}
+
+impl Scene {
+    /// The world of one run, at its start.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub fn world(&self, run: usize) -> World {
+        let run = &self.runs[run];
+        let surroundings =
+            Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: self.grips.clone() };
+        let stepping = Stepping { integrator: run.integrator, step: run.step, kernel: run.kernel };
+        let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
+        world.show(self.view.colour.map(|scale| scale.field));
+        world
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Limits;
+
+    /// Two runs with steps of their own.
+    const SCENE: &str = "
+        gravity = [0, -9.8, 0]
+        time = { duration = 0.1, frames_per_second = 20 }
+        body.lattice = { cells = [2, 1, 1], side = 0.1 }
+        body.velocity = [0, -2, 0]
+        obstacle = [{ kind = 'floor', restitution = 0.5 }]
+        [[run]]
+        name = 'shape'
+        model = { kind = 'shape-based', stiffness = 1e4 }
+        [[run]]
+        name = 'springs'
+        model = { kind = 'mass-spring', stiffness = 1e4 }
+        step = 'T/70'
+    ";
+
+    #[test]
+    fn the_way_to_a_frame_may_be_cut_up() {
+        let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
+        let mut whole = Runner::new(&scene, &[0, 1]);
+        let whole: Vec<Frame> = (0..=2).map(|index| whole.frame(index)).collect();
+        for slice in [1, 3, 1000] {
+            let mut runner = Runner::new(&scene, &[0, 1]);
+            for frame in &whole {
+                let (moment, mut slices) = (scene.moment(frame.index), 1);
+                while !runner.advance_towards(moment, slice) {
+                    slices += 1;
+                }
+                assert_eq!(runner.steps(), runner.steps_at(moment));
+                let last = if frame.index > 0 { whole[frame.index as usize - 1].runs[1].snapshot.step } else { 0 };
+                assert_eq!(slices, (frame.runs[1].snapshot.step - last).div_ceil(slice).max(1));
+                // A run without rotations has no residual, and NaN equals nothing: compared as text.
+                assert_eq!(format!("{:?}", runner.frame(frame.index)), format!("{frame:?}"));
+            }
+        }
+    }
+
+    #[test]
+    fn frames_that_wait_for_the_course_are_the_same() {
+        let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
+        let take = |whole_course: bool, slice: u64| {
+            let runner = Runner::new(&scene, &[0, 1]).with_course();
+            let mut frames = Frames::new(runner, &[0, 2], whole_course);
+            let (mut taken, mut course) = (Vec::new(), None);
+            loop {
+                let [done, all] = frames.steps();
+                assert!(done <= all);
+                match frames.next(slice).expect("memory") {
+                    Next::Working => {}
+                    Next::Course(history) => {
+                        assert!(taken.is_empty());
+                        course = Some(history);
+                    }
+                    Next::Frame(frame) => taken.push(format!("{frame:?}")),
+                    Next::Done => break,
+                }
+            }
+            assert_eq!(frames.steps()[0], frames.steps()[1]);
+            (taken, course)
+        };
+        let (streamed, none) = take(false, 1000);
+        assert!(none.is_none() && streamed.len() == 2);
+        for slice in [3, 1000] {
+            let (waited, course) = take(true, slice);
+            assert_eq!(waited, streamed);
+            assert_eq!(format!("{:?}", course.unwrap()), format!("{:?}", History::new(&scene, &[0, 1])));
+        }
+    }
+
+    #[test]
+    fn pieces_come_back_from_memory_and_from_disk() {
+        let mut store = Store { memory: Vec::with_capacity(Store::MOST_MEMORY), ..Store::default() };
+        let piece = |at: usize| vec![at as u8; [30 << 20, 30 << 20, 9 << 20, 0, 1 << 20][at]];
+        (0..5).for_each(|at| store.put(&piece(at)).unwrap());
+        assert!(store.memory.len() <= Store::MOST_MEMORY && store.file.is_some());
+        assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));
+    }
+}

@@ -1,0 +1,152 @@
+//! All that changes in a simulation: the [`State`].
+
+use super::snapshot::{Divergence, Status};
+use glam::DVec3;
+
+/// All that persists from one step to the next. A run goes on from a copy of its state, also from one that was written
+/// and read back, with the same bits as if it had never stopped.
+///
+/// As a start it has positions and velocities alone; [`World::new`](super::World::new) adds the rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Position of each node (m), part after part.
+    pub position: Vec<DVec3>,
+    /// Velocity of each node (m/s).
+    pub velocity: Vec<DVec3>,
+    /// Steps taken. The clock goes on after a divergence.
+    pub steps: u64,
+    /// Whether it goes on.
+    pub status: Status,
+    /// What models, constraints and the integrator remember.
+    pub memory: Memory,
+}
+
+/// What is remembered from one step to the next besides positions and velocities. Who writes a part of it says what the
+/// numbers mean.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// Of the elastic models, part after part, such as the last rotation of each element.
+    pub model: Vec<f64>,
+    /// Of the kinematic constraints, one after the other: where nodes were gripped.
+    pub constraints: Vec<f64>,
+    /// Of the integrator; empty if it has to begin anew.
+    pub integrator: Vec<f64>,
+}
+
+/// Positions and velocities of the nodes of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes<'a> {
+    /// Position of each node (m).
+    pub position: &'a [DVec3],
+    /// Velocity of each node (m/s).
+    pub velocity: &'a [DVec3],
+}
+
+impl State {
+    /// A start with positions (m) and velocities (m/s).
+    pub fn new(position: Vec<DVec3>, velocity: Vec<DVec3>) -> Self {
+        Self { position, velocity, ..Self::default() }
+    }
+
+    /// The nodes at `position` (m), at rest.
+    pub fn at_rest(position: Vec<DVec3>) -> Self {
+        let velocity = vec![DVec3::ZERO; position.len()];
+        Self::new(position, velocity)
+    }
+
+    /// All nodes.
+    pub fn nodes(&self) -> Nodes<'_> {
+        Nodes { position: &self.position, velocity: &self.velocity }
+    }
+
+    /// The state as bytes, for [`Self::from_bytes`]: a header, then every number as 64 bits, the lowest byte first.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let Memory { model, constraints, integrator } = &self.memory;
+        let (diverged, [time, step, element]) = match self.status {
+            Status::Ok => (0, [0; 3]),
+            Status::Diverged(Divergence { time, step, element }) => {
+                (1, [time.to_bits(), step, element.map_or(0, |element| element as u64 + 1)])
+            }
+        };
+        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len()].map(|len| len as u64);
+        let header = [self.steps, diverged, time, step, element].into_iter().chain(lengths);
+        let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
+        let memory = model.iter().chain(constraints).chain(integrator).copied();
+        let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
+        MARK.iter().copied().chain(words.flatten()).collect()
+    }
+
+    /// The state that [`Self::to_bytes`] wrote; `None` if the bytes are anything else.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let (words, []) = bytes.strip_prefix(MARK)?.as_chunks::<8>() else { return None };
+        let (header, words) = words.split_at_checked(HEADER)?;
+        let [steps, diverged, time, step, element, lengths @ ..]: [u64; HEADER] =
+            std::array::from_fn(|at| u64::from_le_bytes(header[at]));
+        let [nodes, model, constraints, integrator] = lengths.map(|length| usize::try_from(length).ok());
+        let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?]);
+        // Counts come from outside: they are compared with what is there before anything is taken.
+        let mut rest = words;
+        let mut take = |count: usize| -> Option<Vec<f64>> {
+            let (taken, others) = rest.split_at_checked(count)?;
+            rest = others;
+            Some(taken.iter().map(|&word| f64::from_le_bytes(word)).collect())
+        };
+        let vectors = |numbers: Vec<f64>| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
+        let (position, velocity) = (vectors(take(nodes)?), vectors(take(nodes)?));
+        let memory = Memory { model: take(memory[0])?, constraints: take(memory[1])?, integrator: take(memory[2])? };
+        let status = match diverged {
+            0 => Status::Ok,
+            1 => {
+                let element = element.checked_sub(1).map(|element| element as usize);
+                Status::Diverged(Divergence { time: f64::from_bits(time), step, element })
+            }
+            _ => return None,
+        };
+        rest.is_empty().then_some(Self { position, velocity, steps, status, memory })
+    }
+}
+
+/// How the bytes of a state begin.
+const MARK: &[u8] = b"localshape state 1\n";
+/// Words before the numbers.
+const HEADER: usize = 9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state() -> State {
+        let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
+        let status = Status::Diverged(Divergence { time: 0.3, step: 7, element: Some(0) });
+        let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
+        State { position, velocity, steps: 9, status, memory }
+    }
+
+    #[test]
+    fn every_bit_survives_writing_and_reading() {
+        for state in [state(), State::at_rest(vec![DVec3::ONE; 3]), State::default()] {
+            let bytes = state.to_bytes();
+            let read = State::from_bytes(&bytes).expect("what was written");
+            assert_eq!(format!("{read:?}"), format!("{state:?}"));
+            assert_eq!(read.to_bytes(), bytes);
+        }
+    }
+
+    #[test]
+    fn other_bytes_are_no_state() {
+        let bytes = state().to_bytes();
+        for cut in 0..bytes.len() {
+            assert!(State::from_bytes(&bytes[..cut]).is_none(), "{cut}");
+        }
+        let changed = |at: usize, to: u8| {
+            let mut bytes = bytes.clone();
+            bytes[at] = to;
+            bytes
+        };
+        assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
+        assert!(State::from_bytes(&changed(0, b'L')).is_none());
+        // Counts that no memory could hold, and a status that does not exist.
+        assert!(State::from_bytes(&changed(MARK.len() + 5 * 8 + 7, 0xff)).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
+    }
+}

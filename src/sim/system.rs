@@ -1,0 +1,128 @@
+//! What is advanced together: bodies with their models, and what acts on them.
+
+use super::body::Body;
+use super::contact::ContactStage;
+use super::diagnose::Diagnose;
+use super::grip::{Grip, Interval};
+use super::model::{ForceModel, Scratch};
+use super::state::{Memory, Nodes, State};
+use glam::DVec3;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// One body in a simulation, and where its nodes and its memory lie in the [`State`].
+pub struct Part {
+    /// The body.
+    pub body: Arc<Body>,
+    /// Its model's forces.
+    pub forces: Box<dyn ForceModel>,
+    /// Its nodes among all.
+    pub nodes: Range<usize>,
+    /// Its model's memory among [`Memory::model`].
+    pub memory: Range<usize>,
+    pub(super) diagnose: Diagnose,
+}
+
+impl Part {
+    /// The part's own nodes.
+    pub(super) fn nodes_of<'a>(&self, all: Nodes<'a>) -> Nodes<'a> {
+        Nodes { position: &all.position[self.nodes.clone()], velocity: &all.velocity[self.nodes.clone()] }
+    }
+}
+
+/// All parts, and what acts on them.
+pub(super) struct System {
+    pub(super) parts: Vec<Part>,
+    /// Mass of each node (kg).
+    pub(super) mass: Vec<f64>,
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+    /// What nodes bounce off.
+    pub(super) contact: Box<dyn ContactStage>,
+    /// What holds and drags nodes, after all contact.
+    pub(super) grips: Vec<Grip>,
+    /// Time step ΔT (s).
+    pub(super) step: f64,
+}
+
+impl System {
+    /// The step after so many.
+    pub(super) fn interval(&self, steps: u64) -> Interval {
+        Interval { begin: steps as f64 * self.step, end: (steps + 1) as f64 * self.step, step: self.step }
+    }
+
+    /// The first element of its part that holds a node.
+    pub(super) fn element_of(&self, node: usize) -> Option<usize> {
+        let part = self.parts.iter().find(|part| part.nodes.contains(&node))?;
+        let own = (node - part.nodes.start) as u32;
+        part.body.elements.iter().position(|nodes| nodes.contains(&own))
+    }
+
+    /// Whether forces depend on velocities.
+    pub(super) fn is_damped(&self) -> bool {
+        self.parts.iter().any(|part| part.forces.is_damped())
+    }
+
+    /// Gravity, then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and the models' `next`
+    /// memory.
+    pub(super) fn forces(
+        &self,
+        at: Nodes<'_>,
+        memory: &[f64],
+        next: &mut [f64],
+        scratch: &mut Scratch,
+        forces: &mut [DVec3],
+    ) {
+        for (force, &mass) in forces.iter_mut().zip(&self.mass) {
+            *force = self.gravity * mass;
+        }
+        for part in &self.parts {
+            let (memory, next) = (&memory[part.memory.clone()], &mut next[part.memory.clone()]);
+            part.forces.add_forces(part.nodes_of(at), memory, next, scratch, &mut forces[part.nodes.clone()]);
+        }
+    }
+
+    /// Each grip with its part of the memory.
+    pub(super) fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
+        let mut rest = memory;
+        self.grips.iter().map(move |grip| {
+            let (own, others) = rest.split_at(grip.width());
+            rest = others;
+            (grip, own)
+        })
+    }
+
+    /// Calls `change` with each grip and its part of the memory.
+    pub(super) fn change_grips(&self, memory: &mut [f64], mut change: impl FnMut(&Grip, &mut [f64])) {
+        let mut rest = memory;
+        for grip in &self.grips {
+            let (own, others) = rest.split_at_mut(grip.width());
+            change(grip, own);
+            rest = others;
+        }
+    }
+
+    /// Contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is that with which each node
+    /// has moved in the step; `None` if it has moved at constant velocity.
+    pub(super) fn constrain(
+        &self,
+        interval: Interval,
+        before: &State,
+        after: &mut State,
+        acceleration: Option<&[DVec3]>,
+    ) {
+        let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
+        self.contact.resolve(&self.parts, interval, before.nodes(), position, velocity, acceleration);
+        for (grip, memory) in self.grips(constraints) {
+            grip.drag(interval, memory, position, velocity);
+        }
+    }
+
+    /// Gives the nodes that grips hold at the end of a step the velocities of the grips again.
+    pub(super) fn hold(&self, interval: Interval, after: &mut State) {
+        let State { velocity, memory: Memory { constraints, .. }, .. } = after;
+        for (grip, memory) in self.grips(constraints) {
+            grip.hold(interval, memory, velocity);
+        }
+    }
+}

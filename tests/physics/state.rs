@@ -1,0 +1,152 @@
+//! All that persists is in the state, and nothing else is.
+
+use crate::conformance::{bodies, cases};
+use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
+use glam::DVec3;
+use localshape::scene::{Limits, Scene};
+use localshape::sim::grip::Grip;
+use localshape::sim::integrate::Integrator;
+use localshape::sim::motion::{Motion, Place};
+use localshape::sim::snapshot::Status;
+use localshape::sim::state::State;
+use localshape::sim::topology::Springs;
+use localshape::sim::world::{Stepping, Surroundings, World};
+use std::path::Path;
+
+const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
+
+/// Goes on from what was written and read, in a world of its own.
+fn revived(world: &World, mut fresh: World) -> World {
+    let bytes = world.state().to_bytes();
+    let state = State::from_bytes(&bytes).expect("what was written");
+    assert!(state.to_bytes() == bytes);
+    fresh.set_state(state);
+    fresh
+}
+
+#[test]
+fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = ["scenes", "scenes/elements"].map(|folder| std::fs::read_dir(root.join(folder)).expect("scenes"));
+    let paths = files.into_iter().flatten().map(|entry| entry.expect("an entry").path());
+    let (mut noise, mut scenes) = (Noise(5), 0);
+    for path in paths.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
+        let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        scenes += 1;
+        for run in 0..scene.runs.len() {
+            let steps = scene.frame_step(run, scene.last_frame()).min(300);
+            let mut whole = scene.world(run);
+            whole.advance(steps);
+            let mut cut = scene.world(run);
+            for _ in 0..3 {
+                let left = steps - cut.steps();
+                cut.advance((0.5 * (noise.next() + 1.0) * left as f64) as u64);
+                cut = revived(&cut, scene.world(run));
+            }
+            cut.advance(steps - cut.steps());
+            assert!(cut.state().to_bytes() == whole.state().to_bytes(), "{} {}", path.display(), scene.runs[run].name);
+            let [cut, whole] = [cut, whole].map(|world| format!("{:?}", world.snapshot()));
+            assert!(cut == whole, "{}: diagnostics", path.display());
+        }
+    }
+    assert!(scenes >= 25, "{scenes}");
+}
+
+/// The same over elements of every kind, models and integrators, with a floor and a grip that takes hold on the way.
+#[test]
+fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
+    for body in bodies() {
+        let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Place::default()) };
+        let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips: vec![grip] };
+        for case in cases(&body, 7.0) {
+            for integrator in ALL {
+                let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
+                let stepping = Stepping::new(integrator, 1e-3);
+                let begin = || World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
+                let mut whole = begin();
+                whole.advance(20);
+                let mut cut = begin();
+                for step in 1..=20 {
+                    cut.advance(1);
+                    if step % 3 == 1 {
+                        cut = revived(&cut, begin());
+                    }
+                }
+                assert!(cut.state().to_bytes() == whole.state().to_bytes(), "{:?} {integrator:?}", case.model);
+            }
+        }
+    }
+}
+
+/// A step that is given up leaves nothing behind: the state is that of a run that was never asked for the step.
+#[test]
+fn a_rejected_step_leaves_nothing_behind() {
+    let body = lattice(2, 0.1);
+    let shape = shape_based(1e4, 0.0);
+    for integrator in ALL {
+        // Far beyond what is stable.
+        let stepping = Stepping::new(integrator, 0.5);
+        let mut noise = Noise(4);
+        let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector() * 0.02).collect());
+        let grip = Grip { nodes: vec![0], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+        let around = Surroundings { grips: vec![grip], ..Surroundings::default() };
+        let begin = || World::new(&body, start.clone(), &shape, around.clone(), stepping);
+        let mut world = begin();
+        world.advance(1000);
+        let Status::Diverged(divergence) = world.status() else { panic!("{integrator:?} is stable") };
+        let mut before = begin();
+        before.advance(divergence.step - 1);
+        assert_eq!(before.status(), Status::Ok);
+        let [ended, before] = [&world, &before].map(World::state);
+        assert_eq!((&ended.position, &ended.velocity), (&before.position, &before.velocity), "{integrator:?}");
+        assert_eq!(ended.memory, before.memory, "{integrator:?}");
+    }
+}
+
+/// Two bodies in one world, with a floor and a grip on a node of the second, move and are measured like each alone.
+#[test]
+fn two_parts_move_like_each_alone() {
+    let (first, second) = (lattice(2, 0.1), lattice(1, 0.1));
+    let shape = shape_based(1e4, 20.0);
+    let spring = mass_spring(&second, 1e4, 0.0, Springs::EdgesFaceDiagonals);
+    for integrator in ALL {
+        let stepping = Stepping::new(integrator, 1e-3);
+        let start = |body: &localshape::sim::Body, shift: DVec3| {
+            let mut noise = Noise(6);
+            let position = body.rest.iter().map(|&at| at + shift + noise.vector() * 0.005).collect();
+            State::new(position, vec![DVec3::new(0.1, -2.0, 0.0); body.len()])
+        };
+        let starts = [start(&first, DVec3::ZERO), start(&second, DVec3::X)];
+        let around =
+            |grips: Vec<Grip>| Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };
+        let grip = |node: u32| Grip { nodes: vec![node], from: 0.01, until: 0.03, motion: Motion::Still };
+        let none = around(vec![]);
+        let mut alone = [
+            World::new(&first, starts[0].clone(), &shape, none, stepping),
+            World::new(&second, starts[1].clone(), &spring, around(vec![grip(7)]), stepping),
+        ];
+        let [position, velocity] = [0, 1].map(|which| {
+            let of = |state: &State| if which == 0 { state.position.clone() } else { state.velocity.clone() };
+            starts.iter().flat_map(of).collect::<Vec<_>>()
+        });
+        let parts = [(first.clone(), &shape as &dyn localshape::sim::model::ElasticModel), (second.clone(), &spring)];
+        let surroundings = around(vec![grip(first.len() as u32 + 7)]);
+        let mut together = World::of_parts(&parts, State::new(position, velocity), surroundings, stepping);
+        for steps in [0, 5, 20, 60] {
+            alone.iter_mut().for_each(|world| world.advance(steps));
+            together.advance(steps);
+            for (part, alone) in alone.iter().enumerate() {
+                // Verlet with damping in one part evaluates twice in both, which moves the undamped one by round-off.
+                let (one, other) = (alone.snapshot(), together.snapshot_of(part));
+                let is_exact = integrator != Integrator::VelocityVerlet || part == 0;
+                let farthest =
+                    one.position.iter().zip(&other.position).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+                assert!(farthest <= if is_exact { 0.0 } else { 1e-13 }, "{integrator:?} {part} {steps}: {farthest:e}");
+                assert_eq!(one.diagnostics.turned_over, other.diagnostics.turned_over);
+                if is_exact {
+                    assert_eq!(format!("{one:?}"), format!("{other:?}"));
+                }
+            }
+        }
+    }
+}
