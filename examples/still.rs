@@ -5,10 +5,11 @@
 
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::history::History;
+use localshape::look::{Look, Theme};
 use localshape::picture::Composer;
 use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Look, Scene, Theme};
+use localshape::scene::{Limits, Scene};
 use std::error::Error;
 use std::path::Path;
 

@@ -57,11 +57,13 @@ pub mod golden;
 #[cfg(feature = "render")]
 pub mod gpu;
 pub mod history;
+pub mod look;
 pub mod moments;
 pub mod output;
 pub mod paper;
 #[cfg(feature = "render")]
 pub mod picture;
+mod reading;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod runner;

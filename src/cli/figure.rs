@@ -8,10 +8,13 @@ use super::record;
 use super::render::{failed, samples, size};
 use crate::artist::{FigureError, draw_figure};
 use crate::gpu::{AdapterChoice, Gpu};
+use crate::look::Theme;
 use crate::moments::{Forces, Moments, Taking};
 use crate::output::{self, AtomicFile, FolderLock, OutputError};
+use crate::reading::words::nearest;
 use crate::scene::figure::{Content, Figure, NAMES};
-use crate::scene::{Limits, Scene, Theme, nearest_name};
+use crate::scene::{Limits, Scene};
+use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
 use serde_json::{Value, json};
@@ -288,16 +291,17 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
                     snapshot::Status::Diverged(divergence) => Some(divergence.time),
                     snapshot::Status::Ok => None,
                 };
-                json!({
+                let mut cell = json!({
                     "diverged_at": diverged,
                     "number": number,
                     "scene": sheet.scenes[scene].title,
                     "run": sheet.scenes[scene].runs[run].name,
                     "time": time,
-                    "turned_over": diagnostics.turned_over,
-                    "volume_ratio": diagnostics.volume_ratio,
-                    "shape_error": diagnostics.shape_error,
-                })
+                });
+                let described = json!(Chosen::within(Reach::Summaries, diagnostics));
+                let both = cell.as_object_mut().zip(described.as_object());
+                both.into_iter().for_each(|(cell, described)| cell.extend(described.clone()));
+                cell
             };
             let rows = 0..sheet.rows.len();
             let all = rows.map(|row| (0..sheet.columns.len()).map(|column| cell(row, column)).collect::<Vec<_>>());
@@ -314,7 +318,7 @@ fn times(typed: &str) -> Result<f64, String> {
 /// What is said of a name that no figure has.
 fn unknown(asked: &str) -> String {
     let names: Vec<_> = NAMES.iter().copied().chain(["fig4", "all"]).collect();
-    let hint = nearest_name(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
+    let hint = nearest(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!(
         "there is no figure `{asked}`{hint} The figures are {}; a figure of your own is a .toml file",
         names.join(", ")

@@ -2,6 +2,7 @@
 
 use super::console::{columns, significant};
 use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
+use crate::sim::diagnostics::Diagnostic;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -43,7 +44,11 @@ fn row(run: &RunSummary) -> [String; 4] {
         }
     };
     let (turned_over, shape_error) = match &run.last {
-        Some(last) => (last.turned_over.to_string(), format!("{} m", significant(last.shape_error))),
+        Some(last) => {
+            let number = |diagnostic| last.diagnostics.get(diagnostic);
+            let shape_error = format!("{} m", significant(number(Diagnostic::ShapeError)));
+            (number(Diagnostic::TurnedOver).to_string(), shape_error)
+        }
         None => Default::default(),
     };
     [run.name.clone(), status, turned_over, shape_error]

@@ -1,8 +1,9 @@
 //! The exact states that a folder of frames may hold: `states.npz`, whose frames `diagnostics.csv` beside it tells.
 
-use super::states::{Numbers, Places, State, States};
+use super::states::{Places, State, States};
 use crate::output::{DIAGNOSTICS_FILE, STATES_FILE, state_digest};
 use crate::scene::npz::Npz;
+use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
 use crate::sim::snapshot::Snapshot;
 use glam::DVec3;
 use serde::Deserialize;
@@ -18,12 +19,6 @@ struct Row {
     run: String,
     frame: u64,
     time: f64,
-    kinetic: f64,
-    elastic: f64,
-    gravitational: f64,
-    turned_over: u64,
-    volume_ratio: f64,
-    shape_error: f64,
 }
 
 /// The states in a folder; `None` if it has no archive of them.
@@ -70,7 +65,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
         if position.columns() != velocity.columns() {
             return Err(format!("{STATES_FILE}: “{run}” has not as many velocities as positions"));
         }
-        for (at, row) in frames.iter().enumerate() {
+        for (at, (row, numbers)) in frames.iter().enumerate() {
             let vectors = |numbers: &crate::scene::npz::Numbers| -> Vec<DVec3> {
                 let vector = |node: usize| DVec3::from_array([0, 1, 2].map(|axis| numbers.double(at, 3 * node + axis)));
                 (0..numbers.columns() / 3).map(vector).collect()
@@ -79,27 +74,31 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
                 Snapshot { position: vectors(&position), velocity: vectors(&velocity), ..Snapshot::default() };
             let digest = state_digest(&snapshot);
             let places = Places { quantum: 0.0, every: 1, nodes: snapshot.position.len(), at: snapshot.position };
-            let &Row { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error, .. } = row;
-            let numbers = Numbers { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error };
-            states.add(
-                &run,
-                row.frame,
-                State { time: Some(row.time), digest, places: Some(places), numbers: Some(numbers) },
-            );
+            let (places, numbers) = (Some(places), Some(numbers.clone()));
+            states.add(&run, row.frame, State { time: Some(row.time), digest, places, numbers });
         }
     }
     Ok(Some(states))
 }
 
-/// The rows of each run.
-fn rows(path: &Path) -> Result<HashMap<String, Vec<Row>>, String> {
+/// The rows of each run, with what describes the states.
+fn rows(path: &Path) -> Result<HashMap<String, Vec<(Row, Chosen)>>, String> {
     let mut reader = csv::Reader::from_path(path).map_err(|error| {
         format!("{DIAGNOSTICS_FILE}, which tells the frames of {STATES_FILE}, cannot be read: {error}")
     })?;
-    let mut rows: HashMap<String, Vec<Row>> = HashMap::new();
-    for row in reader.deserialize() {
-        let row: Row = row.map_err(|error| format!("{DIAGNOSTICS_FILE}: {error}"))?;
-        rows.entry(row.run.clone()).or_default().push(row);
+    let told = |error: csv::Error| format!("{DIAGNOSTICS_FILE}: {error}");
+    let heads = reader.headers().map_err(told)?.clone();
+    let mut rows: HashMap<String, Vec<(Row, Chosen)>> = HashMap::new();
+    for record in reader.records() {
+        let record = record.map_err(told)?;
+        let row: Row = record.deserialize(Some(&heads)).map_err(told)?;
+        let cell = |diagnostic: Diagnostic| record.get(heads.iter().position(|head| head == diagnostic.key())?);
+        let numbers = Chosen::read(Reach::Goldens, |_, diagnostic| cell(diagnostic)).ok_or_else(|| {
+            let keys: Vec<_> = Diagnostic::within(Reach::Goldens).map(Diagnostic::key).collect();
+            let (frame, run) = (row.frame, &row.run);
+            format!("{DIAGNOSTICS_FILE}: frame {frame} of “{run}” has no number in one of {}", keys.join(", "))
+        })?;
+        rows.entry(row.run.clone()).or_default().push((row, numbers));
     }
     Ok(rows)
 }

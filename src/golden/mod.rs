@@ -49,7 +49,7 @@ pub use distance::{Count, Distance, Machines};
 pub use picture::{PictureError, Pixels};
 pub use record::RECORD_FILE;
 pub(crate) use side::Side;
-pub use states::{Change, Course, Displacement, Moment, Moved, Numbers, StepChange};
+pub use states::{Change, Course, Displacement, Moment, Moved, StepChange};
 #[cfg(feature = "render")]
 pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};

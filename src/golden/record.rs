@@ -6,8 +6,9 @@
 //! second node or fewer.
 
 use super::side::frame_of;
-use super::states::{Numbers, Places, Run, State, States, Step};
+use super::states::{Places, Run, State, States, Step};
 use crate::output::Label;
+use crate::sim::diagnostics::{Chosen, Reach, Value};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -244,12 +245,9 @@ impl Record {
             let wrong = || format!("`numbers` has the line “{}”; expected frame, run and six numbers", short(line));
             let words: Vec<_> = line.split_whitespace().collect();
             let state = state_of(&mut runs, &words).ok_or_else(wrong)?.1;
-            let numbers: Option<Vec<f64>> = words[2..].iter().map(|word| word.parse().ok()).collect();
-            let Some(&[kinetic, elastic, gravitational, turned, volume_ratio, shape_error]) = numbers.as_deref() else {
-                return Err(wrong());
-            };
-            let turned_over = turned as u64;
-            state.numbers = Some(Numbers { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error });
+            let numbers = Chosen::read(Reach::Goldens, |at, _| words.get(2 + at).copied());
+            let numbers = numbers.filter(|numbers| numbers.iter().count() == words.len() - 2).ok_or_else(wrong)?;
+            state.numbers = Some(numbers);
         }
         for line in lines(&file.positions) {
             let wrong = || {
@@ -321,11 +319,14 @@ impl Record {
                 let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
                 let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
                 if let Some(all) = &state.numbers {
-                    let turned_over = all.turned_over;
-                    let rest = [all.kinetic, all.elastic, all.gravitational].map(|number| format!("{number:.5e}"));
-                    let shape = [all.volume_ratio, all.shape_error].map(|number| format!("{number:.5e}"));
-                    write!(numbers, "\n{frame} {number} {} {turned_over} {}", rest.join(" "), shape.join(" "))
+                    write!(numbers, "\n{frame} {number}").expect("a string takes all");
+                    for (_, value) in all.iter() {
+                        match value {
+                            Value::Count(count) => write!(numbers, " {count}"),
+                            value => write!(numbers, " {:.5e}", value.size()),
+                        }
                         .expect("a string takes all");
+                    }
                 }
                 write!(positions, "\n{frame} {number}").expect("a string takes all");
                 for coordinate in places.at.iter().step_by(every).flat_map(DVec3::to_array) {
@@ -412,6 +413,7 @@ fn quantum<'a>(places: impl Iterator<Item = &'a Places>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::diagnostics::{Diagnostic, Diagnostics};
 
     fn record() -> Record {
         let mut states = States::default();
@@ -419,14 +421,8 @@ mod tests {
             for run in ["Local shape", "½ \"quoted\" '''"] {
                 let at: Vec<_> = (0..5).map(|node| DVec3::new(node as f64 * 0.1, frame as f64 * 0.01, -0.2)).collect();
                 let places = (frame % 10 == 0).then_some(Places { quantum: 0.0, every: 1, nodes: 5, at });
-                let numbers = Numbers {
-                    kinetic: 1.5,
-                    elastic: f64::NAN,
-                    gravitational: -2.0,
-                    turned_over: 3,
-                    volume_ratio: 0.5,
-                    shape_error: 1e-3,
-                };
+                let all = Diagnostics { kinetic: 1.5, elastic: f64::NAN, turned_over: 3, ..Diagnostics::default() };
+                let numbers = Chosen::within(Reach::Goldens, &all);
                 let digest = format!("{:064x}", frame * 1_000_003);
                 states.add(
                     run,
@@ -468,7 +464,7 @@ mod tests {
                 if let Some((one, other)) = state.places.as_ref().zip(other.places.as_ref()) {
                     assert_eq!((other.quantum, other.nodes), (1e-6, 5));
                     assert!(one.at.iter().zip(&other.at).all(|(a, b)| a.distance(*b) < 1e-6));
-                    assert_eq!(coarse.states[frame].numbers.unwrap().turned_over, 3);
+                    assert_eq!(coarse.states[frame].numbers.as_ref().unwrap().get(Diagnostic::TurnedOver), 3.0);
                 }
             }
         }

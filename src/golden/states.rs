@@ -1,7 +1,8 @@
 //! What is known of the states behind pictures, exactly or coarsely, and what moved between two sides.
 
 use crate::output::state_digest;
-use crate::sim::snapshot::{Diagnostics, Snapshot};
+use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
+use crate::sim::snapshot::Snapshot;
 use crate::sim::words::rounded;
 use glam::DVec3;
 use serde::Serialize;
@@ -42,7 +43,8 @@ pub(super) struct State {
     /// Digest of all positions and velocities in hexadecimal digits, or as many of them as were kept.
     pub(super) digest: String,
     pub(super) places: Option<Places>,
-    pub(super) numbers: Option<Numbers>,
+    /// What describes it, coarsely.
+    pub(super) numbers: Option<Chosen>,
 }
 
 /// Where nodes were.
@@ -58,36 +60,12 @@ pub(super) struct Places {
     pub(super) at: Vec<DVec3>,
 }
 
-/// Numbers that describe a state, coarsely.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Numbers {
-    /// Kinetic energy (J).
-    pub kinetic: f64,
-    /// Elastic energy (J); NaN for a model without one.
-    pub elastic: f64,
-    /// Potential energy in the field of gravity (J).
-    pub gravitational: f64,
-    /// Elements that have turned over.
-    pub turned_over: u64,
-    /// Total signed volume over the rest value; NaN for a body without volume.
-    pub volume_ratio: f64,
-    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
-    pub shape_error: f64,
-}
-
-impl From<&Diagnostics> for Numbers {
-    fn from(all: &Diagnostics) -> Self {
-        let &Diagnostics { kinetic, elastic, gravitational, turned_over, volume_ratio, shape_error, .. } = all;
-        Self { kinetic, elastic, gravitational, turned_over: turned_over as u64, volume_ratio, shape_error }
-    }
-}
-
 impl State {
     /// All that a snapshot tells; its places only if they are asked for.
     pub(super) fn of(snapshot: &Snapshot, with_places: bool) -> Self {
         let at = &snapshot.position;
         let places = with_places.then(|| Places { quantum: 0.0, every: 1, nodes: at.len(), at: at.clone() });
-        let numbers = Some(Numbers::from(&snapshot.diagnostics));
+        let numbers = Some(Chosen::within(Reach::Goldens, &snapshot.diagnostics));
         Self { time: Some(snapshot.time), digest: state_digest(snapshot), places, numbers }
     }
 
@@ -210,7 +188,7 @@ pub struct Moved {
     /// And where it is farthest away of all frames.
     pub largest: Option<Displacement>,
     /// What describes the state at the first frame of another state that has such numbers, as expected and as it is.
-    pub numbers: Option<[Numbers; 2]>,
+    pub numbers: Option<[Chosen; 2]>,
 }
 
 /// A run on both sides, frame by frame.
@@ -285,7 +263,7 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> V
         let later = || course.moments.iter().filter(|moment| moment.moved).map(|moment| moment.frame);
         let numbers = later().find_map(|frame| {
             let [before, after] = both(&frame)?;
-            Some([before.numbers?, after.numbers?])
+            Some([before.numbers.clone()?, after.numbers.clone()?])
         });
         let nodes = later().find_map(|frame| {
             let [before, after] = both(&frame)?;
@@ -370,10 +348,11 @@ impl fmt::Display for Moved {
             (Some(near), _) => write!(f, ": {near}")?,
             (None, _) => f.write_str("; by how much is not recorded")?,
         }
-        if let Some([before, after]) = self.numbers
-            && before.turned_over != after.turned_over
-        {
-            write!(f, "; turned over {} → {}", before.turned_over, after.turned_over)?;
+        if let Some(numbers) = &self.numbers {
+            let [before, after] = [0, 1].map(|side| numbers[side].get(Diagnostic::TurnedOver));
+            if before != after {
+                write!(f, "; turned over {before} → {after}")?;
+            }
         }
         self.step.map_or(Ok(()), |step| write!(f, "; {step}"))
     }

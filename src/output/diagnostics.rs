@@ -2,7 +2,8 @@
 
 use super::{AtomicFile, OutputError, exact};
 use crate::scene::Scene;
-use crate::sim::snapshot::{Frame, Snapshot, Status};
+use crate::sim::diagnostics::{Diagnostic, Value};
+use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use std::path::Path;
 
 /// The name of the file in its folder.
@@ -26,7 +27,7 @@ impl DiagnosticsWriter {
         let file = AtomicFile::create(&folder.join(DIAGNOSTICS_FILE))?;
         let names = scene.runs.iter().map(|run| run.name.clone()).collect();
         let mut writer = Self { file, names, length: 0 };
-        writer.append(&rows([cells("", 0, &Snapshot::default()).map(|(head, _)| head.to_owned())]))?;
+        writer.append(&rows([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
         Ok(writer)
     }
 
@@ -36,9 +37,8 @@ impl DiagnosticsWriter {
     /// If they cannot be written; rows written before stay.
     pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let names = &self.names;
-        let text =
-            rows(frame.runs.iter().map(|run| cells(&names[run.run], frame.index, &run.snapshot).map(|(_, cell)| cell)));
-        self.append(&text)
+        let row = |run: &RunFrame| cells(&names[run.run], frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
+        self.append(&rows(frame.runs.iter().map(row)))
     }
 
     fn append(&mut self, text: &[u8]) -> Result<(), OutputError> {
@@ -59,39 +59,34 @@ impl DiagnosticsWriter {
 }
 
 /// The cells of a row, each with the head of its column; `docs/files.md` says what they mean.
-fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> [(&'static str, String); 18] {
-    let d = &snapshot.diagnostics;
+fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> Vec<(String, String)> {
     let status = match snapshot.status {
         Status::Ok => "ok",
         Status::Diverged(_) => "diverged",
     };
-    [
-        ("run", name.to_owned()),
-        ("frame", frame.to_string()),
-        ("time", exact(snapshot.time)),
-        ("kinetic", exact(d.kinetic)),
-        ("elastic", exact(d.elastic)),
-        ("gravitational", exact(d.gravitational)),
-        ("momentum_x", exact(d.momentum.x)),
-        ("momentum_y", exact(d.momentum.y)),
-        ("momentum_z", exact(d.momentum.z)),
-        ("angular_momentum_x", exact(d.angular_momentum.x)),
-        ("angular_momentum_y", exact(d.angular_momentum.y)),
-        ("angular_momentum_z", exact(d.angular_momentum.z)),
-        ("residual", exact(d.residual)),
-        ("turned_over", d.turned_over.to_string()),
-        ("volume_ratio", exact(d.volume_ratio)),
-        ("shape_error", exact(d.shape_error)),
-        ("energy", exact(d.energy())),
-        ("status", status.to_owned()),
-    ]
+    let plain = |head: &str, cell: String| (head.to_owned(), cell);
+    let mut cells =
+        vec![plain("run", name.to_owned()), plain("frame", frame.to_string()), plain("time", exact(snapshot.time))];
+    for diagnostic in Diagnostic::ALL {
+        let key = diagnostic.key();
+        match diagnostic.value(&snapshot.diagnostics) {
+            Value::Count(count) => cells.push(plain(key, count.to_string())),
+            Value::Number(number) => cells.push(plain(key, exact(number))),
+            Value::Vector(vector) => {
+                let axes = ["x", "y", "z"].into_iter().zip(vector.to_array());
+                cells.extend(axes.map(|(axis, number)| (format!("{key}_{axis}"), exact(number))));
+            }
+        }
+    }
+    cells.push(plain("status", status.to_owned()));
+    cells
 }
 
 /// Rows as text, with quotation marks where a name needs them.
-fn rows(rows: impl IntoIterator<Item = [String; 18]>) -> Vec<u8> {
+fn rows(rows: impl IntoIterator<Item = impl Iterator<Item = String>>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
-        writer.write_record(&row).expect("rows of equal length into memory");
+        writer.write_record(row.collect::<Vec<_>>()).expect("rows of equal length into memory");
     }
     writer.into_inner().expect("memory takes all")
 }

@@ -2,6 +2,7 @@
 
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::scene::Scene;
+use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{Frame, Status};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
@@ -115,12 +116,9 @@ pub struct LastState {
     pub frame: u64,
     /// Time (s).
     pub time: f64,
-    /// Elements that have changed sign.
-    pub turned_over: usize,
-    /// Volume over rest volume.
-    pub volume_ratio: f64,
-    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
-    pub shape_error: f64,
+    /// How the body was.
+    #[serde(flatten)]
+    pub diagnostics: Chosen,
     /// Digest of the state.
     pub state: String,
 }
@@ -162,9 +160,7 @@ impl Summary {
             summary.last = Some(LastState {
                 frame: frame.index,
                 time: snapshot.time,
-                turned_over: snapshot.diagnostics.turned_over,
-                volume_ratio: snapshot.diagnostics.volume_ratio,
-                shape_error: snapshot.diagnostics.shape_error,
+                diagnostics: Chosen::within(Reach::Summaries, &snapshot.diagnostics),
                 state: state_digest(snapshot),
             });
         }

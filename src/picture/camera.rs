@@ -2,7 +2,7 @@
 
 use super::layout;
 use super::narrow::narrow_row;
-use crate::scene::{Camera, Follow, View};
+use crate::look::{Camera, Follow, View};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 

@@ -50,7 +50,7 @@ impl Line {
         Self {
             run: course.run,
             name: run.name.clone(),
-            style: palette.line(run),
+            style: run.line(palette),
             is_count: diagnostic == Diagnostic::TurnedOver,
             points: points.filter(|[_, value]| value.is_finite()).collect(),
             diverged: course.divergence.map(|divergence| divergence.time),

@@ -1,7 +1,7 @@
 //! Where the numbers of a scalar field stand on their scale of colours.
 
 use super::narrow::narrow;
-use crate::scene::ColourScale;
+use crate::look::ColourScale;
 use crate::sim::body::Body;
 use crate::sim::field::Support;
 
@@ -74,7 +74,7 @@ pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ColourMap;
+    use crate::look::ColourMap;
     use crate::sim::body::Solids;
     use crate::sim::body::{Dimension, IndexLists};
     use crate::sim::field::Field;

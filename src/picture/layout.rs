@@ -14,7 +14,7 @@
 
 use super::ends::APART;
 use super::strip::{MOST_OTHERS, NAMES_HEIGHT};
-use crate::scene::{Labels, View};
+use crate::look::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
 const REFERENCE_HEIGHT: f64 = 720.0;
@@ -386,7 +386,7 @@ pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Look, Theme};
+    use crate::look::{Look, Theme};
 
     #[test]
     fn panels_cover_the_picture_without_gaps() {

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
-//! out depends on the scene and that frame alone. Where frames stand among all others ([`crate::scene::View::strip`]),
+//! out depends on the scene and that frame alone. Where frames stand among all others ([`crate::look::View::strip`]),
 //! the composer is told the scene's course beforehand, which depends on the scene alone, too.
 
 mod arrows;
@@ -73,7 +73,7 @@ pub struct Picture {
     pub words: Vec<TextRun>,
 }
 
-/// One run, seen by one camera. Lengths are in sides ([`crate::scene::View::side`]), measured from the panel's origin.
+/// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), measured from the panel's origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// The part of the picture that belongs to it.

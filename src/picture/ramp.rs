@@ -1,8 +1,8 @@
 //! The colours of scalar fields, which the scene's maps name.
 
 use crate::colour::Colour;
-use crate::scene::ramp;
-pub(super) use crate::scene::ramp::ramp;
+use crate::look::ramp;
+pub(super) use crate::look::ramp::ramp;
 
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
 pub const SHADES: usize = ramp::SHADES;
@@ -17,7 +17,7 @@ pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{ColourMap, Theme};
+    use crate::look::{ColourMap, Theme};
 
     #[test]
     fn any_place_has_a_colour() {

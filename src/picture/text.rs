@@ -1,7 +1,7 @@
 //! Words: which glyphs they need and how wide they are. Rasterising them is the renderer's work.
 
 use super::narrow::narrow;
-use crate::scene::FontFiles;
+use crate::look::FontFiles;
 use ab_glyph::{Font, FontArc, FontRef, GlyphId, OutlinedGlyph, PxScale, point};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;

@@ -1,9 +1,9 @@
 //! Scenes that are made in code instead of being read from a file.
 
-use super::file::ViewFile;
 use super::resolve;
-use super::view::{View, Visible};
 use super::{Run, Scene};
+use crate::look::file::ViewFile;
+use crate::look::{self, View, Visible};
 use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
@@ -64,7 +64,7 @@ impl Scene {
     pub fn new(title: &str, body: Body, runs: Vec<Run>) -> Self {
         let side = resolve::mean_edge(&body);
         let visible = Visible::usual(body.dimension, body.len());
-        let (columns, clock) = (resolve::columns(runs.len()), ViewFile::default().clock);
+        let (columns, clock) = (look::columns(runs.len()), ViewFile::default().clock);
         let view = View { side, visible, columns, clock, ..View::default() };
         let scene = Self {
             title: title.into(),

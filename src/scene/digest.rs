@@ -1,8 +1,8 @@
 //! The digest of a scene's meaning.
 
-use super::file::SceneFile;
+use super::resolve::Parts;
 use super::schema::{SCHEMA, variants, without_nulls};
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 /// Digests of what the files hold that a scene names.
@@ -24,15 +24,16 @@ pub(super) struct FileDigests {
 /// counts when it is typed. A key added to the format later changes no digest.
 ///
 /// Where the scene names a file, the digest of what is in it stands for the name.
-pub(super) fn digest(mut scene: SceneFile, files: FileDigests) -> String {
-    if files.body.is_some() {
-        scene.body.file = files.body;
-    }
-    if let (Some(font), Some(regular)) = (&mut scene.view.font, files.regular) {
-        (font.regular, font.semi_bold) = (regular, files.semi_bold);
-    }
+pub(super) fn digest(parts: &Parts) -> String {
     // The types hold nothing that JSON cannot: finite numbers, text keys.
-    let mut value = serde_json::to_value(&scene).unwrap_or_default();
+    let mut value = serde_json::to_value(parts).unwrap_or_default();
+    let files = parts.digests_of_files();
+    if let Some(body) = files.body {
+        value["body"]["file"] = body.into();
+    }
+    if let Some(regular) = files.regular {
+        value["view"]["font"] = json!({ "regular": regular, "semi_bold": files.semi_bold });
+    }
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
     let mut text = String::new();

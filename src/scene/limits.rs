@@ -1,6 +1,6 @@
 //! How large a scene may be, asked before anything is allocated.
 
-use super::words::count;
+use crate::reading::words::{count, size};
 use crate::sim::census::Census;
 use crate::sim::model::{ModelParameters, Needs};
 
@@ -131,16 +131,6 @@ impl Demand {
         };
         let help = if indices { less.to_owned() } else { format!("{less}, or allow it with --allow-large") };
         Some(Excess { message, help, run })
-    }
-}
-
-/// An amount of memory in words.
-pub(super) fn size(bytes: u128) -> String {
-    match bytes {
-        0..1_000_000 => format!("{} kB", bytes.div_ceil(1000)),
-        1_000_000..1_073_741_824 => format!("{} MiB", bytes.div_ceil(1 << 20)),
-        1_073_741_824..107_374_182_400 => format!("{:.1} GiB", bytes as f64 / GIB as f64),
-        _ => format!("{} GiB", count(bytes >> 30)),
     }
 }
 

@@ -1,15 +1,15 @@
 //! From a file to a scene.
 
-use super::error::{Mistakes, SceneError};
+use super::error::SceneError;
 use super::limits::Limits;
-use super::report::{Report, Way, mistake};
 use super::resolve::{self, Parts};
 use super::schema::SCHEMA;
-use super::source::Source;
 use super::structure::Checked;
-use super::words::{nearest, quoted};
-use super::{Scene, digest, file::SceneFile, structure};
-use serde::Deserialize;
+use super::{Scene, digest, structure};
+use crate::reading::Mistakes;
+use crate::reading::report::{Report, Way, mistake};
+use crate::reading::source::Source;
+use crate::reading::words::{nearest, quoted};
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
@@ -59,12 +59,7 @@ impl Scene {
     fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         checked(text, name, &SCHEMA, FIGURE, |checked, report| {
             let parts = Parts::new(&checked, folder, limits, report);
-            let digest = match report.total() {
-                0 => SceneFile::deserialize(Value::Object(checked.sound))
-                    .map(|scene| digest::digest(scene, parts.digests_of_files()))
-                    .unwrap_or_default(),
-                _ => String::new(),
-            };
+            let digest = if report.total() == 0 { digest::digest(&parts) } else { String::new() };
             let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
             let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
             Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))

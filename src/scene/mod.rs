@@ -9,46 +9,33 @@
 //! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font`
 //! reads, lie beside it, too.
 
-mod beside;
 mod code;
 mod digest;
 mod error;
 pub mod figure;
 mod file;
-mod font;
 mod generate;
 mod limits;
 mod load;
 pub(crate) mod npz;
-mod palette;
-pub(crate) mod ramp;
-mod report;
 mod resolve;
 mod schema;
-mod source;
 mod step;
 mod structure;
 mod summary;
-mod view;
-mod words;
 
 pub(crate) use generate::random;
 
-pub use error::{Mistake, Mistakes, SceneError};
+pub use crate::reading::{Mistake, Mistakes};
+pub use error::SceneError;
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
-pub use palette::{LineStyle, Palette};
 pub use schema::schema;
 pub use summary::{RunSummary, Summary};
-pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
-    Visible,
-};
-#[cfg(feature = "render")]
-pub(crate) use words::nearest as nearest_name;
 
 use crate::colour::Colour;
+use crate::look::{LineStyle, Palette, View};
 use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
@@ -107,11 +94,18 @@ pub struct Run {
     pub step: f64,
     /// How a step is computed.
     pub kernel: Kernel,
-    /// Its place in the palette, which says what its lines look like ([`Palette::line`]). In a figure of several scenes,
+    /// Its place in the palette, which says what its lines look like ([`Self::line`]). In a figure of several scenes,
     /// runs of one name have one place.
     pub(crate) place: usize,
     /// A colour of its own for its lines. Those of other runs keep away from it.
     pub colour: Option<Colour>,
+}
+
+impl Run {
+    /// Its line in pictures of a palette.
+    pub fn line(&self, palette: &Palette) -> LineStyle {
+        palette.line(self.place, self.colour)
+    }
 }
 
 impl Scene {

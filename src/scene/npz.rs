@@ -3,8 +3,8 @@
 //! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
 //! only with what is really there.
 
-use super::limits::size;
-use super::words::{count, quoted};
+use crate::reading::words::size;
+use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -13,6 +13,9 @@ use zip::{CompressionMethod, ZipArchive};
 
 /// The longest head of an array that is read (bytes); one of numbers has some hundred.
 const LONGEST_HEAD: usize = 4096;
+
+/// How much room an array gets before it is read (bytes): large bodies are rarely larger, and no machine lacks it.
+const MOST_BELIEVED: u64 = 1 << 26;
 
 /// An archive that is open for reading.
 #[derive(Debug)]
@@ -230,7 +233,7 @@ impl Npz {
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
         std::io::copy(&mut (&mut entry).take(array.head), &mut std::io::sink()).map_err(broken)?;
-        let mut bytes = Vec::new();
+        let mut bytes = Vec::with_capacity(expected.min(MOST_BELIEVED) as usize);
         // One more than is expected makes the reader compare its check sum.
         entry.take(expected.saturating_add(1)).read_to_end(&mut bytes).map_err(broken)?;
         if bytes.len() as u64 != expected {

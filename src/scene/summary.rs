@@ -1,8 +1,8 @@
 //! What a scene holds, in words and numbers, for whoever checks it.
 
 use super::Scene;
-use super::view::Follow;
-use super::words::{count, fine, list, short};
+use crate::look::Follow;
+use crate::reading::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;

@@ -1,9 +1,10 @@
-//! Diagnostics: energies, momenta, turned-over elements, volume and shape error.
+//! What the diagnostics of a state are computed from: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
+use super::diagnostics::{Diagnostics, Moment};
 use super::model::Report;
 use super::rotation::{self, moment};
-use super::snapshot::{Diagnostics, Placement};
+use super::snapshot::Placement;
 use super::state::Nodes;
 use super::topology;
 use glam::{DMat3, DVec3};
@@ -53,27 +54,23 @@ impl Diagnose {
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
     pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
-        let mut diagnostics = Diagnostics {
-            elastic: report.energy.unwrap_or(f64::NAN),
-            residual: report.residual(Report::ROTATION).unwrap_or(f64::NAN),
-            ..Diagnostics::default()
-        };
-        for ((&mass, &position), &velocity) in self.body.mass.iter().zip(state.position).zip(state.velocity) {
-            diagnostics.kinetic += 0.5 * mass * velocity.length_squared();
-            diagnostics.gravitational -= mass * gravity.dot(position);
-            diagnostics.momentum += velocity * mass;
-            diagnostics.angular_momentum += position.cross(velocity) * mass;
-        }
         let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
         let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
-        // Summed in the order of the elements, whoever measured them.
-        let volume: f64 = volumes.iter().fold(0.0, |sum, (now, _)| sum + now);
         let turned_over: Vec<_> = volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect();
-        diagnostics.turned_over = turned_over.iter().filter(|&&turned| turned).count();
-        diagnostics.volume_ratio = volume / self.volume_at_rest;
         let placement = self.placement(state.position);
-        diagnostics.shape_error = self.shape_error(state.position, &placement);
-        (diagnostics, turned_over, placement)
+        let moment = Moment {
+            mass: &self.body.mass,
+            state,
+            gravity,
+            report,
+            turned_over: &turned_over,
+            // Summed in the order of the elements, whoever measured them.
+            volume: volumes.iter().fold(0.0, |sum, (now, _)| sum + now),
+            volume_at_rest: self.volume_at_rest,
+            placement: &placement,
+            centred: &self.centred,
+        };
+        (Diagnostics::of(&moment), turned_over, placement)
     }
 
     /// Signed volume of an element now and at rest (m³, in the plane m²).
@@ -98,14 +95,6 @@ impl Diagnose {
         let at_rest = moment(&self.centred, position.iter().map(|&position| position - centre));
         let turn = rotation::best(self.body.dimension, at_rest);
         Placement { rest_centre: self.rest_centre, centre, turn }
-    }
-
-    /// RMS distance of the nodes from a rigid placement of the rest shape (m).
-    fn shape_error(&self, position: &[DVec3], placement: &Placement) -> f64 {
-        let Placement { centre, turn, .. } = *placement;
-        let squared =
-            self.centred.iter().zip(position).map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
-        (squared.sum::<f64>() / position.len() as f64).sqrt()
     }
 }
 
@@ -158,17 +147,25 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     }
     let mut volume = 0.0;
     topology::for_each_face(kind, nodes, |face| {
-        let corners = face.len();
-        let mut fans = 0.0;
-        for hub in 0..corners {
-            for step in 1..corners - 1 {
-                let [a, b, c] = [hub, hub + step, hub + step + 1].map(|corner| at(face[corner % corners]));
-                fans += a.dot(b.cross(c));
-            }
-        }
-        volume += fans / (6 * corners) as f64;
+        volume += match *face {
+            [a, b, c] => fans([a, b, c].map(at)),
+            [a, b, c, d] => fans([a, b, c, d].map(at)),
+            _ => unreachable!("elements of a kind have triangles and quadrilaterals"),
+        };
     });
     volume
+}
+
+/// Signed volume (m³) between the origin and the mean of a face's fans of triangles.
+fn fans<const CORNERS: usize>(corners: [DVec3; CORNERS]) -> f64 {
+    let sides: [DVec3; CORNERS] = std::array::from_fn(|at| corners[at].cross(corners[(at + 1) % CORNERS]));
+    let mut fans = 0.0;
+    for hub in 0..CORNERS {
+        for step in 1..CORNERS - 1 {
+            fans += corners[hub].dot(sides[(hub + step) % CORNERS]);
+        }
+    }
+    fans / (6 * CORNERS) as f64
 }
 
 /// The volume inside the hull of an element at rest (m³).
@@ -191,7 +188,6 @@ mod tests {
     use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;
     use crate::sim::body::Solids;
-    use crate::sim::snapshot::Diagnostics;
     use crate::sim::state::State;
     use glam::DQuat;
 

@@ -2,10 +2,12 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod alike;
 pub mod body;
 pub mod census;
 pub mod contact;
 pub mod diagnose;
+pub mod diagnostics;
 mod dynamics;
 pub mod field;
 pub mod grip;

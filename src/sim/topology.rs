@@ -1,5 +1,6 @@
 //! The kinds of elements, their faces and edges, and the springs made from them.
 
+use super::alike::Alike;
 use super::hull::Hulls;
 use super::lists::IndexLists;
 use glam::DVec3;
@@ -91,6 +92,21 @@ fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     }
 }
 
+/// The edges of an element of a kind that has a table of faces, as positions in its own node list.
+fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
+    match kind {
+        ElementKind::Segment => &[[0, 1]],
+        ElementKind::Polygon | ElementKind::Other => &[],
+        ElementKind::Triangle => &[[0, 1], [1, 2], [0, 2]],
+        ElementKind::Tetrahedron => &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
+        ElementKind::Pyramid => &[[0, 1], [1, 2], [2, 3], [0, 3], [0, 4], [1, 4], [2, 4], [3, 4]],
+        ElementKind::Wedge => &[[0, 1], [1, 2], [0, 2], [3, 4], [4, 5], [3, 5], [0, 3], [1, 4], [2, 5]],
+        ElementKind::Hexahedron => {
+            &[[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]]
+        }
+    }
+}
+
 /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; a polygon is its
 /// own face.
 pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
@@ -138,13 +154,21 @@ impl Elements<'_> {
     /// The edges of one element as pairs of nodes, smaller node first, in rising order.
     pub fn edges_of(&self, element: usize) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
-        match (self.kinds[element], &self.nodes[element]) {
-            (ElementKind::Segment, &[a, b]) => edges.push(ordered([a, b])),
-            _ => self.for_each_face(element, |face| edges.extend(around(face).map(ordered))),
-        }
+        self.for_each_edge(element, |edge| edges.push(edge));
         edges.sort_unstable();
         edges.dedup();
         edges
+    }
+
+    /// Calls `visit` with each edge of one element, smaller node first; some edges of a hull come twice.
+    fn for_each_edge(&self, element: usize, mut visit: impl FnMut([u32; 2])) {
+        let nodes = &self.nodes[element];
+        match self.kinds[element] {
+            ElementKind::Polygon | ElementKind::Other => {
+                self.for_each_face(element, |face| around(face).map(ordered).for_each(&mut visit));
+            }
+            kind => edge_table(kind).iter().for_each(|edge| visit(ordered(edge.map(|at| nodes[at as usize])))),
+        }
     }
 
     /// Whether an element is a face itself, with two equal sides, so that it bounds nothing.
@@ -158,35 +182,50 @@ impl Elements<'_> {
 
     /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
     pub fn shared_faces(&self) -> Faces {
-        let mut all = IndexLists::default();
-        let mut owner = Vec::new();
-        for element in 0..self.nodes.len() {
-            self.for_each_face(element, |face| {
-                all.push(face);
-                owner.push(element as u32);
-            });
-        }
-        let partner = partners(&all, |face| self.is_flat(owner[face] as usize));
         let mut faces = Faces::default();
-        for (at, face) in all.iter().enumerate() {
-            // The second of two equal faces is only named by the first.
-            if partner[at].is_none_or(|other| other > at) {
+        // Those that wait for their other side. Elements that are faces themselves stay single.
+        let mut waiting = Alike::new(self.rest.len());
+        for (owner, element) in (0u32..).zip(0..self.nodes.len()) {
+            let is_flat = self.is_flat(element);
+            self.for_each_face(element, |face| {
+                if !is_flat {
+                    if let Some(first) = waiting.take(face, |first| &faces.nodes[first]) {
+                        faces.outer[first] = Some(owner);
+                        return;
+                    }
+                    waiting.put(faces.nodes.len(), face);
+                }
                 faces.nodes.push(face);
-                faces.inner.push(Some(owner[at]));
-                faces.outer.push(partner[at].map(|other| owner[other]));
-            }
+                faces.inner.push(Some(owner));
+                faces.outer.push(None);
+            });
         }
         faces
     }
 
     /// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
     pub fn springs(&self, topology: Springs) -> Vec<[u32; 2]> {
-        let mut pairs = Vec::new();
-        for element in 0..self.nodes.len() {
-            self.add_springs(topology, element, &mut pairs);
+        // Counted by their first nodes, which sorts them by these; the few of each node are sorted by themselves.
+        let mut ends = vec![0; self.rest.len() + 1];
+        self.for_each_spring(topology, |[first, _]| ends[first as usize + 1] += 1);
+        for node in 0..self.rest.len() {
+            ends[node + 1] += ends[node];
         }
-        pairs.sort_unstable();
-        pairs.dedup();
+        let mut seconds = vec![0; ends[self.rest.len()]];
+        // Where the next one of each node goes; at last, where the node's end.
+        self.for_each_spring(topology, |[first, second]| {
+            let next = &mut ends[first as usize];
+            seconds[*next] = second;
+            *next += 1;
+        });
+        let mut pairs = Vec::new();
+        let mut start = 0;
+        for (first, &end) in (0u32..).zip(&ends[..self.rest.len()]) {
+            let own = &mut seconds[start..end];
+            own.sort_unstable();
+            pairs.extend(own.chunk_by(u32::eq).map(|equal| [first, equal[0]]));
+            start = end;
+        }
         pairs
     }
 
@@ -203,75 +242,50 @@ impl Elements<'_> {
         (2..face.len().saturating_sub(1)).map(move |step| ordered([face[hub], face[(hub + step) % face.len()]]))
     }
 
-    /// Adds the springs of one element, some of them more than once.
-    fn add_springs(&self, topology: Springs, element: usize, pairs: &mut Vec<[u32; 2]>) {
+    /// Calls `visit` with the springs of all elements, some of them more than once.
+    fn for_each_spring(&self, topology: Springs, mut visit: impl FnMut([u32; 2])) {
+        (0..self.nodes.len()).for_each(|element| self.for_each_spring_of(topology, element, &mut visit));
+    }
+
+    /// Calls `visit` with the springs of one element, some of them more than once.
+    fn for_each_spring_of(&self, topology: Springs, element: usize, mut visit: impl FnMut([u32; 2])) {
         let (nodes, kind) = (&self.nodes[element], self.kinds[element]);
         if topology == Springs::All {
-            return pairs.extend(every_pair(nodes));
+            return every_pair(nodes).for_each(visit);
         }
-        pairs.extend(self.edges_of(element));
+        self.for_each_edge(element, &mut visit);
         match topology {
             Springs::Edges | Springs::All => {}
             Springs::EdgesOneDiagonal if kind == ElementKind::Hexahedron => {
                 // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
-                pairs.extend(every_pair(&[0, 3, 5, 6].map(|at: usize| nodes[at])));
+                every_pair(&[0, 3, 5, 6].map(|at: usize| nodes[at])).for_each(visit);
             }
-            Springs::EdgesOneDiagonal => self.for_each_face(element, |face| pairs.extend(self.fan(face))),
-            Springs::EdgesFaceDiagonals => self.for_each_face(element, |face| pairs.extend(every_pair(face))),
+            Springs::EdgesOneDiagonal => self.for_each_face(element, |face| self.fan(face).for_each(&mut visit)),
+            Springs::EdgesFaceDiagonals => self.for_each_face(element, |face| diagonals(face).for_each(&mut visit)),
             // All corners of a polygon share its one face.
             Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
             Springs::EdgesBodyDiagonals => {
                 let mut in_faces = Vec::new();
                 self.for_each_face(element, |face| in_faces.extend(every_pair(face)));
                 in_faces.sort_unstable();
-                pairs.extend(every_pair(nodes).filter(|pair| in_faces.binary_search(pair).is_err()));
+                every_pair(nodes).filter(|pair| in_faces.binary_search(pair).is_err()).for_each(visit);
             }
         }
     }
 }
 
+/// The diagonals of a polygon: every pair of corners that are not neighbours around it.
+fn diagonals(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let last = face.len() - 1;
+    (2..face.len()).flat_map(move |a| (0..a - 1).map(move |b| [a, b])).filter_map(move |[a, b]| {
+        let are_neighbours = a == last && b == 0;
+        (!are_neighbours).then(|| ordered([face[a], face[b]]))
+    })
+}
+
 /// Every pair of a list, smaller node first.
 fn every_pair(nodes: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])))
-}
-
-/// For each face the one other face with the same corners. Elements that are faces themselves stay single, and so does
-/// the last of an odd number.
-fn partners(faces: &IndexLists, is_single: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
-    // Sorting finds equal faces several times faster than hashing at a million elements.
-    let mut small: Vec<([u32; 4], usize)> = Vec::with_capacity(faces.len());
-    let mut large: Vec<(Vec<u32>, usize)> = Vec::new();
-    for (at, face) in faces.iter().enumerate().filter(|(at, _)| !is_single(*at)) {
-        if face.len() <= 4 {
-            let mut key = [u32::MAX; 4];
-            key[..face.len()].copy_from_slice(face);
-            key.sort_unstable();
-            small.push((key, at));
-        } else {
-            let mut key = face.to_vec();
-            key.sort_unstable();
-            large.push((key, at));
-        }
-    }
-    let mut partner = vec![None; faces.len()];
-    pair_up(small, &mut partner);
-    pair_up(large, &mut partner);
-    partner
-}
-
-/// Makes two and two with the same key partners.
-fn pair_up<K: Ord>(mut keyed: Vec<(K, usize)>, partner: &mut [Option<usize>]) {
-    keyed.sort_unstable();
-    let mut at = 0;
-    while at + 1 < keyed.len() {
-        let ((key, first), (next, second)) = (&keyed[at], &keyed[at + 1]);
-        if key == next {
-            partner[*first] = Some(*second);
-            partner[*second] = Some(*first);
-            at += 1;
-        }
-        at += 1;
-    }
 }
 
 /// Faces given by hand, each with the elements that hold all its nodes: the first one out of which it looks, and the
@@ -395,6 +409,10 @@ mod tests {
             for &[a, b] in &directed {
                 assert_eq!(directed.iter().filter(|&&edge| edge == [b, a]).count(), 1, "{kind:?} {a}-{b}");
             }
+            let mut sides: Vec<_> = directed.iter().map(|&side| ordered(side)).collect();
+            sides.sort_unstable();
+            sides.dedup();
+            assert_eq!(element.edges_of(0), sides, "{kind:?}");
             // Euler: nodes − edges + faces = 2 for anything that closes like a ball.
             assert_eq!(own.len() + faces.len(), element.edges_of(0).len() + 2, "{kind:?}");
         }

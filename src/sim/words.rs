@@ -51,12 +51,17 @@ fn is_square(nodes: &[u32], rest: &[DVec3]) -> bool {
 /// Whether a hexahedron has equal edges and right angles at rest, up to rounding.
 fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
     let corner = |at: usize| rest[nodes[at] as usize] - rest[nodes[0] as usize];
-    let axes = [corner(1), corner(2), corner(4)];
-    let size = axes[0].length();
-    let equal = |a: f64, b: f64| (a - b).abs() <= 1e-9 * size.max(rest[nodes[0] as usize].length());
-    let square = (0..3).all(|a| equal(axes[a].length(), size) && equal(axes[a].dot(axes[(a + 1) % 3]) / size, 0.0));
-    let part = |at: usize, axis: usize| if at >> axis & 1 == 1 { axes[axis] } else { DVec3::ZERO };
-    square && (1..8).all(|at| equal(corner(at).distance((0..3).map(|axis| part(at, axis)).sum()), 0.0))
+    let axes @ [x, y, z] = [corner(1), corner(2), corner(4)];
+    let size = x.length();
+    let slack = 1e-9 * size.max(rest[nodes[0] as usize].length());
+    let is_square = |a: DVec3, b: DVec3| (b.length() - size).abs() <= slack && (a.dot(b) / size).abs() <= slack;
+    let is_at = |at: usize, place: DVec3| corner(at).distance_squared(place) <= slack * slack;
+    let [xy, yz] = [x + y, y + z];
+    (0..3).all(|a| is_square(axes[a], axes[(a + 1) % 3]))
+        && is_at(3, xy)
+        && is_at(5, x + z)
+        && is_at(6, yz)
+        && is_at(7, xy + z)
 }
 
 /// A number with so many significant digits.

@@ -67,7 +67,7 @@ fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["sim", "colour", "scene", "picture", "output", "cli", "table"] {
+    for room in ["sim", "colour", "reading", "look", "scene", "picture", "output", "cli", "table"] {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
@@ -83,6 +83,8 @@ fn one_place_narrows() {
 
 #[test]
 fn nothing_flows_back() {
+    assert_eq!(rooms_named_by("reading"), BTreeSet::from(["sim".to_owned()]));
+    assert_eq!(rooms_named_by("look"), BTreeSet::from(["colour", "reading", "sim"].map(str::to_owned)));
     assert_eq!(
         offenders("scene", &["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"]),
         [""; 0]
@@ -102,6 +104,16 @@ fn nothing_flows_back() {
     assert_eq!(offenders("table", &["std::fs"]), [""; 0]);
     // Of `output` it takes clocks and how numbers are written.
     assert_eq!(rooms_named_by("table"), BTreeSet::from(["output", "scene", "sim"].map(str::to_owned)));
+}
+
+/// What is simulated knows nothing of pictures: bodies, motions, obstacles, grips and steps, as typed and resolved.
+#[test]
+fn the_physics_of_a_scene_knows_no_drawing() {
+    let files = ["file/body", "file/motion", "file/obstacle", "resolve/body", "resolve/elements", "resolve/grips"];
+    let others = ["resolve/lists", "resolve/motion", "resolve/obstacles", "generate", "limits", "npz", "step"];
+    for file in files.iter().chain(&others) {
+        assert_eq!(offenders(&format!("scene/{file}"), &["look", "colour", "Camera", "pixel"]), [""; 0]);
+    }
 }
 
 /// Every numbered equation of the paper can be found by a text search (Eqs. 7 and 11–14 in the map of the paper).

@@ -4,6 +4,7 @@ use crate::support::{Place, SMALL, SMALL_FRAMES, documented, lasting};
 use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
+use localshape::sim::diagnostics::Diagnostic;
 use serde_json::Value;
 use std::io::Read;
 
@@ -234,10 +235,24 @@ fn everything_in_the_files_is_documented() {
     place.run("simulate small.toml --states").good();
     let heads: Vec<_> = HEADS.split(',').collect();
     assert_eq!(documented("diagnostics.csv"), heads);
-    // Every number but counts and ratios has a unit.
-    for head in heads.iter().filter(|head| !["run", "frame", "turned_over", "volume_ratio", "status"].contains(head)) {
-        let row = include_str!("../../docs/files.md").lines().find(|line| line.contains(&format!("`{head}`"))).unwrap();
-        assert!(!row.split('|').nth(2).unwrap().trim().is_empty(), "{row}");
+    // Of each diagnostic the page says what the table in code says.
+    for &diagnostic in Diagnostic::ALL {
+        let (unit, sentence) = (diagnostic.unit(), diagnostic.meaning().trim_end_matches('.'));
+        let meaning = sentence.replace(&format!(" ({unit})"), "");
+        assert_eq!(meaning != sentence, !unit.is_empty(), "the unit stands in brackets: {sentence}");
+        let is_its = |head: &&&str| {
+            head.strip_prefix(diagnostic.key()).is_some_and(|axis| ["", "_x", "_y", "_z"].contains(&axis))
+        };
+        let columns: Vec<_> = heads.iter().filter(is_its).map(|head| format!("`{head}`")).collect();
+        let columns = columns.join(", ");
+        let page = include_str!("../../docs/files.md");
+        let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {columns} | "))).expect("its row");
+        let (told_unit, told) = row.split_once("| ").expect("a unit");
+        assert_eq!(told_unit.trim(), unit, "{columns}");
+        // Words within a table begin small.
+        let is_name = meaning[1..].starts_with(char::is_uppercase);
+        let first = if is_name { meaning[..1].to_owned() } else { meaning[..1].to_lowercase() };
+        assert!(told.starts_with(&(first + &meaning[1..])), "{told} / {meaning}");
     }
 
     let file = std::fs::File::open(place.path("output/small/states.npz")).unwrap();

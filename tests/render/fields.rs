@@ -1,9 +1,10 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, told by the numbers of the picture.
 
 use super::{fig4b, gpu};
+use localshape::look::{ColourMap, ColourScale, Look, Theme, Visible};
 use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
 use localshape::render::Renderer;
-use localshape::scene::{ColourMap, ColourScale, Look, Scene, Theme, Visible};
+use localshape::scene::Scene;
 use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use localshape::{runner::Runner, scene::Limits};

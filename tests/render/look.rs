@@ -5,10 +5,11 @@ use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
+use localshape::look::{Follow, FontFiles, Look, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Follow, FontFiles, Limits, Look, Scene, Theme};
+use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::Frame;
 
 const SIZE: [u32; 2] = [640, 360];

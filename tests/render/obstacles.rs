@@ -2,12 +2,13 @@
 
 use super::{fig4b, gpu};
 use glam::{DVec3, Vec3};
+use localshape::look::Follow;
 use localshape::picture::{
     Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
 };
 use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Follow, Limits, Scene};
+use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 

@@ -3,9 +3,10 @@
 use super::{fig4b, gpu};
 use image::RgbImage;
 use localshape::gpu::Gpu;
+use localshape::look::{Look, Theme};
 use localshape::picture::compose;
 use localshape::render::{RenderError, Renderer};
-use localshape::scene::{Look, Scene, Theme};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 
 fn draw(gpu: &Gpu, scene: &Scene, frame: &Frame, samples: u32) -> RgbImage {

@@ -337,7 +337,7 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
                 .iter()
                 .zip(curves)
                 .map(|(run, curve)| {
-                    assert_eq!(curve.colour, picture.palette.line(run).colour);
+                    assert_eq!(curve.colour, run.line(&picture.palette).colour);
                     let [x, y] = curve.points[curve.points.len() - 1];
                     let names = picture.words.iter().filter(|word| word.text == run.name && word.span[0] > x);
                     let name =
@@ -382,12 +382,12 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
     let (lacking, _) = of_alike(4, text);
     let [few, all] = lacking.scenes() else { panic!("two scenes") };
     assert_eq!((few.runs.len(), all.runs.len()), (3, 4));
-    let lines: Vec<_> = all.runs.iter().map(|run| palette.line(run)).collect();
+    let lines: Vec<_> = all.runs.iter().map(|run| run.line(palette)).collect();
     for (at, line) in lines.iter().enumerate() {
         assert!(lines[..at].iter().all(|other| other.colour != line.colour && other.dash != line.dash), "{lines:?}");
     }
     for run in &second.runs {
         let same = first.runs.iter().find(|same| same.name == run.name).expect("a run of that name");
-        assert_eq!(palette.line(run), palette.line(same), "{}", run.name);
+        assert_eq!(run.line(palette), same.line(palette), "{}", run.name);
     }
 }

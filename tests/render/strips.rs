@@ -2,10 +2,11 @@
 
 use super::{fig4b, gpu};
 use localshape::history::History;
+use localshape::look::{Look, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Look, Scene, Theme};
+use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
@@ -211,7 +212,7 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let arms: Vec<_> = picture.curves.iter().filter(is_arm).collect();
     assert_eq!(arms.len(), 4, "two in each strip");
     let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
-    let calm = picture.palette.line(&scene.runs[1]).colour;
+    let calm = scene.runs[1].line(&picture.palette).colour;
     let of_calm = picture.curves.iter().filter(|curve| curve.colour == calm);
     let of_calm = of_calm.max_by_key(|curve| curve.points.len()).expect("a curve");
     assert_eq!(middle(arms[0]), middle(arms[1]));
@@ -303,7 +304,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         each_differs(&looks.iter().map(|look| look.0).collect::<Vec<_>>());
         each_differs(&looks.iter().map(|look| look.1.clone()).collect::<Vec<_>>());
         for (run, curve) in scene.runs.iter().zip(&own) {
-            let line = picture.palette.line(run);
+            let line = run.line(&picture.palette);
             assert_eq!((line.colour, line.dash.len()), (curve.colour, curve.dash.len()));
             let name = picture.words.iter().find(|word| word.text == run.name).expect("a name above the panel");
             let [_, top, right, bottom] = name.bounds();
@@ -371,5 +372,5 @@ fn strips_of_many_runs_name_their_curves() {
 #[test]
 fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     let scene = Scene::parse(&alike(64, "light"), "alike.toml", &Limits::default()).expect("sound");
-    each_differs(&scene.runs.iter().map(|run| scene.view.look.palette.line(run)).collect::<Vec<_>>());
+    each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette)).collect::<Vec<_>>());
 }

@@ -1,9 +1,10 @@
 //! Where words stand: nowhere over each other, and in every frame at the same place.
 
 use super::fig4b;
+use localshape::look::Labels;
 use localshape::picture::{Composer, Mark, MarkShape, Picture, TextRun, compose};
 use localshape::runner::Runner;
-use localshape::scene::{Labels, Limits, Scene};
+use localshape::scene::{Limits, Scene};
 
 /// Everything that can be written, in a scene that blows up, beside one that does not.
 const ALL: &str = r#"

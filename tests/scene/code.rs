@@ -1,7 +1,8 @@
 //! Scenes made in code, as the author of another crate would make them.
 
 use localshape::glam::DVec3;
-use localshape::scene::{Limits, Run, Scene, View};
+use localshape::look::View;
+use localshape::scene::{Limits, Run, Scene};
 
 fn parse(text: &str) -> Scene {
     Scene::parse(text, "scene.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -40,7 +41,7 @@ fn runs_made_in_code_are_told_apart() {
     scene.runs.extend([one(), one()]);
     scene.runs[1].colour = Some([0, 128, 128]);
     scene = scene.framed();
-    let lines: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run)).collect();
+    let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette)).collect();
     for (at, line) in lines.iter().enumerate() {
         assert!(lines[..at].iter().all(|other| other.colour != line.colour && other.dash != line.dash), "{lines:?}");
     }

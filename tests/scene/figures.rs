@@ -1,7 +1,8 @@
 //! Figure files: every mistake is said where it is, in words that help.
 
+use localshape::look::Theme;
 use localshape::scene::figure::{Content, Figure, NAMES, Sheet};
-use localshape::scene::{Limits, Scene, SceneError, Theme};
+use localshape::scene::{Limits, Scene, SceneError};
 use std::path::Path;
 
 /// Reads a figure beside a scene `fig4b.toml` of 3 s, one of the plane and one without a run `Mass-spring`.

@@ -2,7 +2,8 @@
 
 use super::{WORLD, good, shipped};
 use glam::DVec3;
-use localshape::scene::{Follow, Limits, Scene, SceneError, Theme};
+use localshape::look::{Follow, Theme};
+use localshape::scene::{Limits, Scene, SceneError};
 use localshape::sim::body::{Dimension, ElementKind};
 use localshape::sim::contact::Shape;
 use std::path::Path;

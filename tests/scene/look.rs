@@ -3,7 +3,8 @@
 use super::mistakes::{PLANE, case};
 use super::{WORLD, good};
 use localshape::colour::{Sight, contrast, difference};
-use localshape::scene::{ColourMap, Limits, Look, Palette, Scene, SceneError, Theme};
+use localshape::look::{ColourMap, Look, Palette, Theme};
+use localshape::scene::{Limits, Scene, SceneError};
 
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
 const SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
@@ -50,7 +51,7 @@ fn runs_have_their_places_colours_or_their_own() {
         let scene =
             good(&of_runs(&format!("theme = '{theme}'"), &["", "colour = 'royalblue'", "", "colour = '#4169e1'"]));
         let palette = scene.view.look.palette;
-        let lines: Vec<_> = scene.runs.iter().map(|run| palette.line(run)).collect();
+        let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&palette)).collect();
         let own = [65, 105, 225];
         // On light ground the first colour is like royal blue and steps aside for the second, which is free.
         let first = if theme == "light" { 1 } else { 0 };
@@ -63,11 +64,11 @@ fn runs_have_their_places_colours_or_their_own() {
     }
     // What a scene gives for all of them leaves each its own, and nothing is drawn that could not be seen.
     let scene = good(&of_runs("background = '#808080'\ncolours.arrow = 'black'", &["", "colour = 'white'"]));
-    let colours: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).colour).collect();
+    let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
     assert_eq!(colours, [[0; 3], [255; 3]]);
     let scene = good(&of_runs("background = '#808080'", &[""; 8]));
     for run in &scene.runs {
-        let line = scene.view.look.palette.line(run);
+        let line = run.line(&scene.view.look.palette);
         assert!(contrast(line.colour, [0x80; 3]) >= 3.0, "{line:?}");
     }
     let digest = |said: &str| good(&of_runs("", &[said])).digest;
@@ -77,7 +78,7 @@ fn runs_have_their_places_colours_or_their_own() {
 
 /// How different the colours of a scene's runs look at the least, to anybody, without those of two runs of one choice.
 fn least_apart(scene: &Scene) -> f64 {
-    let colours: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).colour).collect();
+    let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
     let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
     let seen = pairs.flat_map(|two| Sight::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
     seen.map(|([one, other], sight)| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
@@ -96,7 +97,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
                 said[at] = &chosen;
                 let scene = good(&of_runs(&view, &said));
                 assert!(least_apart(&scene) >= 15.0, "{chosen} of run {at}: {}", least_apart(&scene));
-                let dashes: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).dash).collect();
+                let dashes: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).dash).collect();
                 assert!((0..8).all(|at| !dashes[..at].contains(&dashes[at])), "{dashes:?}");
             }
         }
@@ -105,7 +106,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
     assert!(least_apart(&scene) >= 15.0, "{}", least_apart(&scene));
     // Nothing is left where all are like a chosen one, and then dashes say it.
     let scene = good(&of_runs("colours.arrow = 'navy'", &["", "colour = 'navy'", ""]));
-    let lines: Vec<_> = scene.runs.iter().map(|run| scene.view.look.palette.line(run).dash).collect();
+    let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).dash).collect();
     assert!(lines[0] != lines[1] && lines[1] != lines[2] && lines[0] != lines[2]);
 }
 

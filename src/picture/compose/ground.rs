@@ -1,13 +1,13 @@
 //! The floor of a panel, its grid, and the light that throws shadows on it.
 
 use super::panel::Draft;
+use crate::look::{FloorStyle, Light};
 use crate::picture::Floor;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::layout;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
 use crate::picture::shadow::{self, Plane, Shade};
-use crate::scene::{FloorStyle, Light};
 use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;

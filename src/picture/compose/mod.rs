@@ -24,7 +24,8 @@ use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
 use super::{Colour, Framing, Picture, number};
 use crate::history::History;
-use crate::scene::{Scene, StrainScale};
+use crate::look::StrainScale;
+use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
@@ -99,7 +100,7 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::scene::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
+    /// A scene with strips ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
     /// places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
@@ -284,7 +285,7 @@ impl<'a> Composer<'a> {
         let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
         (view.legend && (has_strip || has_arrows)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
-            let line = self.palette.line(run);
+            let line = run.line(&self.palette);
             // Arrows are solid.
             if has_strip { line } else { LineStyle { dash: &[], ..line } }
         })

@@ -2,6 +2,7 @@
 
 use super::Composer;
 use super::ground::key_light;
+use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
 use crate::picture::field::{NOWHERE, Shades};
@@ -14,7 +15,7 @@ use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
-use crate::scene::{FloorStyle, Scene};
+use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::field::Support;
@@ -292,7 +293,7 @@ impl<'a> Draft<'a> {
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
             colour: match self.scene.runs.get(self.run.run) {
-                Some(run) if view.colour.is_none() => self.composer.palette.line(run).colour,
+                Some(run) if view.colour.is_none() => run.line(&self.composer.palette).colour,
                 // Among the colours of a field, an arrow of a run's colour would not stand out.
                 _ => self.composer.palette.text,
             },

@@ -1,7 +1,7 @@
 //! What a figure file says, as typed. As with scenes, the documentation of the fields is what messages and the schema
 //! say, and the schema made from these types is what files are checked against.
 
-use crate::scene::Theme;
+use crate::look::Theme;
 use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -7,10 +7,11 @@ mod resolve;
 
 pub use built_in::NAMES;
 
+use super::Scene;
 use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
-use super::{Look, Scene, Theme};
+use crate::look::{Look, Theme};
 use crate::sim::snapshot::Diagnostic;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;

@@ -2,9 +2,9 @@
 
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
 use super::{Column, Content, Figure, Forces, Row, Sheet, look};
-use crate::scene::report::{Report, Way};
+use crate::reading::report::{Report, Way};
+use crate::reading::words::{list, nearest};
 use crate::scene::structure::Checked;
-use crate::scene::words::{list, nearest};
 use crate::scene::{Scene, SceneError};
 use crate::sim::snapshot::Diagnostic;
 use serde::Deserialize;

@@ -5,20 +5,19 @@
 //! coordinates in space and two in the plane.
 
 mod body;
-mod look;
 mod motion;
 mod obstacle;
-mod view;
 
 pub(in crate::scene) use body::{
     BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile, StartShape,
 };
-pub(in crate::scene) use look::{BackgroundFile, ColoursFile, FontFile, TypedColour};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
 pub(in crate::scene) use obstacle::ObstacleFile;
-pub(in crate::scene) use view::{ArrangementFile, CameraFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 
 use super::step::FractionOfCycle;
+use crate::look::file::ViewFile;
+use crate::look::typed::TypedColour;
+pub(in crate::scene) use crate::reading::coordinates::Coordinates;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ModelParameters;
 use crate::sim::world::Kernel;
@@ -54,11 +53,6 @@ pub(in crate::scene) struct SceneFile {
     #[serde(default)]
     pub(in crate::scene) view: ViewFile,
 }
-
-/// A point or a vector: three coordinates in space, two in the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub(in crate::scene) struct Coordinates(#[schemars(length(min = 2, max = 3))] pub(in crate::scene) Vec<f64>);
 
 /// A number greater than zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

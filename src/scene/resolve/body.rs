@@ -3,11 +3,11 @@
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
+use crate::reading::report::{Report, Way};
+use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{Demand, Excess, Limits};
-use crate::scene::report::{Report, Way};
-use crate::scene::words::quoted;
 use crate::sim::body::{Body, Dimension, Solids};
 use crate::sim::census::Census;
 use crate::sim::state::State;

@@ -1,13 +1,13 @@
 //! Checks of elements, springs and faces that a body lists.
 
 use super::lists::{Lists, Place};
-use crate::scene::report::Report;
-use crate::scene::words::{count, list};
+use crate::reading::report::Report;
+use crate::reading::words::{count, list};
+use crate::sim::alike::Alike;
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
 /// none: rounding of coordinates leaves some 1e-16, and a needle a millionth as thick as long still has 1e-6.
@@ -19,16 +19,16 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let Lists { place, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
-    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut sound = !flawed;
     let mut distinct = Vec::new();
+    let mut known = Alike::new(elements.len());
     for (at, element) in elements.iter().enumerate() {
         if !check_indices(place, "elements", at, element, node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(place, "elements", at, element, &mut known, report) {
+        if !repeated(place, "elements", at, |at| &elements[at], &mut known, report) {
             distinct.push(at);
         }
     }
@@ -38,11 +38,12 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
         disorder.tell(lists, report);
     }
-    known.clear();
-    for (at, spring) in springs.iter().flatten().enumerate() {
+    let springs = springs.as_deref().unwrap_or_default();
+    let mut known = Alike::new(springs.len());
+    for (at, spring) in springs.iter().enumerate() {
         if check_indices(place, "springs", at, spring, node_count, report) {
             spring.iter().for_each(|&node| held[node as usize] = true);
-            repeated(place, "springs", at, spring, &mut known, report);
+            repeated(place, "springs", at, |at| &springs[at], &mut known, report);
         } else {
             sound = false;
         }
@@ -70,11 +71,11 @@ impl Lists {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
-        let name = self.place.name("elements", &[at]);
+        let name = || self.place.name("elements", &[at]);
         let mut tell = |message, help| self.place.tell(report, "elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
-            return tell(format!("`{name}` has no extent: all its nodes are at {point}"), None);
+            return tell(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
         }
         let kind = topology::kind(self.dimension, solids, element.len());
         let whole = match kind {
@@ -83,13 +84,14 @@ impl Lists {
             ElementKind::Triangle | ElementKind::Other => {
                 if element.len() > MOST_IN_HULL {
                     let message = format!(
-                        "`{name}` has {} nodes; the faces of a solid are found for up to {}",
+                        "`{}` has {} nodes; the faces of a solid are found for up to {}",
+                        name(),
                         count(element.len() as u128),
                         count(MOST_IN_HULL as u128)
                     );
                     tell(message, Some("divide it into smaller elements".into()));
                 } else if kind == ElementKind::Triangle && is_on_a_line(&corners, size) {
-                    tell(format!("`{name}` has no area: its nodes are on a line"), None);
+                    tell(format!("`{}` has no area: its nodes are on a line", name()), None);
                 }
                 return;
             }
@@ -98,7 +100,7 @@ impl Lists {
         };
         let measure = volume_by_faces(kind, element, &self.nodes);
         disorder.ordered += 1;
-        let around = || volume_by_faces(kind, &reordered(element, &AROUND), &self.nodes);
+        let around = || volume_by_faces(kind, &AROUND.map(|place| element[place]), &self.nodes);
         // A sound hexahedron read in the other order is wound into itself and has hardly any volume, of either sign.
         if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
             disorder.found.push((at, Wrong::Around, kind));
@@ -106,7 +108,7 @@ impl Lists {
             disorder.found.push((at, Wrong::Flat, kind));
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
-            let message = format!("the sides {} and {} of `{name}` cross", side(one), side(other));
+            let message = format!("the sides {} and {} of `{}` cross", side(one), side(other), name());
             tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
             disorder.found.push((at, Wrong::Turned, kind));
@@ -117,10 +119,6 @@ impl Lists {
 /// The order in which other programs list the corners of a hexahedron, around one side and then around the other; and the
 /// way back.
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-fn reordered(nodes: &[u32], order: &[usize]) -> Vec<u32> {
-    order.iter().map(|&place| nodes[place]).collect()
-}
 
 /// What is wrong with the nodes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +216,7 @@ fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, O
         (Wrong::Around, _) => {
             let expected = "expected bit order: x fastest, then y, then z";
             let message = format!("`{name}` lists its corners around its sides; {expected}");
-            (message, Some(format!("write {:?}", reordered(element, &AROUND))))
+            (message, Some(format!("write {:?}", AROUND.map(|place| element[place]))))
         }
         (Wrong::Turned, _) => {
             let (what, turned) = mended(kind, element);
@@ -261,6 +259,12 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
 
 /// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
 fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
+    /// So few are compared with each other faster than they are sorted.
+    const FEW: usize = 16;
+    let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
+    if list.len() <= FEW && (0..list.len()).all(is_new) {
+        return true;
+    }
     let mut sound = true;
     // Positions in order of their node, so that long lists are compared quickly.
     let mut order: Vec<usize> = (0..list.len()).collect();
@@ -282,17 +286,18 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
 }
 
 /// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
-fn repeated(
+fn repeated<'l>(
     place: &Place,
     key: &str,
     at: usize,
-    list: &[u32],
-    known: &mut HashMap<Vec<u32>, usize>,
+    list: impl Fn(usize) -> &'l [u32],
+    known: &mut Alike,
     report: &mut Report<'_>,
 ) -> bool {
-    let mut sorted = list.to_vec();
-    sorted.sort_unstable();
-    let first = *known.entry(sorted).or_insert(at);
+    let first = known.find(list(at), &list).unwrap_or(at);
+    if first == at {
+        known.put(at, list(at));
+    }
     if first != at {
         let [this, other] = [at, first].map(|at| place.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
@@ -316,8 +321,9 @@ fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
 /// Mean length of all elements' edges at rest (m); the size of the body if they have none.
 pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
+    let topology = body.topology();
     for element in 0..body.elements.len() {
-        for [a, b] in body.topology().edges_of(element) {
+        for [a, b] in topology.edges_of(element) {
             sum += body.rest[a as usize].distance(body.rest[b as usize]);
             count += 1.0;
         }

@@ -2,10 +2,10 @@
 
 use super::body::ResolvedBody;
 use super::{motion, vector};
+use crate::reading::report::{Report, Way, written};
+use crate::reading::words::{count, fine};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
-use crate::scene::report::{Report, Way, written};
 use crate::scene::summary::corners;
-use crate::scene::words::{count, fine};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;

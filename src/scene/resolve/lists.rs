@@ -1,13 +1,14 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
 use super::vector;
-use crate::scene::beside::{missing, similar};
+use crate::reading::beside::{missing, similar};
+use crate::reading::report::{Report, Way, written};
+use crate::reading::words::size;
+use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
-use crate::scene::limits::{Limits, size};
+use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz, Numbers};
-use crate::scene::report::{Report, Way, written};
 use crate::scene::structure::LARGEST;
-use crate::scene::words::{count, list, nearest};
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
@@ -147,9 +148,9 @@ impl Lists {
     pub(super) fn digest(&self) -> String {
         let mut hasher = Sha256::new();
         let coordinates = |points: &[DVec3], hasher: &mut Sha256| {
-            for coordinate in points.iter().flat_map(|point| point.to_array()) {
+            for point in points {
                 // Both zeros mean the same.
-                hasher.update((coordinate + 0.0).to_le_bytes());
+                hasher.update(point.to_array().map(|coordinate| (coordinate + 0.0).to_le_bytes()).as_flattened());
             }
         };
         let lengths = |hasher: &mut Sha256, key: &str, length: usize| {
@@ -161,9 +162,13 @@ impl Lists {
         for (key, lists) in [("elements", Some(&self.elements)), ("faces", self.faces.as_ref())] {
             let Some(lists) = lists else { continue };
             lengths(&mut hasher, key, lists.len());
+            // One by one, numbers cost more than their digest.
+            let mut bytes = Vec::new();
             for list in lists.iter() {
-                lengths(&mut hasher, "", list.len());
-                list.iter().for_each(|index| hasher.update(index.to_le_bytes()));
+                bytes.clear();
+                bytes.extend((list.len() as u64).to_le_bytes());
+                bytes.extend(list.iter().flat_map(|index| index.to_le_bytes()));
+                hasher.update(&bytes);
             }
         }
         if let Some(springs) = &self.springs {

@@ -2,55 +2,62 @@
 //! built from a part that has one.
 
 mod body;
-mod camera;
 mod elements;
 mod grips;
 mod lists;
-mod look;
 mod motion;
 mod obstacles;
-mod reach;
 mod runs;
-mod view;
 
-use super::Scene;
 use super::digest::FileDigests;
-use super::file::{BodyFile, CameraFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile, ViewFile};
-use super::font;
+use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile};
 use super::generate::Generator;
 use super::limits::Limits;
-use super::report::{Report, Way, written};
 use super::structure::Checked;
-use super::view::{Camera, FontFiles};
-use super::words::{count, short};
-use crate::sim::body::Dimension;
+use super::{Run, Scene};
+use crate::look::file::{CameraFile, ViewFile};
+use crate::look::{self, Camera, FontFiles, View, font};
+use crate::reading::coordinates::{direction, vector};
+use crate::reading::report::{Report, Way};
+use crate::reading::words::{count, short};
+use crate::sim::contact::Obstacle;
+use crate::sim::grip::Grip;
+use body::ResolvedBody;
 pub(super) use elements::mean_edge;
 use glam::DVec3;
 use lists::Lists;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-pub(super) use view::columns;
 
-/// The parts of a scene file without those that have a mistake in their structure.
-#[derive(Debug)]
+/// The parts of a scene file without those that have a mistake in their structure. Without mistakes, what is written of
+/// them is the whole file.
+#[derive(Debug, Serialize)]
 pub(super) struct Parts {
     title: Option<String>,
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
     /// What the body's own file holds, if it has one and that has no mistake.
+    #[serde(skip)]
     beside: Option<Lists>,
     /// Keys of the top level below which something is left out because of mistakes.
+    #[serde(skip)]
     flawed: BTreeSet<String>,
+    #[serde(rename = "run")]
     runs: Vec<Option<RunFile>>,
+    #[serde(rename = "obstacle")]
     obstacles: Vec<Option<ObstacleFile>>,
+    #[serde(rename = "hold")]
     holds: Vec<Option<HoldFile>>,
+    #[serde(rename = "grab")]
     grabs: Vec<Option<GrabFile>>,
     view: Option<ViewFile>,
     /// The fonts that the view names; `None` if there is a mistake in them.
+    #[serde(skip)]
     font: Option<FontFiles>,
 }
 
@@ -127,7 +134,16 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
 
-/// The scene, or `None` if there is any mistake.
+/// What is simulated. Each part is `None` if it, or one that it needs, has a mistake.
+struct Physics {
+    gravity: Option<DVec3>,
+    body: Option<ResolvedBody>,
+    obstacles: Option<Vec<Obstacle>>,
+    grips: Option<Vec<Grip>>,
+    runs: Option<Vec<Run>>,
+}
+
+/// The scene, or `None` if there is any mistake: first what is simulated, then how that is looked at.
 pub(super) fn resolve(
     mut parts: Parts,
     name: &str,
@@ -136,7 +152,39 @@ pub(super) fn resolve(
     report: &mut Report<'_>,
 ) -> Option<Scene> {
     let beside = parts.beside.take();
-    let parts = &parts;
+    let physics = physics(&parts, beside, limits, report);
+    let view = view(&parts, &physics, report);
+    if let (0, Some(runs)) = (report.total(), &physics.runs) {
+        let longest = runs.iter().fold(0.0, |longest: f64, run| longest.max(run.step));
+        obstacles::check_steps(&parts.obstacles, longest, report);
+        grips::check_steps(&parts.holds, &parts.grabs, longest, report);
+    }
+    if report.total() > 0 {
+        return None;
+    }
+    let (time, body) = (parts.time.as_ref()?, physics.body?);
+    let mut scene = Scene {
+        title: parts.title.clone().unwrap_or_else(|| name.into()),
+        name: name.into(),
+        file: None,
+        digest: digest.into(),
+        gravity: physics.gravity?,
+        duration: time.duration,
+        frames_per_second: time.frames_per_second,
+        body: Arc::new(body.body),
+        initial: body.initial,
+        runs: physics.runs?,
+        obstacles: physics.obstacles?,
+        grips: physics.grips?,
+        view: view?,
+        warnings: Vec::new(),
+    };
+    scene.place_runs();
+    warn_of_time(&scene, report);
+    Some(scene)
+}
+
+fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut Report<'_>) -> Physics {
     let dimension = parts.body.as_ref().and_then(|file| body::dimension(file, beside.as_ref()));
     let read_body = |file| body::resolve(file, beside, parts.flawed.contains("body"), &parts.runs, limits, report);
     let body = parts.body.as_ref().and_then(read_body);
@@ -150,55 +198,28 @@ pub(super) fn resolve(
         check_frames(time, report);
     }
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);
-    let view = match (&parts.view, &body, &obstacles) {
-        (Some(view), Some(body), Some(obstacles)) => {
-            let runs = runs.as_deref().unwrap_or_default();
-            let around = view::Around {
-                body: &body.body,
-                initial: &body.initial,
-                side: body.side,
-                has_cells: body.has_cells,
-                gravity: gravity.unwrap_or_default(),
-                obstacles,
-                grips: grips.as_deref().unwrap_or_default(),
-                duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
-                runs,
-            };
-            view::resolve(view, &around, parts.font.clone(), report)
-        }
-        _ => None,
+    Physics { gravity, body, obstacles, grips, runs }
+}
+
+/// How it is looked at: here the `[view]` table is handed over.
+fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<View> {
+    let Physics { gravity, body, obstacles, grips, runs } = physics;
+    let (body, obstacles) = (body.as_ref()?, obstacles.as_ref()?);
+    let around = look::Around {
+        body: &body.body,
+        initial: &body.initial,
+        side: body.side,
+        has_cells: body.has_cells,
+        gravity: gravity.unwrap_or_default(),
+        obstacles,
+        grips: grips.as_deref().unwrap_or_default(),
+        duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
+        models: runs.iter().flatten().map(|run| &*run.model).collect(),
     };
-    if let Some(view) = &view {
-        look::check_runs(&parts.runs, &view.look.palette, report);
-    }
-    if let (0, Some(runs)) = (report.total(), &runs) {
-        let longest = runs.iter().fold(0.0, |longest: f64, run| longest.max(run.step));
-        obstacles::check_steps(&parts.obstacles, longest, report);
-        grips::check_steps(&parts.holds, &parts.grabs, longest, report);
-    }
-    if report.total() > 0 {
-        return None;
-    }
-    let (time, body) = (parts.time.as_ref()?, body?);
-    let mut scene = Scene {
-        title: parts.title.clone().unwrap_or_else(|| name.into()),
-        name: name.into(),
-        file: None,
-        digest: digest.into(),
-        gravity: gravity?,
-        duration: time.duration,
-        frames_per_second: time.frames_per_second,
-        body: Arc::new(body.body),
-        initial: body.initial,
-        runs: runs?,
-        obstacles: obstacles?,
-        grips: grips?,
-        view: view?,
-        warnings: Vec::new(),
-    };
-    scene.place_runs();
-    warn_of_time(&scene, report);
-    Some(scene)
+    let view = look::resolve(parts.view.as_ref()?, &around, parts.font.clone(), report)?;
+    let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
+    look::check_runs(&chosen, &view.look.palette, report);
+    Some(view)
 }
 
 /// Warns of a scene that shows nothing but its start, and of one whose end nobody may want to wait for.
@@ -239,7 +260,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
 
 /// The camera that a scene has if its file says nothing of one.
 pub(super) fn camera(scene: &Scene) -> Camera {
-    let around = view::Around {
+    let around = look::Around {
         body: &scene.body,
         initial: &scene.initial,
         side: scene.view.side,
@@ -248,9 +269,9 @@ pub(super) fn camera(scene: &Scene) -> Camera {
         obstacles: &scene.obstacles,
         grips: &scene.grips,
         duration: scene.duration,
-        runs: &scene.runs,
+        models: scene.runs.iter().map(|run| &*run.model).collect(),
     };
-    view::camera(&CameraFile::default(), None, scene.view.explode, &around)
+    look::camera(&CameraFile::default(), None, scene.view.explode, &around)
 }
 
 fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
@@ -265,33 +286,4 @@ fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
         let help = "make `duration` or `frames_per_second` smaller".to_owned();
         report.at(&[Way::Key("time"), Way::Key("duration")], message, help);
     }
-}
-
-/// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.
-fn vector(typed: &Coordinates, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
-    match (typed.0.as_slice(), dimension) {
-        (&[x, y, z], Dimension::Space) => Some(DVec3::new(x, y, z)),
-        (&[x, y], Dimension::Plane) => Some(DVec3::new(x, y, 0.0)),
-        (other, dimension) => {
-            let expected = match dimension {
-                Dimension::Space => "3, because the body is in space",
-                Dimension::Plane => "2, because the body is in the plane",
-            };
-            let message = format!("`{}` has {} coordinates; expected {expected}", written(path), other.len());
-            report.at(path, message, None);
-            None
-        }
-    }
-}
-
-/// A vector at unit length; a mistake if it has no direction.
-fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
-    // By its largest coordinate first: squares of very small or large numbers leave the range of double precision.
-    let largest = vector.abs().max_element();
-    let unit = (vector / largest).normalize();
-    if largest > 0.0 && unit.is_finite() {
-        return Some(unit);
-    }
-    report.at(path, format!("`{}` is zero, so it has no direction", written(path)), None);
-    None
 }

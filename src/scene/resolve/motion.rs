@@ -1,8 +1,8 @@
 //! Turns and paths.
 
 use super::{direction, vector};
+use crate::reading::report::{Report, Way, written};
 use crate::scene::file::{Coordinates, MotionFile, RotationFile, SwingFile};
-use crate::scene::report::{Report, Way, written};
 use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Place};
 use glam::DVec3;

@@ -3,8 +3,8 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
+use crate::reading::report::{Report, Way};
 use crate::scene::file::{Coordinates, ObstacleFile};
-use crate::scene::report::{Report, Way};
 use crate::sim::body::{Dimension, IndexLists, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::words::rounded;

@@ -1,10 +1,10 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
+use crate::reading::report::{Report, Way};
+use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
-use crate::scene::report::{Report, Way};
-use crate::scene::words;
 use crate::sim::model::ElasticModel;
 use std::sync::Arc;
 

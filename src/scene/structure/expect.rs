@@ -1,7 +1,7 @@
 //! What a schema asks for, in words.
 
+use crate::reading::words::{list, quoted};
 use crate::scene::schema::choices;
-use crate::scene::words::{list, quoted};
 use serde_json::Value as Json;
 
 /// The types that a schema allows, in words.

@@ -2,8 +2,8 @@
 
 use super::Walk;
 use super::expect::first_sentence;
-use crate::scene::report::written;
-use crate::scene::words::{list, nearest, shortened};
+use crate::reading::report::written;
+use crate::reading::words::{list, nearest, shortened};
 use serde_json::Value as Json;
 use std::ops::Range;
 use toml::Spanned;

@@ -3,11 +3,11 @@
 mod expect;
 mod keys;
 
-use super::file::{BackgroundFile, TypedColour};
-use super::report::{Report, Way, written};
 use super::schema::{choices, variants};
 use super::step::FractionOfCycle;
-use super::words::{self, list, nearest, quoted};
+use crate::look::typed::{BackgroundFile, TypedColour};
+use crate::reading::report::{Report, Way, written};
+use crate::reading::words::{self, list, nearest, quoted};
 use expect::{expected, first_sentence, range};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;

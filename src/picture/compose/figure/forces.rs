@@ -413,7 +413,7 @@ impl<'a> Drawn<'a> {
         if self.draft.flat {
             self.ghost_outline(above, forces.vectors);
         }
-        let own = palette.line(&cell.scene.runs[cell.frame.run]).colour;
+        let own = cell.scene.runs[cell.frame.run].line(palette).colour;
         let ends = |ways: &[DVec3]| -> Vec<[DVec2; 2]> {
             position.iter().zip(ways).map(|(&at, &way)| [self.pixel(at), self.pixel(at + way)]).collect()
         };
@@ -423,7 +423,7 @@ impl<'a> Drawn<'a> {
         if let Some((run, compared)) = &cell.compared {
             let arrows = ends(compared);
             labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
-            let colour = palette.line(&cell.scene.runs[*run]).colour;
+            let colour = cell.scene.runs[*run].line(palette).colour;
             for ends in arrows.iter().filter(|ends| shown(ends)) {
                 above.extend(outlined(*ends, *scale, colour, palette.background));
             }
@@ -617,7 +617,7 @@ impl Key<'_> {
         }
         let ends = [DVec2::new(left, middle), DVec2::new(left + 54.0 * unit, middle)];
         let compared = &scene.runs[compare];
-        marks.extend(outlined(ends, scale, palette.line(compared).colour, palette.background));
+        marks.extend(outlined(ends, scale, compared.line(palette).colour, palette.background));
         say(&format!("forces of “{}”, for comparison", compared.name), ends[1].x + gap, writer);
     }
 }

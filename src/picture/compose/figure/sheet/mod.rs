@@ -19,6 +19,7 @@ mod sight;
 mod words;
 
 use super::header;
+use crate::look::{Labels, View};
 use crate::moments::Moments;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
@@ -28,8 +29,8 @@ use crate::picture::legend::Legend;
 use crate::picture::narrow::narrow;
 use crate::picture::text::Fonts;
 use crate::picture::{Colour, Curve, Framing, Picture};
+use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
-use crate::scene::{Labels, Scene, View};
 use crate::sim::snapshot::Frame;
 use charts::Charts;
 use glam::DVec2;

@@ -223,7 +223,7 @@ impl RowLabels {
                 baseline += SAMPLE_BELOW * unit;
                 let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
                 if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
-                    writer.sample([left, baseline], palette.line(&scene.runs[run]));
+                    writer.sample([left, baseline], scene.runs[run].line(palette));
                 }
             }
             baseline += NOTE_BELOW * unit;

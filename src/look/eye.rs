@@ -1,18 +1,18 @@
 //! Whether a camera can see anything.
 
-use crate::scene::view::Camera;
+use super::view::Camera;
 use crate::sim::body::Body;
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Where a camera stands at the start (m).
-pub(super) fn eye(camera: &Camera) -> DVec3 {
+pub(crate) fn eye(camera: &Camera) -> DVec3 {
     let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
     camera.target + camera.distance * DVec3::new(across * level, rise, along * level)
 }
 
 /// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
-pub(super) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
+pub(crate) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
     let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
     // A closed surface that is all around fills the whole sky, one that is not fills nothing.
     let sky: f64 = outside

@@ -1,7 +1,7 @@
 //! Colours, type and lines as typed.
 
 use crate::colour::{Colour, UnknownColour, names, parse, written};
-use crate::scene::words::{nearest, quoted};
+use crate::reading::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -13,11 +13,11 @@ const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS s
 /// An opaque colour. It is written back as digits, so that a name and its digits mean the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub(in crate::scene) struct TypedColour(pub(in crate::scene) Colour);
+pub(crate) struct TypedColour(pub(crate) Colour);
 
 impl TypedColour {
     /// Why a text is no colour, as words that go on after it, and what to do if more can be said; `None` if it is one.
-    pub(in crate::scene) fn mistake(text: &str) -> Option<(String, Option<String>)> {
+    pub(crate) fn mistake(text: &str) -> Option<(String, Option<String>)> {
         let digits = |text: &str| format!("write \"#{}\"", text.trim());
         Some(match parse(text).err()? {
             UnknownColour::Unknown => {
@@ -68,7 +68,7 @@ impl JsonSchema for TypedColour {
 /// What is behind everything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub(in crate::scene) enum BackgroundFile {
+pub(crate) enum BackgroundFile {
     /// Nothing: whatever the picture is laid on.
     Transparent,
     /// A colour.
@@ -80,7 +80,7 @@ const TRANSPARENT: &str = "transparent";
 
 impl BackgroundFile {
     /// As for a colour.
-    pub(in crate::scene) fn mistake(text: &str) -> Option<(String, Option<String>)> {
+    pub(crate) fn mistake(text: &str) -> Option<(String, Option<String>)> {
         if text == TRANSPARENT {
             return None;
         }
@@ -124,52 +124,52 @@ impl JsonSchema for BackgroundFile {
 /// `"steelblue"`; all are opaque.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub(in crate::scene) struct ColoursFile {
+pub(crate) struct ColoursFile {
     /// A sound element, before light falls on it. The fill of elements in the plane and the squares of the tally follow,
     /// and edges that would not be seen on it become lighter. At least 20 (CIEDE2000) from `turned_over`, also to
     /// colour-blind eyes.
-    pub(in crate::scene) body: Option<TypedColour>,
+    pub(crate) body: Option<TypedColour>,
     /// An element that has turned over, before light falls on it, and its edges among bare lines. Its hatch, its signs
     /// and the words about it follow.
-    pub(in crate::scene) turned_over: Option<TypedColour>,
+    pub(crate) turned_over: Option<TypedColour>,
     /// Edges of sound elements, rims of nodes, and the sides of lines that a field colours.
-    pub(in crate::scene) edge: Option<TypedColour>,
+    pub(crate) edge: Option<TypedColour>,
     /// The outline of a body and of solid obstacles.
-    pub(in crate::scene) outline: Option<TypedColour>,
+    pub(crate) outline: Option<TypedColour>,
     /// A node, where no field colours it.
-    pub(in crate::scene) node: Option<TypedColour>,
+    pub(crate) node: Option<TypedColour>,
     /// Springs, and edges that take their place where surfaces are not shown.
-    pub(in crate::scene) spring: Option<TypedColour>,
+    pub(crate) spring: Option<TypedColour>,
     /// Arrows and curves of all runs that have no `colour` of their own; their dashes tell them apart.
-    pub(in crate::scene) arrow: Option<TypedColour>,
+    pub(crate) arrow: Option<TypedColour>,
     /// Arrows of what moves, and marks of what is held.
-    pub(in crate::scene) pointer: Option<TypedColour>,
+    pub(crate) pointer: Option<TypedColour>,
     /// A solid obstacle, before light falls on it. Its fill and outline in the plane follow.
-    pub(in crate::scene) obstacle: Option<TypedColour>,
+    pub(crate) obstacle: Option<TypedColour>,
     /// A transparent plate. Its sides and edges, walls and slopes follow.
-    pub(in crate::scene) plate: Option<TypedColour>,
+    pub(crate) plate: Option<TypedColour>,
     /// Names and numbers. Smaller words, ticks, the line of the floor in the plane and lines between panels follow: they
     /// stand between it and the background. With the background it has a contrast of at least 4.5.
-    pub(in crate::scene) text: Option<TypedColour>,
+    pub(crate) text: Option<TypedColour>,
     /// The floor in space. Words have a contrast of at least 4.5 with it. It is not drawn on a transparent background.
-    pub(in crate::scene) floor: Option<TypedColour>,
+    pub(crate) floor: Option<TypedColour>,
     /// The lines on floors and walls in space.
-    pub(in crate::scene) grid: Option<TypedColour>,
+    pub(crate) grid: Option<TypedColour>,
     /// What a floor's colour goes to in the shadow.
-    pub(in crate::scene) shadow: Option<TypedColour>,
+    pub(crate) shadow: Option<TypedColour>,
 }
 
 /// The files of fonts, TrueType or OpenType (.ttf, .otf, .ttc), looked for beside the scene file.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct FontFile {
+pub(crate) struct FontFile {
     /// The font of all words, such as one with the letters of another script. Letters it does not have come from the
     /// font that is built in; digits and Latin letters it must have.
     #[schemars(length(min = 1))]
-    pub(in crate::scene) regular: String,
+    pub(crate) regular: String,
     /// The font of names and counts. Default: the same.
     #[schemars(length(min = 1))]
-    pub(in crate::scene) semi_bold: Option<String>,
+    pub(crate) semi_bold: Option<String>,
 }
 
 #[cfg(test)]

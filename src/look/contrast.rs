@@ -1,17 +1,18 @@
 //! What the scene looks like: colours, type, lines and margins.
 
+use super::file::{ShowFile, ViewFile};
+use super::palette::{LEAST_CONTRAST, LINE_CONTRAST, Palette};
+use super::ramp::ramp;
+use super::typed::{BackgroundFile, ColoursFile};
+use super::view::{FloorStyle, FontFiles, Look, Theme};
 use crate::colour::{Colour, Sight, contrast, difference, readable, written};
-use crate::scene::file::{BackgroundFile, ColoursFile, RunFile, ShowFile, ViewFile};
-use crate::scene::palette::{LEAST_CONTRAST, LINE_CONTRAST, Palette};
-use crate::scene::ramp::ramp;
-use crate::scene::report::{Report, Way};
-use crate::scene::view::{FloorStyle, FontFiles, Look, Theme};
+use crate::reading::report::{Report, Way};
 
 /// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// The look, or `None` if there is a mistake in it.
-pub(super) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Look> {
+pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Look> {
     let background = match typed.background {
         Some(BackgroundFile::Colour(colour)) => Some(colour.0),
         Some(BackgroundFile::Transparent) | None => None,
@@ -67,14 +68,14 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
 
 /// The colours that runs have of their own must be seen on the background, and not be taken for that of turned-over
 /// elements.
-pub(super) fn check_runs(typed: &[Option<RunFile>], palette: &Palette, report: &mut Report<'_>) {
+pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Report<'_>) {
     let like_alarm = |colour: Colour| {
         let measured = Sight::ALL.map(|sight| (difference(colour, palette.alarm, sight), sight));
         let nearest = measured.into_iter().min_by(|one, other| one.0.total_cmp(&other.0));
         nearest.filter(|(found, _)| *found < LEAST_DIFFERENCE)
     };
-    for (at, run) in typed.iter().enumerate() {
-        let Some(colour) = run.as_ref().and_then(|run| run.colour).map(|colour| colour.0) else { continue };
+    for (at, &colour) in chosen.iter().enumerate() {
+        let Some(colour) = colour else { continue };
         let path = [Way::Key("run"), Way::Index(at), Way::Key("colour")];
         let found = contrast(colour, palette.background);
         if found < LINE_CONTRAST {

@@ -80,7 +80,7 @@ fn grey(share: f64) -> Oklab {
 mod tests {
     use super::*;
     use crate::colour::{Sight, contrast, difference, oklab};
-    use crate::scene::Palette;
+    use crate::look::Palette;
 
     const USUAL: ColourMap = ColourMap::MintIndigo;
 

@@ -5,12 +5,12 @@ use serde_json::Value as Json;
 use toml::de::{DeInteger, DeValue};
 
 /// A text in quotation marks, shortened.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(text))
 }
 
 /// A text without control characters, and with its middle left out if it is long.
-pub(super) fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let count = text.chars().count();
     if count <= 40 {
@@ -20,7 +20,7 @@ pub(super) fn shortened(text: &str) -> String {
 }
 
 /// `a, b or c`.
-pub(super) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str) -> String) -> String {
+pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str) -> String) -> String {
     match names {
         [] => String::new(),
         [only] => write(only.as_ref()),
@@ -49,7 +49,7 @@ pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
 }
 
 /// What a value is: `the string "3"`, `an array of 2`.
-pub(super) fn found(value: &DeValue<'_>) -> String {
+pub(crate) fn found(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("the string {}", quoted(text)),
         DeValue::Integer(number) => format!("the whole number {}", shortened(&number.to_string())),
@@ -62,7 +62,7 @@ pub(super) fn found(value: &DeValue<'_>) -> String {
 }
 
 /// A whole number as a number, of any size.
-pub(super) fn to_f64(integer: &DeInteger<'_>) -> f64 {
+pub(crate) fn to_f64(integer: &DeInteger<'_>) -> f64 {
     match i128::from_str_radix(integer.as_str(), integer.radix()) {
         Ok(exact) => exact as f64,
         Err(_) => integer.as_str().parse().unwrap_or(f64::INFINITY),
@@ -70,13 +70,13 @@ pub(super) fn to_f64(integer: &DeInteger<'_>) -> f64 {
 }
 
 /// A whole number as JSON, if 64 bits hold it.
-pub(super) fn to_json(integer: &DeInteger<'_>) -> Option<Json> {
+pub(crate) fn to_json(integer: &DeInteger<'_>) -> Option<Json> {
     let exact = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
     u64::try_from(exact).map(Json::from).or_else(|_| i64::try_from(exact).map(Json::from)).ok()
 }
 
 /// A count with its thousands set apart: `1 030 301`.
-pub(super) fn count(number: u128) -> String {
+pub(crate) fn count(number: u128) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
@@ -89,12 +89,12 @@ pub(super) fn count(number: u128) -> String {
 }
 
 /// A number with up to four significant digits.
-pub(super) fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
 }
 
 /// A number with up to twelve significant digits: as a bound of a region it takes what lies there.
-pub(super) fn fine(number: f64) -> String {
+pub(crate) fn fine(number: f64) -> String {
     significant(number, 12)
 }
 
@@ -102,6 +102,16 @@ fn significant(number: f64, digits: usize) -> String {
     // Adding zero takes the sign off a negative one.
     let rounded = rounded(number, digits) + 0.0;
     if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}
+
+/// An amount of memory in words.
+pub(crate) fn size(bytes: u128) -> String {
+    match bytes {
+        0..1_000_000 => format!("{} kB", bytes.div_ceil(1000)),
+        1_000_000..1_073_741_824 => format!("{} MiB", bytes.div_ceil(1 << 20)),
+        1_073_741_824..107_374_182_400 => format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30)),
+        _ => format!("{} GiB", count(bytes >> 30)),
+    }
 }
 
 #[cfg(test)]

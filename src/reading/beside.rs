@@ -4,13 +4,13 @@ use super::words::nearest;
 use std::path::Path;
 
 /// What is said of a file that is not there.
-pub(super) fn missing(path: &Path) -> String {
+pub(crate) fn missing(path: &Path) -> String {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     format!("is not there (looked for {})", full.display())
 }
 
 /// The file in the same folder, with one of several endings, whose name is most like that of a missing one.
-pub(super) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
+pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// A text with the means to turn byte offsets into lines and columns.
 #[derive(Debug)]
-pub(super) struct Source<'t> {
+pub(crate) struct Source<'t> {
     text: &'t str,
     /// Where each line begins (bytes).
     lines: Vec<usize>,
@@ -14,12 +14,12 @@ pub(super) struct Source<'t> {
 const WIDEST_EXCERPT: usize = 110;
 
 impl<'t> Source<'t> {
-    pub(super) fn new(text: &'t str) -> Self {
+    pub(crate) fn new(text: &'t str) -> Self {
         let starts = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
         Self { text, lines: std::iter::once(0).chain(starts).collect() }
     }
 
-    pub(super) fn text(&self) -> &'t str {
+    pub(crate) fn text(&self) -> &'t str {
         self.text
     }
 
@@ -30,7 +30,7 @@ impl<'t> Source<'t> {
     }
 
     /// Line and column of a byte offset, both counted from 1, the column in characters.
-    pub(super) fn position(&self, byte: usize) -> (usize, usize) {
+    pub(crate) fn position(&self, byte: usize) -> (usize, usize) {
         let byte = self.boundary(byte);
         let line = self.lines.partition_point(|&start| start <= byte).max(1);
         (line, self.text[self.lines[line - 1]..byte].chars().count() + 1)
@@ -38,7 +38,7 @@ impl<'t> Source<'t> {
 
     /// The line in which a span begins, cut to a readable width, and where in it the span's part of it stands
     /// (characters). Tabs and other control characters become spaces, so that the mark stands right.
-    pub(super) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
+    pub(crate) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
         let (line, column) = self.position(span.start);
         let start = self.lines[line - 1];
         let end = self.lines.get(line).map_or(self.text.len(), |next| next - 1);

@@ -1,8 +1,7 @@
 //! The colours of a picture. Those of a theme come from here; what a scene gives takes their place, and whatever belongs
 //! to it follows. Vermilion means "turned over" and nothing else.
 
-use super::Run;
-use super::file::{ColoursFile, TypedColour};
+use super::typed::{ColoursFile, TypedColour};
 use super::view::Theme;
 use crate::colour::{Colour, Oklab, Sight, best_of, contrast, difference, from_oklab, mixed, oklab, readable};
 
@@ -71,7 +70,7 @@ pub struct Palette {
     pub spring_on_body: Colour,
     /// The sides of lines that a field colours.
     pub casing: Colour,
-    /// The lines that stand for runs, by their places: see [`Palette::line`].
+    /// The lines that stand for runs, by their places: see [`Run::line`](crate::scene::Run::line).
     pub runs: [Colour; 8],
 }
 
@@ -124,19 +123,20 @@ impl Palette {
 
     /// The line of a run, the same in every picture of its scene. Eight runs differ in colour and in dashes, more of them,
     /// up to 64, in one of both. Colours are made lighter or darker where they could not be seen on the background.
-    pub fn line(&self, run: &Run) -> LineStyle {
+    /// `place` is that of the run ([`Self::places`]), `chosen` a colour of its own.
+    pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let colour = run.colour.unwrap_or(self.runs[run.place % colours]);
+        let colour = chosen.unwrap_or(self.runs[place % colours]);
         LineStyle {
             // The halo's colour is that of the background, whatever ground a picture is laid on.
             colour: readable(colour, self.halo, LINE_CONTRAST),
-            dash: DASHES[(run.place + run.place / colours) % dashes],
+            dash: DASHES[(place + place / colours) % dashes],
         }
     }
 
     /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others leave out
     /// colours that look like a chosen one, as far as there are any left.
-    pub(super) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
+    pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
         let seen = |colour| readable(colour, self.halo, LINE_CONTRAST);
         let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
@@ -167,7 +167,7 @@ impl Palette {
     }
 
     /// The theme whose text can be read on a background: the one asked for, or else the better one.
-    pub(super) fn theme_on(background: Option<Colour>, theme: Theme) -> Theme {
+    pub(crate) fn theme_on(background: Option<Colour>, theme: Theme) -> Theme {
         let Some(ground) = background else { return theme };
         let other = if theme == Theme::Light { Theme::Dark } else { Theme::Light };
         let [own, others] = [theme, other].map(|theme| contrast(Self::of(theme).text, ground));
@@ -175,7 +175,7 @@ impl Palette {
     }
 
     /// The colours of a theme with those that a scene gives, and all that belongs to these.
-    pub(super) fn with(theme: Theme, background: Option<Colour>, given: &ColoursFile) -> Self {
+    pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &ColoursFile) -> Self {
         let theme = Self::of(theme);
         let mut own = theme;
         if let Some(ground) = background {
@@ -256,13 +256,13 @@ impl Palette {
 }
 
 /// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
-pub(super) const LEAST_CONTRAST: f64 = 4.5;
+pub(crate) const LEAST_CONTRAST: f64 = 4.5;
 /// How different the colours of two runs look at the least, to anybody (CIEDE2000).
 const RUNS_APART: f64 = 15.0;
 /// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
 const GOOD_CONTRAST: f64 = 5.0;
 /// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
-pub(super) const LINE_CONTRAST: f64 = 3.0;
+pub(crate) const LINE_CONTRAST: f64 = 3.0;
 /// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
 const DARK_ALARM: f64 = 0.48;
 const LIGHTER_HATCH: f64 = 0.36;

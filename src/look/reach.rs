@@ -1,6 +1,6 @@
 //! What comes near the body in the course of a scene, so that the picture can show it.
 
-use super::view::Around;
+use super::framing::Around;
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -16,9 +16,8 @@ const PARTS: usize = 24;
 /// Longer paths are looked at in their keys alone.
 const MANY_KEYS: usize = 500;
 
-/// The points (m) of obstacles and grips that are at any time near the points of a body of a size (m).
-pub(super) fn near(scene: &Around<'_>, body: &[DVec3], size: f64) -> Vec<DVec3> {
-    let (low, high) = bounds(body);
+/// The points (m) of obstacles and grips that are at any time near the box around a body of a size (m).
+pub(crate) fn near(scene: &Around<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
     let (low, high) = (low - NEAR * size, high + NEAR * size);
     let around = Neighbourhood { scene, size, middle: (low + high) / 2.0, corners: [low, high] };
     let mut points = Vec::new();

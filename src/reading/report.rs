@@ -1,13 +1,13 @@
 //! Collects mistakes, each at its place in the file.
 
-use super::error::{Mistake, Mistakes};
 use super::source::Source;
+use super::{Mistake, Mistakes};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// One step on the way from the top of a file to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way<'a> {
+pub(crate) enum Way<'a> {
     /// Into a table.
     Key(&'a str),
     /// Into an array.
@@ -15,7 +15,7 @@ pub(super) enum Way<'a> {
 }
 
 /// The way to a value as a reader writes it: `run[1].model.stiffness`.
-pub(super) fn written(path: &[Way<'_>]) -> String {
+pub(crate) fn written(path: &[Way<'_>]) -> String {
     let mut text = String::new();
     for way in path {
         match way {
@@ -32,7 +32,7 @@ const KEPT: usize = 1000;
 
 /// Mistakes as they are found.
 #[derive(Debug)]
-pub(super) struct Report<'t> {
+pub(crate) struct Report<'t> {
     source: &'t Source<'t>,
     root: &'t DeTable<'t>,
     found: Vec<Mistake>,
@@ -41,24 +41,24 @@ pub(super) struct Report<'t> {
 }
 
 impl<'t> Report<'t> {
-    pub(super) fn new(source: &'t Source<'t>, root: &'t DeTable<'t>) -> Self {
+    pub(crate) fn new(source: &'t Source<'t>, root: &'t DeTable<'t>) -> Self {
         Self { source, root, found: Vec::new(), total: 0, warned: Vec::new() }
     }
 
     /// How many mistakes were found so far.
-    pub(super) fn total(&self) -> usize {
+    pub(crate) fn total(&self) -> usize {
         self.total
     }
 
     /// Counts a mistake of which no more than that would be kept, if so many are known; else its words are needed.
-    pub(super) fn only_counted(&mut self) -> bool {
+    pub(crate) fn only_counted(&mut self) -> bool {
         let is_full = self.found.len() >= KEPT;
         self.total += usize::from(is_full);
         is_full
     }
 
     /// Whether the key at the end of `path` is typed; a default is not.
-    pub(super) fn is_typed(&self, path: &[Way<'_>]) -> bool {
+    pub(crate) fn is_typed(&self, path: &[Way<'_>]) -> bool {
         match path {
             [before @ .., Way::Key(key)] => table_at(self.root, before).is_some_and(|table| table.contains_key(*key)),
             _ => false,
@@ -66,7 +66,7 @@ impl<'t> Report<'t> {
     }
 
     /// A mistake at a span of the text.
-    pub(super) fn at_span(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+    pub(crate) fn at_span(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         self.total += 1;
         if self.found.len() < KEPT {
             self.found.push(mistake(self.source, span, message.into(), help));
@@ -74,12 +74,12 @@ impl<'t> Report<'t> {
     }
 
     /// A mistake in the value at `path`, or in the nearest table or array that is there.
-    pub(super) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
+    pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
         self.at_span(span_of(self.root, path), message, help.into());
     }
 
     /// A mistake about the key at the end of `path`, or about where it is missing.
-    pub(super) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
+    pub(crate) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
         let (table, key) = match path {
             [before @ .., Way::Key(key)] => (table_at(self.root, before), *key),
             _ => (None, ""),
@@ -89,26 +89,26 @@ impl<'t> Report<'t> {
     }
 
     /// What is allowed and probably not meant, in the value at `path` or in the nearest one that is there.
-    pub(super) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
+    pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
         self.warned.push(mistake(self.source, span_of(self.root, path), message, Some(help)));
     }
 
     /// All warnings, in the order of the text.
-    pub(super) fn warnings(&mut self) -> Vec<Mistake> {
+    pub(crate) fn warnings(&mut self) -> Vec<Mistake> {
         let mut found = std::mem::take(&mut self.warned);
         found.sort_by_key(|mistake| (mistake.line, mistake.column));
         found
     }
 
     /// All that was found, in the order of the text.
-    pub(super) fn finish(mut self, file: &str) -> Mistakes {
+    pub(crate) fn finish(mut self, file: &str) -> Mistakes {
         self.found.sort_by_key(|mistake| (mistake.line, mistake.column));
         Mistakes { file: file.into(), found: self.found, total: self.total }
     }
 }
 
 /// A mistake at a span of a text.
-pub(super) fn mistake(source: &Source<'_>, span: Range<usize>, message: String, help: Option<String>) -> Mistake {
+pub(crate) fn mistake(source: &Source<'_>, span: Range<usize>, message: String, help: Option<String>) -> Mistake {
     let (line, column) = source.position(span.start);
     let (excerpt, marked) = source.excerpt(&span);
     Mistake { line, column, message, help, excerpt, marked }

@@ -1,10 +1,10 @@
 //! Reads the files of fonts.
 
-use super::beside::{missing, similar};
-use super::file::FontFile;
-use super::limits::size;
-use super::report::{Report, Way};
+use super::typed::FontFile;
 use super::view::FontFiles;
+use crate::reading::beside::{missing, similar};
+use crate::reading::report::{Report, Way};
+use crate::reading::words::size;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
@@ -18,7 +18,7 @@ const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
 const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
 
 /// The fonts of a scene, looked for in its folder, or `None` after reporting what is wrong with them.
-pub(super) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
+pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
     let mut one = |key: &str, name: &str| {
         let found = open(&folder.join(name)).and_then(|bytes| check(&bytes).map(|()| bytes).map_err(plain));
         let path = [Way::Key("view"), Way::Key("font"), Way::Key(key)];
@@ -97,6 +97,6 @@ fn letters(_: &[u8]) -> Result<(), String> {
 }
 
 /// The digest of what is in a file, which stands for its name in that of a scene.
-pub(super) fn digest(bytes: &[u8]) -> String {
+pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,0 +1,188 @@
+//! Cameras that show a body and what comes near it.
+
+use super::file::CameraFile;
+use super::reach;
+use super::view::{Camera, Follow};
+use crate::sim::body::{Body, Dimension, bounds};
+use crate::sim::contact::{self, Obstacle, Shape};
+use crate::sim::grip::Grip;
+use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+
+/// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
+const AZIMUTH: f64 = 31.0 / 180.0 * std::f64::consts::PI;
+const ELEVATION: f64 = 17.0 / 180.0 * std::f64::consts::PI;
+/// Elevation under a plate, which would hide the body from higher up (rad).
+const UNDER_PLATE: f64 = 13.0 / 180.0 * std::f64::consts::PI;
+const FIELD_OF_VIEW: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+
+/// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
+const DISTANCE: f64 = 8.5;
+
+/// How far bodies may reach from the point looked at, sideways, up and down, in heights of the picture at the reference
+/// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
+const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
+
+/// The camera of a scene: what is asked of it, and for the rest what shows the body and what comes near it. Elements may
+/// be drawn `apart`, in parts of their distance from the body's middle.
+pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Around<'_>) -> Camera {
+    let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
+    let (azimuth, elevation) = match dimension {
+        Dimension::Plane => (0.0, 0.0),
+        Dimension::Space => {
+            let elevation = if is_under_plate(obstacles) { UNDER_PLATE } else { ELEVATION };
+            (typed.azimuth.unwrap_or(AZIMUTH), typed.elevation.unwrap_or(elevation))
+        }
+    };
+    let start = &spread(&scene.initial.position, apart, obstacles);
+    let standing = standing(start, obstacles);
+    let mut chosen = Camera {
+        azimuth,
+        elevation,
+        field_of_view: typed.field_of_view.unwrap_or(FIELD_OF_VIEW),
+        target: standing,
+        distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene) * (1.0 + apart)),
+        rise: 0.0,
+        follow: typed.follow.into(),
+    };
+    match target {
+        Some(target) => chosen.target = target,
+        // A camera that follows shows by itself how high a body is.
+        None if chosen.follow != Follow::Nothing => {}
+        None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
+    }
+    if target.is_none() && typed.distance.is_none() {
+        show_reach(&mut chosen, start, standing, scene);
+    }
+    chosen
+}
+
+/// What a view follows from.
+pub(crate) struct Around<'a> {
+    pub(crate) body: &'a Body,
+    pub(crate) initial: &'a State,
+    /// Mean length of the elements' edges (m).
+    pub(crate) side: f64,
+    /// Whether that is the side of a lattice's cells.
+    pub(crate) has_cells: bool,
+    pub(crate) gravity: DVec3,
+    pub(crate) obstacles: &'a [Obstacle],
+    pub(crate) grips: &'a [Grip],
+    /// Simulated time (s).
+    pub(crate) duration: f64,
+    /// The model of each run.
+    pub(crate) models: Vec<&'a dyn ElasticModel>,
+}
+
+/// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
+fn size(scene: &Around<'_>) -> f64 {
+    let (low, high) = bounds(&scene.initial.position);
+    let start = (high - low).max_element();
+    if start > 0.0 { start } else { scene.body.extent() }
+}
+
+/// The start of a body that is drawn with its elements apart, a little larger than it is drawn.
+fn spread<'s>(start: &'s [DVec3], apart: f64, obstacles: &[Obstacle]) -> Cow<'s, [DVec3]> {
+    if apart == 0.0 || start.is_empty() {
+        return Cow::Borrowed(start);
+    }
+    let mut anchor = start.iter().sum::<DVec3>() / start.len() as f64;
+    if let Some((normal, _)) = contact::ground(obstacles, 0.0) {
+        let lowest = start.iter().map(|at| at.dot(normal)).fold(f64::INFINITY, f64::min);
+        anchor += (lowest - anchor.dot(normal)) * normal;
+    }
+    Cow::Owned(start.iter().map(|&at| at + apart * (at - anchor)).collect())
+}
+
+/// The middle of the body moved down or up until it stands on the first floor that faces upwards.
+fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
+    let (low, high) = bounds(start);
+    let middle = (low + high) / 2.0;
+    let Some((normal, height)) = contact::ground(obstacles, 0.0) else { return middle };
+    let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
+    DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
+}
+
+/// Moves a camera that looks at where a body will stand so that the body is also in the picture where it starts. A start
+/// that is in the picture already changes nothing.
+fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_distance: bool) {
+    let (low, high) = bounds(start);
+    let drop = camera.target - (low + high) / 2.0;
+    if least_distance(camera, start.iter().copied(), dimension) <= camera.distance {
+        return;
+    }
+    camera.rise = -drop.y;
+    camera.target -= drop / 2.0;
+    if !keep_distance {
+        let shown = start.iter().flat_map(|&at| [at, at + drop]);
+        camera.distance = camera.distance.max(least_distance(camera, shown, dimension));
+    }
+}
+
+/// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
+/// already, or if there is nothing, nothing changes.
+fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Around<'_>) {
+    let (low, high) = bounds(start);
+    let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
+    let is_shown_at_start = camera.follow == Follow::Nothing;
+    let around = match is_shown_at_start {
+        true => [low.min(low + drop), high.max(high + drop)],
+        false => [low + drop, high + drop],
+    };
+    let mut shown = reach::near(scene, around, size(scene));
+    if shown.is_empty() || least_distance(camera, shown.iter().copied(), dimension) <= camera.distance {
+        return;
+    }
+    shown.extend(start.iter().flat_map(|&at| is_shown_at_start.then_some(at).into_iter().chain([at + drop])));
+    // Each distance shows another middle, but hardly.
+    for _ in 0..4 {
+        let step = middle_of(camera, &shown, dimension);
+        camera.target += step;
+        camera.distance = camera.distance.max(least_distance(camera, shown.iter().copied(), dimension));
+    }
+}
+
+/// The way (m) from the point that a camera looks at to the one in whose picture points stand in the middle of the room.
+fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
+    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    let up = towards.cross(right);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for from_target in points.iter().map(|&point| point - camera.target) {
+        let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
+        let scale = camera.distance / (camera.distance - depth).max(0.1 * camera.distance);
+        let at = scale * DVec2::new(from_target.dot(right), from_target.dot(up));
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let [_, above, below] = ROOM;
+    let aside = 0.5 * (low.x + high.x);
+    let upward = (low.y * above + high.y * below) / (above + below);
+    // Upwards in the world, unless that is hardly to be seen.
+    let upward = if level > 0.3 { upward / level * DVec3::Y } else { upward * up };
+    aside * right + upward
+}
+
+/// Whether a plate presses from above.
+fn is_under_plate(obstacles: &[Obstacle]) -> bool {
+    let above = |obstacle: &Obstacle| matches!(obstacle.shape, Shape::Plate { normal, .. } if normal.y < -0.5);
+    obstacles.iter().any(above)
+}
+
+/// The least distance at which a camera has points in the picture (m).
+fn least_distance(camera: &Camera, points: impl Iterator<Item = DVec3>, dimension: Dimension) -> f64 {
+    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    let up = towards.cross(right);
+    let [aside, above, below] = ROOM.map(|share| share * 2.0 * libm::tan(camera.field_of_view / 2.0));
+    let least = points.map(|point| {
+        let from_target = point - camera.target;
+        let (x, y) = (from_target.dot(right), from_target.dot(up));
+        let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
+        depth + (x.abs() / aside).max(y / above).max(-y / below)
+    });
+    least.fold(0.0, f64::max)
+}

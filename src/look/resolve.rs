@@ -1,0 +1,212 @@
+//! What a `[view]` table means, for the body, the runs and the surroundings that it shows.
+
+use super::contrast;
+use super::eye::{eye, is_inside};
+use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
+use super::framing::{self, Around};
+use super::view::{ColourScale, FontFiles, Labels, Light, StrainScale, View, Visible};
+use crate::reading::coordinates::vector;
+use crate::reading::report::{Report, Way};
+use crate::sim::body::{Dimension, bounds};
+use crate::sim::contact;
+use crate::sim::field::Field;
+use crate::sim::words::rounded;
+use std::f64::consts::TAU;
+
+/// How many panels stand beside each other unless the scene says so.
+const COLUMNS: usize = 3;
+
+/// The view, or `None` if there is a mistake in it.
+pub(crate) fn resolve(
+    typed: &ViewFile,
+    scene: &Around<'_>,
+    font: Option<FontFiles>,
+    report: &mut Report<'_>,
+) -> Option<View> {
+    let body = scene.body;
+    let runs = scene.models.len();
+    let dimension = body.dimension;
+    let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
+    let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
+    for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
+        let message = format!("`view.camera.{key}` is given, but a body in the plane is looked at from the front");
+        report.at_key(&camera(key), message, format!("take `{key}` out"));
+    }
+    let target = match &typed.camera.target {
+        Some(target) => Some(vector(target, dimension, &camera("target"), report)?),
+        None => None,
+    };
+    let chosen = framing::camera(&typed.camera, target, typed.explode, scene);
+    if dimension == Dimension::Space && is_inside(eye(&chosen), body, &scene.initial.position) {
+        let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
+        let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
+        let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
+        report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
+    }
+    let columns = match (typed.columns, typed.panels) {
+        (Some(columns), _) => columns as usize,
+        (None, Some(ArrangementFile::Row)) => runs,
+        (None, Some(ArrangementFile::Column)) => 1,
+        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
+        (None, None) => columns(runs),
+    };
+    let columns = columns.clamp(1, runs.max(1));
+    let colour = match &typed.colour {
+        Some(typed) => Some(colour(typed, scene, report)?),
+        None => None,
+    };
+    let visible = match &typed.show {
+        Some(shown) => Visible {
+            surfaces: shown.contains(&ShowFile::Surfaces),
+            nodes: shown.contains(&ShowFile::Nodes),
+            springs: shown.contains(&ShowFile::Springs),
+            displacements: shown.contains(&ShowFile::Displacements),
+        },
+        None => Visible::usual(dimension, body.len()),
+    };
+    let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
+    let at = |key| [Way::Key("view"), Way::Key(key)];
+    if typed.explode > 0.0 && (visible.springs || visible.displacements) {
+        let what = if visible.springs { "springs" } else { "displacements" };
+        let message = format!("`view.explode` draws elements apart, where {what} have no place");
+        report.at_key(&at("explode"), message, format!("take `explode` or `\"{what}\"` out"));
+    }
+    let spring_strain = match &typed.spring_colour {
+        Some(_) if !visible.springs => {
+            let message = "`view.spring_colour` is given, but springs are not shown".to_owned();
+            report.at_key(&at("spring_colour"), message, "add `\"springs\"` to `show`".to_owned());
+            None
+        }
+        Some(_) if scene.models.iter().all(|model| model.springs().is_empty()) => {
+            let message = "`view.spring_colour` is given, but no run has springs".to_owned();
+            report.at_key(&at("spring_colour"), message, "take it out, or add a run with springs".to_owned());
+            None
+        }
+        Some(springs) => {
+            let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
+            let range = rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?;
+            Some(StrainScale { range, map: springs.map })
+        }
+        None => None,
+    };
+    Some(View {
+        size: typed.size,
+        look,
+        camera: chosen,
+        clock: typed.clock.clone(),
+        columns,
+        visible,
+        colour,
+        arrow_scale: typed.arrow_scale,
+        side: scene.side,
+        has_cells: scene.has_cells,
+        title: typed.title.trim().to_owned(),
+        caption: typed.caption.trim().to_owned(),
+        labels: labels(typed),
+        scale_bar: typed.scale_bar,
+        legend: typed.legend,
+        strip: typed.strip,
+        opacity: typed.opacity,
+        explode: typed.explode,
+        spring_strain,
+        light: Light { azimuth: typed.light.azimuth, elevation: typed.light.elevation },
+        shadow: typed.shadow,
+        floor: typed.floor,
+        edges: match typed.edges {
+            EdgesFile::All => [true, true],
+            EdgesFile::Visible => [true, false],
+            EdgesFile::Outline => [false, false],
+        },
+        outline: typed.outline,
+        hatch: typed.hatch,
+    })
+}
+
+/// How many panels stand beside each other of so many, unless a scene says so.
+pub(crate) fn columns(runs: usize) -> usize {
+    COLUMNS.min(runs.max(1))
+}
+
+/// Into how many columns panels are put so that the smaller of their sides is largest.
+fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
+    let side = |columns: usize| {
+        let rows = runs.div_ceil(columns);
+        (f64::from(width) / columns as f64).min(f64::from(height) / rows as f64)
+    };
+    // Of equal ones the first, with more rows and wider panels.
+    (1..=runs.max(1)).fold(1, |best, columns| if side(columns) > side(best) { columns } else { best })
+}
+
+/// The strains at the ends of the scale that colours springs.
+const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
+
+/// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
+const NARROWEST: f64 = 1e-9;
+
+/// The colours of a field, over a range that follows from the scene if none is typed.
+fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
+    let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
+    let range = match typed.range {
+        Some(range) => rising(range, &way, report)?,
+        None => [0.0, scene.largest(typed.by)],
+    };
+    Some(ColourScale { field: typed.by, range, map: typed.map })
+}
+
+/// The ends of a scale, if they rise and are far enough apart to be told from each other.
+fn rising([low, high]: [f64; 2], way: &[Way<'_>; 3], report: &mut Report<'_>) -> Option<[f64; 2]> {
+    let keys = way.iter().filter_map(|step| if let Way::Key(key) = step { Some(*key) } else { None });
+    let name = keys.collect::<Vec<_>>().join(".");
+    if low >= high {
+        report.at(way, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);
+        return None;
+    }
+    if high - low < NARROWEST * low.abs().max(high.abs()) {
+        let message = format!("`{name}` from {low} to {high} is too narrow for its numbers");
+        report.at(way, message, "move its ends apart".to_owned());
+        return None;
+    }
+    Some([low, high])
+}
+
+/// What is written in panels.
+fn labels(typed: &ViewFile) -> Labels {
+    let has = |label| typed.labels.contains(&label);
+    Labels {
+        letter: typed.letters,
+        name: has(LabelFile::Name),
+        model: has(LabelFile::Model),
+        clock: has(LabelFile::Clock),
+        count: has(LabelFile::Count),
+        number: has(LabelFile::Number),
+    }
+}
+
+impl Around<'_> {
+    /// The largest value of a field that the scene lets expect.
+    fn largest(&self, field: Field) -> f64 {
+        /// The strain, and the displacement in edges of an element, that count as large.
+        const LARGE: f64 = 0.5;
+        let side = self.side;
+        match field {
+            Field::Strain => LARGE,
+            Field::Displacement => LARGE * side,
+            Field::ElasticEnergy => {
+                let stiffness = self.models.iter().fold(0.0, |most: f64, model| most.max(model.stiffness()));
+                0.5 * stiffness * (LARGE * side) * (LARGE * side)
+            }
+            Field::Speed => {
+                let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
+                let (_, high) = bounds(&self.initial.position);
+                let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
+                let fall = (2.0 * self.gravity.length() * drop).sqrt();
+                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
+                let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
+                // A body that nothing moves swings by itself at the most.
+                let periods = self.models.iter().map(|model| model.shortest_period(self.body));
+                let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
+                if fastest > 0.0 { fastest } else { swing }
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Points and vectors as typed.
+
+use super::report::{Report, Way, written};
+use crate::sim::body::Dimension;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A point or a vector: three coordinates in space, two in the plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub(crate) struct Coordinates(#[schemars(length(min = 2, max = 3))] pub(crate) Vec<f64>);
+
+/// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.
+pub(crate) fn vector(
+    typed: &Coordinates,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<DVec3> {
+    match (typed.0.as_slice(), dimension) {
+        (&[x, y, z], Dimension::Space) => Some(DVec3::new(x, y, z)),
+        (&[x, y], Dimension::Plane) => Some(DVec3::new(x, y, 0.0)),
+        (other, dimension) => {
+            let expected = match dimension {
+                Dimension::Space => "3, because the body is in space",
+                Dimension::Plane => "2, because the body is in the plane",
+            };
+            let message = format!("`{}` has {} coordinates; expected {expected}", written(path), other.len());
+            report.at(path, message, None);
+            None
+        }
+    }
+}
+
+/// A vector at unit length; a mistake if it has no direction.
+pub(crate) fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
+    // By its largest coordinate first: squares of very small or large numbers leave the range of double precision.
+    let largest = vector.abs().max_element();
+    let unit = (vector / largest).normalize();
+    if largest > 0.0 && unit.is_finite() {
+        return Some(unit);
+    }
+    report.at(path, format!("`{}` is zero, so it has no direction", written(path)), None);
+    None
+}

@@ -1,0 +1,74 @@
+//! Mistakes in a file, and how they are shown.
+
+use serde::Serialize;
+use std::fmt;
+use std::ops::Range;
+
+/// One mistake and its place. It prints as one line; see [`Mistakes`] for the picture with the source.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Mistake {
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// What was found and what was expected.
+    pub message: String,
+    /// What to do, if there is more to say than the message does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub help: Option<String>,
+    /// The source line, or the part of it around the place.
+    pub excerpt: String,
+    /// Which characters of the excerpt are meant.
+    #[serde(skip)]
+    pub marked: Range<usize>,
+}
+
+/// All mistakes of one file in the order in which they stand there.
+///
+/// They print with the source line and a mark under the place:
+///
+/// ```text
+/// drop.toml:12:33: unknown key `stifness` in `run[0].model`
+///    12 | model = { kind = "shape-based", stifness = 1e4 }
+///       |                                 ^^^^^^^^ did you mean `stiffness`?
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Mistakes {
+    /// The file, as named by the caller.
+    pub file: String,
+    /// The mistakes, up to a thousand.
+    pub found: Vec<Mistake>,
+    /// How many there are in all.
+    pub total: usize,
+}
+
+/// How many mistakes are printed: what fits on a screen or two. More follow from the same cause, as a rule.
+const SHOWN: usize = 20;
+
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (number, mistake) in self.found.iter().take(SHOWN).enumerate() {
+            if number > 0 {
+                writeln!(f)?;
+            }
+            let Mistake { line, column, message, help, excerpt, marked } = mistake;
+            writeln!(f, "{}:{line}:{column}: {message}", self.file)?;
+            let gutter = line.to_string().len() + 2;
+            writeln!(f, "{line:>gutter$} | {excerpt}")?;
+            let (before, mark) = (" ".repeat(marked.start), "^".repeat(marked.len()));
+            write!(f, "{:gutter$} | {before}{mark}", "")?;
+            if let Some(help) = help {
+                // Under the mark when it stands far right or the help is long.
+                if marked.end + help.chars().count() > 90 {
+                    write!(f, "\n{:gutter$} = {help}", "")?;
+                } else {
+                    write!(f, " {help}")?;
+                }
+            }
+        }
+        match self.total - self.found.len().min(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n{}: and {more} more", self.file),
+        }
+    }
+}

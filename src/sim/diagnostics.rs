@@ -1,0 +1,306 @@
+//! The diagnostics: numbers that describe a state. One table says of each what it is called, its unit, what it means and
+//! how it is computed; files, strips, figures, goldens and the schema follow from it.
+
+use super::model::Report;
+use super::snapshot::Placement;
+use super::state::Nodes;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
+use std::fmt;
+
+/// What diagnostics are computed from.
+pub(super) struct Moment<'a> {
+    /// Mass of each node (kg).
+    pub(super) mass: &'a [f64],
+    pub(super) state: Nodes<'a>,
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+    /// What the model says of the state.
+    pub(super) report: &'a Report,
+    /// Whether each element has changed sign.
+    pub(super) turned_over: &'a [bool],
+    /// Signed volume of the body now and at rest (m³, in the plane m²).
+    pub(super) volume: f64,
+    pub(super) volume_at_rest: f64,
+    pub(super) placement: &'a Placement,
+    /// Rest positions relative to their mean (m).
+    pub(super) centred: &'a [DVec3],
+}
+
+impl Moment<'_> {
+    /// The sum over all nodes of something that follows from mass (kg), position (m) and velocity (m/s), in their order.
+    fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
+        let Nodes { position, velocity } = self.state;
+        let mut sum = T::default();
+        for ((&mass, &position), &velocity) in self.mass.iter().zip(position).zip(velocity) {
+            sum += of_node(mass, position, velocity);
+        }
+        sum
+    }
+
+    /// RMS distance of the nodes from the placement (m).
+    fn shape_error(&self) -> f64 {
+        let Placement { centre, turn, .. } = *self.placement;
+        let squared = self.centred.iter().zip(self.state.position);
+        let squared = squared.map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
+        (squared.sum::<f64>() / self.state.position.len() as f64).sqrt()
+    }
+}
+
+/// The value of a diagnostic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// How many.
+    Count(usize),
+    /// A number; NaN where a model or a body has none.
+    Number(f64),
+    /// A vector, which has three columns in files and is shown by its length.
+    Vector(DVec3),
+}
+
+impl Value {
+    /// As one number.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Count(count) => count as f64,
+            Self::Number(number) => number,
+            Self::Vector(vector) => vector.length(),
+        }
+    }
+}
+
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<DVec3> for Value {
+    fn from(vector: DVec3) -> Self {
+        Self::Vector(vector)
+    }
+}
+
+/// How far a diagnostic gets, besides `diagnostics.csv` and whatever shows it over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// No farther.
+    Frames,
+    /// Into goldens. One more there is another format of theirs.
+    Goldens,
+    /// Into these, and into what is said of single states: `run.json`, and the JSON of figures.
+    Summaries,
+}
+
+/// Makes of each entry a field of [`Diagnostics`] and a [`Diagnostic`]. An entry is what it means, with its unit in
+/// brackets; its name in code, its key in files and its type; what a reader calls it; its unit; how far it gets; and how it
+/// is computed from the moment and from entries before it.
+macro_rules! diagnostics {
+    ($moment:ident: $(
+        $(#[doc = $meaning:literal])+
+        $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
+    )+) => {
+        /// Numbers that describe a state, in SI units; in the plane volumes are areas. What a model or a body does not have
+        /// is NaN: elastic energy and `residual` of some models, the volume ratio of a cloth.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Diagnostics {
+            $($(#[doc = $meaning])+ pub $key: $type,)+
+        }
+
+        impl Diagnostics {
+            pub(super) fn of($moment: &Moment<'_>) -> Self {
+                $(let $key: $type = $value;)+
+                Self { $($key),+ }
+            }
+        }
+
+        /// A number that describes a state, to be shown over time.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Diagnostic {
+            $($(#[doc = $meaning])+ $variant,)+
+        }
+
+        impl Diagnostic {
+            /// All of them, in the order of files.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// Its value.
+            pub fn value(self, all: &Diagnostics) -> Value {
+                match self {
+                    $(Self::$variant => all.$key.into(),)+
+                }
+            }
+
+            /// What it is called in files.
+            pub fn key(self) -> &'static str {
+                match self {
+                    $(Self::$variant => stringify!($key),)+
+                }
+            }
+
+            /// What a reader calls it.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+
+            /// Its unit; empty for a pure number.
+            pub fn unit(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $unit,)+
+                }
+            }
+
+            /// What it means, in a sentence with its unit.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($meaning),+).trim_ascii(),)+
+                }
+            }
+
+            /// How far it gets.
+            pub fn reach(self) -> Reach {
+                match self {
+                    $(Self::$variant => Reach::$reach,)+
+                }
+            }
+        }
+    };
+}
+
+diagnostics! { moment:
+    /// Kinetic energy (J).
+    Kinetic, kinetic: f64, "kinetic energy", "J", Goldens =
+        moment.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
+
+    /// Elastic energy (J).
+    Elastic, elastic: f64, "elastic energy", "J", Goldens = moment.report.energy.unwrap_or(f64::NAN);
+
+    /// Potential energy in the field of gravity (J), zero at the origin.
+    Gravitational, gravitational: f64, "energy in gravity", "J", Goldens =
+        moment.sum(|mass, position, _| -(mass * moment.gravity.dot(position)));
+
+    /// Momentum (kg m/s); as one number, its length.
+    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = moment.sum(|mass, _, velocity| velocity * mass);
+
+    /// Angular momentum about the origin (kg m²/s); as one number, its length.
+    AngularMomentum, angular_momentum: DVec3, "angular momentum", "kg m²/s", Frames =
+        moment.sum(|mass, position, velocity| position.cross(velocity) * mass);
+
+    /// The largest angular acceleration that approximation errors of the rotations amount to (rad/s²), α of Eq. (18).
+    Residual, residual: f64, "residual α", "rad/s²", Frames = moment.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
+
+    /// How many elements have turned over.
+    TurnedOver, turned_over: usize, "turned over", "", Summaries =
+        moment.turned_over.iter().filter(|&&turned| turned).count();
+
+    /// Total signed volume over the rest value; in the plane, area.
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = moment.volume / moment.volume_at_rest;
+
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    ShapeError, shape_error: f64, "shape error", "m", Summaries = moment.shape_error();
+
+    /// The sum of all energies (J).
+    Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
+}
+
+impl Diagnostic {
+    /// Its value as one number; NaN where a model or a body has none.
+    pub fn of(self, all: &Diagnostics) -> f64 {
+        self.value(all).size()
+    }
+
+    /// Those that get at least so far.
+    pub fn within(reach: Reach) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.reach() >= reach)
+    }
+}
+
+/// Some diagnostics of a state. It is written as a table from keys to numbers.
+#[derive(Clone, PartialEq)]
+pub struct Chosen(Vec<(Diagnostic, Value)>);
+
+impl Chosen {
+    /// Those that get at least so far.
+    pub fn within(reach: Reach, all: &Diagnostics) -> Self {
+        Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
+    }
+
+    /// The same, each from a text; `None` where one is no number, or a count that is not whole.
+    pub fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
+        let read = |(at, diagnostic): (usize, Diagnostic)| {
+            let text = text_of(at, diagnostic)?;
+            let value = match diagnostic.value(&Diagnostics::default()) {
+                Value::Count(_) => Value::Count(text.parse().ok()?),
+                Value::Number(_) => Value::Number(text.parse().ok()?),
+                Value::Vector(_) => return None,
+            };
+            Some((diagnostic, value))
+        };
+        Diagnostic::within(reach).enumerate().map(read).collect::<Option<_>>().map(Self)
+    }
+
+    /// Each with its value.
+    pub fn iter(&self) -> impl Iterator<Item = (Diagnostic, Value)> {
+        self.0.iter().copied()
+    }
+
+    /// The value of one of them as one number; NaN if it is not among them.
+    pub fn get(&self, diagnostic: Diagnostic) -> f64 {
+        self.iter().find(|&(one, _)| one == diagnostic).map_or(f64::NAN, |(_, value)| value.size())
+    }
+}
+
+impl fmt::Debug for Chosen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.iter().map(|(diagnostic, value)| (diagnostic.key(), value.size()))).finish()
+    }
+}
+
+impl Serialize for Chosen {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (diagnostic, value) in self.iter() {
+            match value {
+                Value::Count(count) => map.serialize_entry(diagnostic.key(), &count)?,
+                Value::Number(number) => map.serialize_entry(diagnostic.key(), &number)?,
+                Value::Vector(vector) => map.serialize_entry(diagnostic.key(), &vector.to_array())?,
+            }
+        }
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_those_of_scene_files() {
+        for diagnostic in Diagnostic::ALL {
+            assert_eq!(serde_json::to_value(diagnostic).expect("a key"), diagnostic.key());
+        }
+    }
+
+    #[test]
+    fn what_is_chosen_is_read_as_it_was_written() {
+        let all = Diagnostics { kinetic: 0.1, turned_over: 3, volume_ratio: f64::NAN, ..Diagnostics::default() };
+        let chosen = Chosen::within(Reach::Goldens, &all);
+        let texts: Vec<_> = chosen.iter().map(|(_, value)| value.size().to_string()).collect();
+        let read = Chosen::read(Reach::Goldens, |at, _| Some(&texts[at])).expect("numbers");
+        assert_eq!(format!("{read:?}"), format!("{chosen:?}"));
+        assert_eq!(Chosen::read(Reach::Goldens, |_, _| Some("0.5")), None, "no half element turns over");
+        let json = serde_json::to_string(&Chosen::within(Reach::Summaries, &all)).expect("plain data");
+        assert_eq!(json, r#"{"turned_over":3,"volume_ratio":null,"shape_error":0.0}"#);
+    }
+}
