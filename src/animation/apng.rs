@@ -44,10 +44,10 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
             writer.write_chunk(FRAME_DATA, &data).map_err(failed)?;
             sequence += 1;
         }
-        animation.report(at + 1, shots.len())
+        animation.report((at + 1) as f64 / shots.len() as f64)
     })?;
     writer.finish().map_err(failed)?;
-    Ok(Written { pictures: shots.len(), duration: animation.timeline.duration() })
+    Ok(Written { pictures: shots.len(), duration: animation.timeline.duration(), size: [width, height] })
 }
 
 impl Patch {

@@ -22,6 +22,9 @@ pub enum AnimationError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] OutputError),
+    /// The disk has no room for a file.
+    #[error("cannot write {}: the disk is full; nothing of this file is left, an earlier one is as it was", .0.display())]
+    Full(PathBuf),
     /// What the animation is written to takes no more.
     #[error("cannot write the animation")]
     Out(#[source] io::Error),
@@ -48,7 +51,10 @@ impl AnimationError {
     /// Names the file that was being written.
     pub(super) fn in_file(self, path: &Path) -> Self {
         match self {
-            Self::Out(source) => OutputError::writing(path)(source).into(),
+            Self::Out(source) | Self::File(OutputError::Write { source, .. }) => match source.kind() {
+                io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::Full(path.to_owned()),
+                _ => OutputError::writing(path)(source).into(),
+            },
             other => other,
         }
     }

@@ -26,8 +26,6 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
             "{width}×{height} is too large for a GIF: it has 65535 pixels a side"
         )));
     };
-    let stage = |done: f64| if (animation.progress)(done) { Ok(()) } else { Err(AnimationError::Stopped) };
-    let share = |at: usize| (at + 1) as f64 / ticks.len() as f64;
 
     let mut counts = Counts::new();
     let mut frames: Vec<usize> = ticks.iter().map(|(frame, _)| *frame).collect();
@@ -36,7 +34,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let count = |at: usize| animation.reel.image(frames[at]).map(|image| Counts::of(&image));
     in_order(frames.len(), animation.threads, count, |at, more| {
         counts.add(&more);
-        stage(FIRST * (at + 1) as f64 / frames.len() as f64)
+        animation.report(FIRST * (at + 1) as f64 / frames.len() as f64)
     })?;
     let palette = counts.palette();
     drop(counts);
@@ -61,11 +59,11 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
             left -= u64::from(frame.delay);
             encoder.write_lzw_pre_encoded_frame(&frame).map_err(failed)?;
         }
-        stage(FIRST + (1.0 - FIRST) * share(at))
+        animation.report(FIRST + (1.0 - FIRST) * (at + 1) as f64 / ticks.len() as f64)
     })?;
     encoder.into_inner().map_err(failed)?;
     let duration = ticks.iter().map(|(_, ticks)| *ticks as f64).sum::<f64>() / RATE;
-    Ok(Written { pictures: ticks.len(), duration })
+    Ok(Written { pictures: ticks.len(), duration, size })
 }
 
 /// The part of a picture that differs from what is shown, compressed. A pixel whose colour is as good as the one shown

@@ -101,8 +101,10 @@ pub struct Animation<'a> {
     pub comment: &'a str,
     /// Threads to work with, at least one.
     pub threads: usize,
-    /// Told how much of the work is done, from 0 to 1; says whether to go on.
-    pub progress: &'a (dyn Fn(f64) -> bool + Sync),
+    /// Told how much of the work is done, from 0 to 1.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Says whether to go on. Asked often, and on other threads, too.
+    pub go_on: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// What was written.
@@ -110,8 +112,10 @@ pub struct Animation<'a> {
 pub struct Written {
     /// Pictures in the file. Formats of a fixed rate repeat some; others leave out what would be shown too shortly.
     pub pictures: usize,
-    /// How long it plays once (s).
+    /// How long it plays once (s); 0 for a still picture.
     pub duration: f64,
+    /// Width and height (px). Films have even sides; a sheet has a size of its own.
+    pub size: [u32; 2],
 }
 
 impl Animation<'_> {
@@ -120,6 +124,10 @@ impl Animation<'_> {
     /// # Errors
     /// If a frame cannot be had, the file cannot be written, or `ffmpeg`, where the format needs it, is missing or fails.
     pub fn write(&self, format: Format, path: &Path) -> Result<Written, AnimationError> {
+        self.write_into(format, path).map_err(|error| error.in_file(path))
+    }
+
+    fn write_into(&self, format: Format, path: &Path) -> Result<Written, AnimationError> {
         let mut file = AtomicFile::create(path)?;
         let written = match format {
             Format::Mp4 | Format::WebM => ffmpeg::write(self, format, &file)?,
@@ -146,18 +154,18 @@ impl Animation<'_> {
         Ok(written)
     }
 
-    /// Tells that so much is done.
-    fn report(&self, done: usize, of: usize) -> Result<(), AnimationError> {
-        if (self.progress)(done as f64 / of.max(1) as f64) { Ok(()) } else { Err(AnimationError::Stopped) }
+    /// Tells that so much is done, from 0 to 1, and ends the work if it is not wanted any more.
+    fn report(&self, done: f64) -> Result<(), AnimationError> {
+        (self.progress)(done);
+        if (self.go_on)() { Ok(()) } else { Err(AnimationError::Stopped) }
     }
 }
 
-/// Writes into a file, and says which if that fails.
+/// Writes into a file.
 fn buffered(
     file: &mut AtomicFile,
     write: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> Result<Written, AnimationError>,
 ) -> Result<Written, AnimationError> {
-    let path = file.path().to_owned();
     let mut out = BufWriter::with_capacity(1 << 16, file.file());
     let written = write(&mut out).and_then(|written| {
         out.flush().map_err(AnimationError::Out)?;
@@ -165,7 +173,7 @@ fn buffered(
     });
     // What is left in the buffer of a failed file is not worth another try.
     drop(out.into_parts());
-    written.map_err(|error| error.in_file(&path))
+    written
 }
 
 /// Left, top, width and height (px) of the smallest rectangle that holds all pixels for which `differ` is true of their

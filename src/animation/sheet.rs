@@ -36,6 +36,9 @@ struct Grid {
 const LEAST: u32 = 32;
 
 impl Sheet {
+    /// Frames of a sheet if nobody says which.
+    pub const FRAMES: usize = 12;
+
     /// Space between frames (px).
     fn gap(&self) -> u32 {
         (self.size[0].min(self.size[1]) / 60).max(4)
@@ -78,13 +81,14 @@ impl Sheet {
     pub fn encode(&self, animation: &Animation<'_>) -> Result<(Vec<u8>, Written), AnimationError> {
         let shots = animation.timeline.shots();
         let grid = self.grid(shots.len() as u32, animation.reel.size()).ok_or_else(|| {
-            let ([width, height], count) = (self.size, shots.len());
-            AnimationError::Wrong(format!(
-                "{count} frames are too many for a sheet of {width}×{height}; choose some with --frames, such as 0-{}x{}, \
-                 or a larger --size",
-                count - 1,
-                count.div_ceil(24).max(2)
-            ))
+            let [width, height] = self.size;
+            AnimationError::Wrong(match shots.len() {
+                1 => format!("a frame has no room on a sheet of {width}×{height}; choose a larger --size"),
+                count => format!(
+                    "{count} frames are too many for a sheet of {width}×{height}; choose fewer with --frames, or a larger \
+                     --size"
+                ),
+            })
         })?;
         let ground = animation.reel.image(shots[0].frame)?.corner();
         let ink = mixed(best_of(&[[0; 3], [255; 3]], ground), ground, 0.25);
@@ -101,10 +105,10 @@ impl Sheet {
                 let baseline = (top + grid.frame[1]) as f32 + 1.15 * size;
                 write_centred(&mut sheet, &fonts, &time_in_words(*time), [middle, baseline.round()], size, ink);
             }
-            animation.report(at + 1, shots.len())
+            animation.report((at + 1) as f64 / shots.len() as f64)
         })?;
         let bytes = crate::output::encode_commented(sheet.size, &sheet.pixels, animation.comment);
-        Ok((bytes, Written { pictures: shots.len(), duration: 0.0 }))
+        Ok((bytes, Written { pictures: shots.len(), duration: 0.0, size: self.size }))
     }
 }
 

@@ -101,6 +101,16 @@ impl Timeline {
         if self.rate.is_some() { self.clone() } else { self.at_most(MOST_RATE) }
     }
 
+    /// At most so many shots, evenly spread, of which the first and the last stay: stills for a sheet.
+    pub fn stills(mut self, most: usize) -> Self {
+        let last = self.shots.len().saturating_sub(1);
+        if last >= most {
+            let gaps = most - 1;
+            self.shots = (0..most).map(|at| self.shots[(at * last + gaps / 2) / gaps]).collect();
+        }
+        self
+    }
+
     /// The last frame longer by so much (s).
     pub fn holding(mut self, time: f64) -> Self {
         if let Some(last) = self.shots.last_mut() {
@@ -235,6 +245,8 @@ mod tests {
         let held = even(3, 10.0).holding(1.0);
         assert!((held.duration() - 1.3).abs() < 1e-12);
         assert_eq!(held.ticks(10.0, 1), [(0, 1), (1, 1), (2, 11)]);
+        assert_eq!(frames(&even(8, 60.0).stills(4)), [0, 2, 5, 7]);
+        assert_eq!(even(8, 60.0).stills(8), even(8, 60.0));
         assert_eq!(frames(&even(8, 60.0).at_rate(30.0)), [0, 2, 4, 6]);
         assert_eq!(frames(&even(9, 60.0).at_rate(10.0)), [0, 6]);
         assert_eq!(frames(&even(9, 60.0).at_most(50.0)), [0, 2, 4, 6, 8]);

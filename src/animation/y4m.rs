@@ -22,9 +22,9 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
             out.write_all(b"FRAME\n").and_then(|()| out.write_all(&planes)).map_err(AnimationError::Out)?;
             pictures += 1;
         }
-        animation.report(at + 1, ticks.len())
+        animation.report((at + 1) as f64 / ticks.len() as f64)
     })?;
-    Ok(Written { pictures, duration: pictures as f64 / rate_each })
+    Ok(Written { pictures, duration: pictures as f64 / rate_each, size: [width, height] })
 }
 
 /// Brightness of all pixels, then how blue and how red they are, by BT.709.

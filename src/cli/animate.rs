@@ -28,12 +28,10 @@ Examples:
 The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
 (H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \
 hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
-every second one.";
+every second one. Transparent frames stand on white.";
 
 /// What stands at the beginning of each comment, by which a file is known as one of ours.
 const MARK: &str = "made by localshape ";
-/// Frames of a sheet if nobody says which.
-const ON_SHEET: usize = 12;
 /// The name of standard output.
 const STANDARD_OUTPUT: &str = "-";
 
@@ -58,16 +56,16 @@ pub(super) struct Animate {
     frames: Option<FrameRanges>,
 
     /// How many times as fast as in the scene: 0.25 for slow motion
-    #[arg(long, value_name = "TIMES", default_value = "1", value_parser = positive, allow_hyphen_values = true)]
-    speed: f64,
+    #[arg(long, value_name = "TIMES", value_parser = positive, allow_hyphen_values = true)]
+    speed: Option<f64>,
 
     /// Pictures a second [default: one for each frame]
     #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
     fps: Option<f64>,
 
-    /// How often it plays, 0 for ever (GIF and APNG)
-    #[arg(long = "loop", value_name = "N", default_value = "0")]
-    plays: u16,
+    /// How often it plays, 0 for ever (GIF and APNG) [default: 0]
+    #[arg(long = "loop", value_name = "N", value_parser = plays, allow_hyphen_values = true)]
+    plays: Option<u16>,
 
     /// Show the last frame longer by so much (s)
     #[arg(long, value_name = "SECONDS", value_parser = pause, allow_hyphen_values = true)]
@@ -106,14 +104,18 @@ impl Animate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         let to_standard_output = self.out == Path::new(STANDARD_OUTPUT);
         let format = if to_standard_output { Format::Y4m } else { Format::of(&self.out).map_err(Failure::usage)? };
+        self.check(format)?;
         if !to_standard_output && !self.overwrite {
             replaceable(&self.out)?;
         }
-        if self.size.is_some() && format != Format::Sheet {
-            return Err(Failure::usage("--size is for sheets (.png); an animation is scaled with --width"));
+        let reel = Folders::open(&self)?;
+        let mut timeline = Timeline::of(&reel.moments);
+        if format == Format::Sheet && self.frames.is_none() {
+            timeline = timeline.stills(Sheet::FRAMES);
         }
-        let reel = Folders::open(&self, format)?;
-        let mut timeline = Timeline::of(&reel.moments).faster(self.speed);
+        if let Some(times) = self.speed {
+            timeline = timeline.faster(times);
+        }
         if let Some(rate) = self.fps {
             timeline = timeline.at_rate(rate);
         }
@@ -129,18 +131,16 @@ impl Animate {
         let sheet = Sheet { size: self.size.unwrap_or(sheet.size), ..sheet };
         let bar = console::progress(&self.out.to_string_lossy(), PARTS, self.quiet || self.json);
         bar.set_message(format!("{} frames", reel.moments.len()));
-        let progress = |done: f64| {
-            bar.set_position((done * PARTS as f64) as u64);
-            !interrupt::requested()
-        };
+        let progress = |done: f64| bar.set_position((done * PARTS as f64) as u64);
         let animation = Animation {
             reel: &reel,
             timeline: &timeline,
-            plays: self.plays,
+            plays: self.plays.unwrap_or(0),
             sheet: &sheet,
             comment: &comment,
             threads: self.threads.map_or_else(processors, usize::from),
             progress: &progress,
+            go_on: &|| !interrupt::requested(),
         };
         let result = if to_standard_output {
             animation.write_y4m(std::io::BufWriter::new(std::io::stdout().lock()))
@@ -152,34 +152,62 @@ impl Animate {
         match result {
             Ok(written) => {
                 if !to_standard_output {
-                    let size = if format == Format::Sheet { sheet.size } else { reel.size };
-                    self.tell(size, reel.moments.len(), &written)?;
+                    self.tell(reel.moments.len(), &written)?;
                 }
                 Ok(Status::Done)
             }
             Err(AnimationError::Stopped) => Ok(Status::Interrupted),
+            // Ctrl-C has ended the reader, too.
+            Err(AnimationError::Out(_)) if interrupt::requested() => Ok(Status::Interrupted),
             Err(error) => Err(error.into()),
         }
     }
 
-    fn tell(&self, [width, height]: [u32; 2], frames: usize, written: &Written) -> Result<(), Failure> {
+    /// Refuses options that mean nothing for what is to be made: left out silently, they would only surprise.
+    fn check(&self, format: Format) -> Result<(), Failure> {
+        let is_sheet = format == Format::Sheet;
+        let of_time = [
+            ("--speed", self.speed.is_some()),
+            ("--fps", self.fps.is_some()),
+            ("--hold-last", self.hold_last.is_some()),
+            ("--boomerang", self.boomerang),
+        ];
+        let told = if let Some((option, _)) = of_time.iter().find(|(_, is_given)| is_sheet && *is_given) {
+            format!("{option} is for animations; a sheet (.png) shows stills, which --frames chooses")
+        } else if self.width.is_some() && is_sheet {
+            "--width is for animations; how large a sheet (.png) is, --size says, such as --size 1920x1080".to_owned()
+        } else if self.size.is_some() && !is_sheet {
+            "--size is for sheets (.png); an animation is scaled with --width".to_owned()
+        } else if self.plays.is_some() && !matches!(format, Format::Gif | Format::Apng) {
+            "--loop is for .gif and .apng, which say how often they play; for other files, whoever plays them does"
+                .to_owned()
+        } else if self.stack && self.folders.len() == 1 {
+            "--stack puts several folders one above the other; expected more than one".to_owned()
+        } else if self.json && self.out == Path::new(STANDARD_OUTPUT) {
+            "--json tells of a file, and with -o - standard output is for the pictures".to_owned()
+        } else {
+            return Ok(());
+        };
+        Err(Failure::usage(told))
+    }
+
+    fn tell(&self, frames: usize, written: &Written) -> Result<(), Failure> {
         if self.json {
             let bytes = self.out.metadata().map_or(0, |found| found.len());
-            let Written { pictures, duration } = *written;
+            let Written { pictures, duration, size } = *written;
             let file = self.out.to_string_lossy();
             return console::print_json(&json!({
-                "file": file, "size": [width, height], "frames": frames, "pictures": pictures, "duration": duration,
-                "bytes": bytes,
+                "file": file, "size": size, "frames": frames, "pictures": pictures, "duration": duration, "bytes": bytes,
             }));
         }
-        if self.quiet { Ok(()) } else { console::print(&summary(&self.out, [width, height], frames, written)) }
+        if self.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
     }
 }
 
 /// What was made, on a line.
-pub(super) fn summary(path: &Path, [width, height]: [u32; 2], frames: usize, written: &Written) -> String {
+pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     let bytes = path.metadata().map_or(0, |found| found.len());
-    let (path, Written { pictures, duration }) = (path.display(), *written);
+    let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
     let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
     let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
     let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
@@ -213,9 +241,7 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
     read.map_err(|error| Failure::files(format!("cannot read {name}: {error}")))?;
-    let mark = MARK.replace(' ', "_");
-    let is_ours = [MARK, &mark].iter().any(|mark| bytes.windows(mark.len()).any(|part| part == mark.as_bytes()));
-    if is_ours {
+    if is_ours(&bytes) {
         return Ok(());
     }
     let told = format!(
@@ -224,13 +250,40 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     Err(Failure::usage(told))
 }
 
+/// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
+/// the comment.
+fn is_ours(beginning: &[u8]) -> bool {
+    /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
+    const KINDS: [(usize, &[u8], &[u8]); 6] = [
+        (0, b"GIF89a", b"\x21\xfe"),
+        (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
+        (0, b"\x89PNG\r\n\x1a\n", b"localshape:comment\0"),
+        (0, b"YUV4MPEG2 ", b" X"),
+        (4, b"ftyp", b"data\0\0\0\x01"),
+        (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
+    ];
+    /// Between that and the comment there is room for its length and language (bytes).
+    const BETWEEN: usize = 8;
+    let after = |at: usize| beginning.get(at..).unwrap_or_default();
+    KINDS.iter().any(|&(at, magic, before)| {
+        let mark = if magic == b"YUV4MPEG2 " { MARK.replace(' ', "_") } else { MARK.to_owned() };
+        let is_mark = |at: &usize| after(at + mark.len()).first().is_some_and(u8::is_ascii_digit);
+        let is_comment = |at: usize| {
+            let head = &beginning[at.saturating_sub(before.len() + BETWEEN)..at];
+            head.windows(before.len()).any(|part| part == before)
+        };
+        let places = beginning.windows(mark.len()).enumerate().filter(|(_, part)| *part == mark.as_bytes());
+        after(at).starts_with(magic) && places.map(|(at, _)| at).filter(is_mark).any(is_comment)
+    })
+}
+
 impl From<AnimationError> for Failure {
     fn from(error: AnimationError) -> Self {
         match error {
             AnimationError::File(error) => error.into(),
-            AnimationError::Picture { source: PictureError::Read(_), .. } | AnimationError::Ffmpeg { .. } => {
-                Self::files(with_causes(&error))
-            }
+            AnimationError::Picture { source: PictureError::Read(_), .. }
+            | AnimationError::Ffmpeg { .. }
+            | AnimationError::Full(_) => Self::files(with_causes(&error)),
             AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
                 Self::files("cannot write to standard output: its reader has ended before the animation has")
             }
@@ -265,7 +318,7 @@ struct Folder {
 
 impl Folders {
     /// Looks at all frames that are asked for.
-    fn open(options: &Animate, format: Format) -> Result<Self, Failure> {
+    fn open(options: &Animate) -> Result<Self, Failure> {
         let folders: Vec<Folder> =
             options.folders.iter().map(|path| Folder::open(path, options.frames.as_ref())).collect::<Result<_, _>>()?;
         let first = &folders[0];
@@ -299,15 +352,15 @@ impl Folders {
                 return Err(Failure::usage(told));
             }
         }
-        let mut keep: Vec<usize> = (0..first.frames.len()).collect();
-        if format == Format::Sheet && options.frames.is_none() && keep.len() > ON_SHEET {
-            let last = keep.len() - 1;
-            keep = (0..ON_SHEET).map(|at| (at * last + (ON_SHEET - 1) / 2) / (ON_SHEET - 1)).collect();
+        let files = |at: usize| folders.iter().map(|folder| folder.frames[at].2.clone()).collect();
+        let paths = (0..first.frames.len()).map(files).collect();
+        let moments = first.frames.iter().map(|(number, time, _)| (*number, *time)).collect();
+        let mut scenes: Vec<String> = Vec::new();
+        for folder in &folders {
+            if !scenes.contains(&folder.scene) {
+                scenes.push(folder.scene.clone());
+            }
         }
-        let paths = keep.iter().map(|&at| folders.iter().map(|folder| folder.frames[at].2.clone()).collect()).collect();
-        let moments = keep.iter().map(|&at| (first.frames[at].0, first.frames[at].1)).collect();
-        let mut scenes: Vec<String> = folders.iter().map(|folder| folder.scene.clone()).collect();
-        scenes.dedup();
         let (own, count) = (first.size, folders.len() as u32);
         let whole = if options.stack { [own[0], own[1] * count] } else { [own[0] * count, own[1]] };
         let size = match options.width {
@@ -464,6 +517,10 @@ fn positive(typed: &str) -> Result<f64, String> {
     } else {
         Err("expected a number from 0.001 to 1000; at 0 it would stand still".to_owned())
     }
+}
+
+fn plays(typed: &str) -> Result<u16, String> {
+    typed.trim().parse().map_err(|_| format!("expected a whole number from 1 to {}, or 0 for ever", u16::MAX))
 }
 
 fn rate(typed: &str) -> Result<f64, String> {

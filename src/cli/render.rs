@@ -10,7 +10,7 @@ use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline
 use crate::artist::Artist;
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::history::History;
-use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of};
+use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
 use crate::render::RenderError;
 use crate::scene::Scene;
 use crate::sim::snapshot::Frame;
@@ -96,8 +96,13 @@ impl Render {
             }
         }
         let writers = self.options.threads().min(MOST_WRITERS);
-        let shared =
-            (!films.is_empty()).then(|| Shared { films, words: words.to_vec(), threads: self.options.threads() });
+        let shared = (!films.is_empty()).then(|| Shared {
+            films,
+            words: words.to_vec(),
+            threads: self.options.threads(),
+            run: jobs.first().and_then(|job| job.runs.first().copied()),
+            stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
+        });
         let device =
             Device { gpu, samples: self.samples, writers, keep: !self.no_frames, shared, made: Mutex::default() };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
@@ -126,7 +131,14 @@ impl Render {
                 Err(Failure::usage(format!("{}: there is no folder {}", path.display(), folder.display())))
             }
         };
-        self.animate.iter().map(film).collect()
+        let films: Vec<_> = self.animate.iter().map(film).collect::<Result<_, _>>()?;
+        let place = |path: &Path| (folder_of(path).canonicalize().ok(), path.file_name().map(ToOwned::to_owned));
+        let places: Vec<_> = self.animate.iter().map(|path| place(path)).collect();
+        if let Some(at) = (1..places.len()).find(|&at| places[..at].contains(&places[at])) {
+            let name = self.animate[at].display();
+            return Err(Failure::usage(format!("--animate names {name} twice; expected a file of its own each time")));
+        }
+        Ok(films)
     }
 }
 
@@ -148,29 +160,47 @@ struct Shared {
     films: Vec<(Format, PathBuf)>,
     words: Vec<OsString>,
     threads: usize,
+    /// The run whose times those of frames are.
+    run: Option<usize>,
+    /// Frames on a sheet, at most: all those that the user has chosen, if they were.
+    stills: usize,
 }
 
 /// Animations on their way, on threads of their own.
 struct Films<'a> {
     spool: Arc<Spool>,
     frames: usize,
+    /// Where frames are kept, if they are.
+    kept: Option<PathBuf>,
     threads: Vec<(PathBuf, JoinHandle<Result<Written, AnimationError>>)>,
     made: &'a Mutex<Vec<String>>,
 }
 
 impl<'a> Films<'a> {
-    fn start(shared: &Shared, made: &'a Mutex<Vec<String>>, spool: Spool, scene: &Scene, frames: &[u64]) -> Self {
+    fn start(
+        shared: &Shared,
+        made: &'a Mutex<Vec<String>>,
+        spool: Spool,
+        kept: Option<PathBuf>,
+        scene: &Scene,
+        frames: &[u64],
+    ) -> Self {
         let spool = Arc::new(spool);
-        let moments: Vec<_> = frames.iter().map(|&frame| (frame, scene.frame_time(frame))).collect();
+        // As the frames themselves say it: at the end of a step.
+        let time = |frame: u64| match shared.run {
+            Some(run) => scene.frame_step(run, frame) as f64 * scene.runs[run].step,
+            None => scene.frame_time(frame),
+        };
+        let moments: Vec<_> = frames.iter().map(|&frame| (frame, time(frame))).collect();
         let comment = comment(&shared.words, std::slice::from_ref(&scene.digest));
         let threads = shared.films.iter().map(|(format, path)| {
             let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
-            let (format, path, threads) = (*format, path.clone(), shared.threads);
+            let (format, path, threads, stills) = (*format, path.clone(), shared.threads, shared.stills);
             let name = path.clone();
             let thread = std::thread::spawn(move || {
                 let sheet = Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
                 let timeline = Timeline::of(&moments);
-                let progress = |_| !interrupt::requested();
+                let timeline = if format == Format::Sheet { timeline.stills(stills) } else { timeline };
                 Animation {
                     reel: spool.as_ref(),
                     timeline: &timeline,
@@ -178,28 +208,38 @@ impl<'a> Films<'a> {
                     sheet: &sheet,
                     comment: &comment,
                     threads,
-                    progress: &progress,
+                    progress: &|_| {},
+                    go_on: &|| !interrupt::requested(),
                 }
                 .write(format, &path)
             });
             (name, thread)
         });
         let threads = threads.collect();
-        Self { spool, frames: frames.len(), threads, made }
+        Self { spool, frames: frames.len(), kept, threads, made }
     }
 
-    /// Waits for all. Those of frames that were not made are not there.
-    fn finish(mut self, size: [u32; 2]) -> Result<(), Failure> {
+    /// Waits for all. If not all frames were made, no animation is there, and how to make it of those that are is told.
+    fn finish(mut self) -> Result<(), Failure> {
         self.spool.end();
         let mut result = Ok(());
         for (path, thread) in self.threads.drain(..) {
             match thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
                 Ok(written) => {
                     let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(summary(&path, size, self.frames, &written));
+                    made.push(summary(&path, self.frames, &written));
                 }
-                // Told by what has stopped it.
-                Err(AnimationError::Stopped) => {}
+                // Why, is told by what has stopped it.
+                Err(AnimationError::Stopped) => {
+                    let kept =
+                        self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
+                    let path = path.display();
+                    let how = kept.map_or(String::new(), |folder| {
+                        format!("; of the frames that are: localshape animate {} -o {path}", folder.display())
+                    });
+                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+                    made.push(format!("{path}  not made, for not all frames are there{how}\n"));
+                }
                 Err(error) => result = result.and(Err(error.into())),
             }
         }
@@ -217,7 +257,10 @@ impl Drop for Films<'_> {
 impl Studio for Device {
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let films = match &self.shared {
-            Some(shared) => Some(Films::start(shared, &self.made, Spool::new(folder, scene.view.size)?, scene, frames)),
+            Some(shared) => {
+                let (spool, kept) = (Spool::new(folder, scene.view.size)?, self.keep.then(|| folder.to_owned()));
+                Some(Films::start(shared, &self.made, spool, kept, scene, frames))
+            }
             None => None,
         };
         let tap = films.as_ref().map(|films| -> Tap {
@@ -285,7 +328,7 @@ impl Pictures for Drawing<'_> {
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
         let (written, encode, result) = self.writer.finish();
-        let filmed = self.films.map_or(Ok(()), |films| films.finish(self.scene.view.size));
+        let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
         result?;

@@ -1,6 +1,7 @@
 //! `animate`: what other decoders make of the files, and what is said of frames that do not fit.
 
-use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, run, skip};
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, has_ffmpeg, lasting, python, run};
+use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
 use localshape::output::{Tags, encode};
 use std::path::Path;
 use std::process::Command;
@@ -167,19 +168,48 @@ fn y4m_goes_to_a_file_or_a_pipe() {
     assert_eq!(piped.stdout[piped.stdout.len() - 4 * frame..], bytes[end + 1..]);
 }
 
+/// Frames without files.
+struct Drawn;
+
+impl Reel for Drawn {
+    fn size(&self) -> [u32; 2] {
+        SIZE
+    }
+
+    fn image(&self, frame: usize) -> Result<Image, AnimationError> {
+        Ok(Image { size: SIZE, pixels: pixels(frame as u64, SIZE) })
+    }
+}
+
+/// By the library, for a file says by which command it was made, which names the threads.
 #[test]
 fn any_number_of_threads_makes_the_same_bytes() {
-    let place = with_frames();
-    for ending in ["gif", "apng", "y4m", "png"] {
-        let made = |threads: u32| {
-            place.run(&format!("animate in -o out.{ending} --threads {threads}")).good();
-            std::fs::read(place.path(format!("out.{ending}"))).unwrap()
+    let place = Place::new();
+    let moments: Vec<_> = (0..COUNT).map(|number| (number, number as f64 / 30.0)).collect();
+    let mut endings = vec!["gif", "apng", "y4m", "png"];
+    if has_ffmpeg() {
+        endings.extend(["mp4", "webm"]);
+    }
+    for ending in endings {
+        let path = place.path(format!("out.{ending}"));
+        let made = |threads: usize| {
+            let animation = Animation {
+                reel: &Drawn,
+                timeline: &Timeline::of(&moments),
+                plays: 0,
+                sheet: &Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() },
+                comment: "made by a test",
+                threads,
+                progress: &|_| {},
+                go_on: &|| true,
+            };
+            animation.write(Format::of(&path).unwrap(), &path).unwrap();
+            std::fs::read(&path).unwrap()
         };
-        let [one, many] = [made(1), made(5)];
-        assert_eq!(one.len(), many.len(), "{ending}");
-        // The file says by which command it was made, and PNG has a checksum of that.
-        let unlike = one.iter().zip(&many).filter(|(a, b)| a != b).count();
-        assert!(unlike <= 5, "{ending}: {unlike}");
+        let one = made(1);
+        for threads in [2, 3, 8] {
+            assert!(one == made(threads), "{ending}, {threads} threads");
+        }
     }
 }
 
@@ -206,9 +236,56 @@ fn rendering_makes_animations_meanwhile() {
     place.write("other.toml", SMALL);
     place.run("render small.toml other.toml --animate d.gif").bad(2, &["--animate", "one at a time"]);
     place.run("render small.toml --animate d.avi").bad(2, &[".avi", ".gif"]);
+    place.run("render small.toml --animate d.gif --animate ./d.gif").bad(2, &["--animate names ./d.gif twice"]);
     place.run("render small.toml --animate absent/d.gif").bad(2, &["there is no folder absent"]);
     assert_eq!(place.run("render small.toml --no-frames").status, Some(2));
     assert!(place.names(".").iter().all(|name| !name.starts_with("d.")));
+}
+
+#[test]
+fn rendering_makes_sheets_meanwhile() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("long.toml", &lasting("0.3"));
+    let ran = place.run("render long.toml --samples 1 --animate a.png").good();
+    assert!(ran.out.contains("a.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
+    let ran = place.run("animate output/long -o b.png").good();
+    assert!(ran.out.contains("b.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
+    let pixels = |name: &str| localshape::golden::Pixels::read(&place.path(name)).unwrap().bytes;
+    assert!(pixels("a.png") == pixels("b.png"), "the same frames with the same times");
+    let ran = place.run("render long.toml --samples 1 --animate c.png --frames 0-13 --no-frames -o c").good();
+    assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);
+}
+
+/// The frames that there are stay, and how to make an animation of them is told.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_rendering_makes_no_animation() {
+    use crate::interrupt::{signal, start};
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("long.toml", &lasting("100"));
+    let arguments = "render long.toml --samples 1 --animate a.gif --animate b.apng";
+    let running = start(&place, arguments, "output/long/frame_00001.png");
+    signal(&running, &["INT"]);
+    let ran = running.wait();
+    assert!(ran.status == Some(130) && ran.err.is_empty(), "{ran:?}");
+    for name in ["a.gif", "b.apng"] {
+        let command = format!("animate output/long -o {name}");
+        let told =
+            format!("{name}  not made, for not all frames are there; of the frames that are: localshape {command}\n");
+        assert!(ran.out.contains(&told), "{}", ran.out);
+        assert!(!place.path(name).exists());
+        place.run(&command).good();
+    }
+    let running = start(&place, &format!("{arguments} --overwrite --no-frames -o other"), "other/run.json");
+    signal(&running, &["INT"]);
+    let ran = running.wait();
+    assert!(ran.out.contains("a.gif  not made, for not all frames are there\n"), "{ran:?}");
 }
 
 #[test]
@@ -261,6 +338,18 @@ fn folders_stand_side_by_side_and_may_be_scaled() {
     assert!(below[0].abs_diff(250 - 40) <= 2 && below[2] == 240, "{below:?}");
 }
 
+/// Each scene once, in the order of the folders.
+#[test]
+fn the_comment_names_every_scene_once() {
+    let place = with_frames();
+    let other = "99".repeat(32);
+    put(&place, "other", 0, &encode(SIZE, &pixels(0, SIZE), &Tags { scene: other.clone(), ..tags(0) }));
+    place.run("animate in other in -o out.apng --frames 0").good();
+    let bytes = std::fs::read(place.path("out.apng")).unwrap();
+    let scenes = format!("; scene {}, {other}; command: ", "5c".repeat(32));
+    assert!(String::from_utf8_lossy(&bytes).contains(&scenes));
+}
+
 #[test]
 fn a_sheet_shows_frames_with_their_times() {
     let place = with_frames();
@@ -281,6 +370,8 @@ fn a_sheet_shows_frames_with_their_times() {
     );
     let ran = place.run("animate in -o many.png --size 60x40 --frames 0-11");
     ran.bad(2, &["12 frames are too many for a sheet of 60×40", "--frames"]);
+    let ran = place.run("animate in -o one.png --size 30x20 --frames 3");
+    ran.bad(2, &["a frame has no room on a sheet of 30×20; choose a larger --size"]);
 }
 
 /// A folder with an `ffmpeg` that is a script, and the command that finds it.
@@ -325,6 +416,23 @@ fn films_are_piped_to_ffmpeg() {
     assert!(place.read("arguments").contains("libvpx-vp9"));
 }
 
+/// With even sides, by the background, and this is what is told.
+#[cfg(unix)]
+#[test]
+fn films_of_odd_frames_are_padded() {
+    let place = Place::new();
+    (0..3).for_each(|number| put(&place, "odd", number, &encode([63, 47], &pixels(number, [63, 47]), &tags(number))));
+    let script = "cat > pixels; for last; do :; done; echo film > \"$last\"";
+    let ran = run(&mut with_script(&place, script, "animate odd -o out.mp4")).good();
+    assert!(ran.out.starts_with("out.mp4  64×48, 3 pictures"), "{}", ran.out);
+    let ran = run(&mut with_script(&place, script, "animate odd -o out.webm --json")).good();
+    assert_eq!(ran.json()["size"], serde_json::json!([64, 48]));
+    let raw = std::fs::read(place.path("pixels")).unwrap();
+    assert_eq!(raw.len(), 3 * 3 * 64 * 48);
+    let row = &raw[..3 * 64];
+    assert!(row[..3 * 63] == pixels(0, [63, 47])[..3 * 63] && row[3 * 63..] == row[..3]);
+}
+
 #[cfg(unix)]
 #[test]
 fn an_ffmpeg_that_is_missing_or_fails_is_told() {
@@ -350,24 +458,63 @@ fn an_ffmpeg_that_is_missing_or_fails_is_told() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_film_leaves_nothing() {
+    use crate::interrupt::{set_signals, signal};
     use crate::support::Running;
-    let place = with_frames();
-    let script = "head -c 9216 > /dev/null; echo > started; sleep 0.5; cat > /dev/null";
-    let mut command = with_script(&place, script, "animate in -o out.mp4 --hold-last 600");
-    let mut running = Running::start(&mut command);
-    running.until("the start of the film", |_| place.path("started").exists());
-    Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap();
-    let ran = running.wait();
-    assert_eq!((ran.status, ran.err.as_str()), (Some(130), ""), "{ran:?}");
-    assert_eq!(place.names("."), ["bin", "in", "started"]);
+    for script in [
+        "echo > started; cat > /dev/null",
+        // It takes no pictures; nor does another process that it has started.
+        "echo > started; exec sleep 60",
+        "echo > started; sleep 60",
+        // It has taken all and does not end.
+        "cat > /dev/null; echo > started; sleep 60",
+    ] {
+        let place = with_frames();
+        let mut command = with_script(&place, script, "animate in -o out.mp4 --hold-last 60");
+        set_signals(&mut command, &[]);
+        let mut running = Running::start(&mut command);
+        running.until("the start of the film", |_| place.path("started").exists());
+        signal(&running, &["INT"]);
+        let ran = running.wait();
+        assert_eq!((ran.status, ran.err.as_str()), (Some(130), ""), "{script}: {ran:?}");
+        assert_eq!(place.names("."), ["bin", "in", "started"], "{script}");
+    }
+}
+
+/// Nobody reads what goes to standard output: a second Ctrl-C, or the end of the reader, ends the program.
+#[cfg(unix)]
+#[test]
+fn a_pipe_that_is_full_is_left() {
+    use crate::interrupt::{set_signals, signal};
+    use crate::support::Running;
+    use std::time::Duration;
+    for is_read in [false, true] {
+        let place = with_frames();
+        let (mut reader, writer) = std::io::pipe().unwrap();
+        let mut command = place.command(["animate", "in", "-o", "-", "--hold-last", "60"]);
+        set_signals(&mut command, &[]);
+        let mut running = Running::start_into(&mut command, writer);
+        // It writes, and what it writes is more than a pipe holds.
+        std::io::Read::read_exact(&mut reader, &mut [0; 9]).unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+        signal(&running, &["INT"]);
+        std::thread::sleep(Duration::from_millis(1100));
+        assert!(running.is_running());
+        if is_read {
+            drop(reader);
+        } else {
+            signal(&running, &["INT"]);
+        }
+        let ran = running.wait();
+        assert_eq!((ran.status, ran.err.as_str()), (Some(130), ""), "{ran:?}");
+    }
 }
 
 /// The real one, if it is there: what it makes has the right pictures at the right times.
 #[test]
 fn films_and_all_else_are_read_by_other_programs() {
     let place = with_frames();
-    if Command::new("ffmpeg").arg("-version").output().is_err() {
-        return skip("there is no ffmpeg");
+    if !has_ffmpeg() {
+        return;
     }
     let mut odd = Vec::new();
     for number in 0..COUNT {
@@ -377,6 +524,10 @@ fn films_and_all_else_are_read_by_other_programs() {
     for (file, size) in
         [("a.mp4", [64, 48]), ("a.webm", [64, 48]), ("a.y4m", [63, 47]), ("a.gif", [63, 47]), ("a.apng", [63, 47])]
     {
+        let ran = place.run(&format!("animate odd -o {file}")).good();
+        assert!(ran.out.starts_with(&format!("{file}  {}×{}, 12 pictures in 0.40 s", size[0], size[1])), "{}", ran.out);
+        // It is known as ours, and replaced.
+        place.run(&format!("animate odd -o {file} --frames 0-3")).good();
         place.run(&format!("animate odd -o {file}")).good();
         let mut decoder = Command::new("ffmpeg");
         decoder.args(["-v", "error", "-i", file, "-vf", "scale=in_color_matrix=bt709", "-vsync", "0"]);
@@ -420,10 +571,7 @@ fn films_and_all_else_are_read_by_other_programs() {
 #[test]
 fn pillow_reads_the_same() {
     let place = with_frames();
-    let can = Command::new("python3").args(["-c", "import PIL"]).output().is_ok_and(|output| output.status.success());
-    if !can {
-        return skip("there is no Pillow");
-    }
+    let Some(python) = python("PIL") else { return };
     place.run("animate in -o a.gif").good();
     place.run("animate in -o a.apng").good();
     let script = "
@@ -442,8 +590,7 @@ for name in ['a.gif', 'a.apng']:
     assert abs(total - 400) < 1, total
 print('fine')
 ";
-    let output = Command::new("python3").args(["-c", script]).current_dir(place.path(".")).output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&output.stdout), "fine\n", "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(python(&place.path("."), script), "fine\n");
 }
 
 fn bad(place: &Place, arguments: &str, words: &[&str]) -> Ran {
@@ -493,6 +640,9 @@ fn frames_that_are_no_sequence_are_told() {
     bad(&place, "in gap -o out.gif --frames 0-1,4", &["gap"]);
     bad(&place, "in gap -o out.gif", &["gap has a gap"]);
     bad(&place, "in cut -o out.gif", &["frame 4 is only in one of in and cut"]);
+    let later = Tags { time: 0.3, ..tags(3) };
+    put(&place, "later", 3, &encode(SIZE, &pixels(3, SIZE), &later));
+    bad(&place, "in later -o out.gif --frames 3", &["frame 3 is at 0.1010 s in in and at 0.3000 s in later"]);
     assert!(
         place.names(".").iter().all(|name| !name.starts_with("out") && !name.starts_with('.')),
         "nothing half-written"
@@ -507,6 +657,16 @@ fn wrong_options_are_told() {
         ("in -o out", ["no ending", ".y4m"]),
         ("in -o out.gif --size 100x100", ["--size is for sheets", "--width"]),
         ("in -o in", ["no ending", ".gif"]),
+        ("in -o out.png --width 100", ["--width is for animations", "--size"]),
+        ("in -o out.png --speed 2", ["--speed is for animations", "stills"]),
+        ("in -o out.png --fps 2", ["--fps is for animations", "stills"]),
+        ("in -o out.png --hold-last 2", ["--hold-last is for animations", "stills"]),
+        ("in -o out.png --boomerang", ["--boomerang is for animations", "stills"]),
+        ("in -o out.png --loop 2", ["--loop is for .gif and .apng", "whoever plays"]),
+        ("in -o out.y4m --loop 2", ["--loop is for .gif and .apng", "whoever plays"]),
+        ("in -o out.mp4 --loop 0", ["--loop is for .gif and .apng", "whoever plays"]),
+        ("in -o out.gif --stack", ["--stack", "more than one"]),
+        ("in -o - --json", ["--json", "standard output is for the pictures"]),
     ] {
         bad(&place, arguments, &words);
     }
@@ -517,15 +677,33 @@ fn wrong_options_are_told() {
         ("--fps 0", "0.1 to 1000"),
         ("--hold-last -1", "0 to 3600"),
         ("--width 3", "16"),
+        ("--loop -1", "1 to 65535, or 0 for ever"),
+        ("--loop forever", "1 to 65535, or 0 for ever"),
         ("--frames 9-0", "did you mean 0-9?"),
     ] {
         let ran = place.run(&format!("animate in -o out.gif {arguments}"));
         assert!(ran.status == Some(2) && ran.err.contains(word), "{arguments}: {ran:?}");
     }
-    place.write("mine.gif", "not one of ours");
-    bad(&place, "in -o mine.gif", &["mine.gif is there already", "--overwrite"]);
-    place.run("animate in -o mine.gif --overwrite").good();
-    place.run("animate in -o mine.gif").good();
+    for (name, text) in [
+        ("mine.gif", "made by localshape 0.1.0"),
+        ("mine.gif", "GIF89a, not made by localshape 0.1.0 but by hand, with a long text"),
+        ("mine.gif", "GIF89a..!\u{fe}.made by localshape by hand"),
+        ("mine.y4m", "YUV4MPEG2 W8 H8 F1:1\nXmade_by_localshape_tools"),
+        ("mine.apng", "\u{89}PNG\r\n\u{1a}\n....tEXtNote\0made by localshape 0.1.0"),
+        ("mine.mp4", "....ftypisom. It was not made by localshape 0.1.0"),
+        ("mine.webm", "made by localshape 0.1.0"),
+        ("mine.png", "iTXtComment\0made by localshape 0.1.0"),
+    ] {
+        // Each letter one byte.
+        let bytes: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
+        std::fs::write(place.path(name), &bytes).unwrap();
+        bad(&place, &format!("in -o {name}"), &[&format!("{name} is there already"), "--overwrite"]);
+        assert!(std::fs::read(place.path(name)).unwrap() == bytes);
+    }
+    for name in ["mine.gif", "mine.apng", "mine.y4m", "mine.png"] {
+        place.run(&format!("animate in -o {name} --overwrite")).good();
+        place.run(&format!("animate in -o {name}")).good();
+    }
     std::fs::create_dir(place.path("folder.gif")).unwrap();
     bad(&place, "in -o folder.gif", &["folder.gif is no file"]);
     place.run("animate in -o absent/out.gif").bad(4, &["cannot write absent/out.gif"]);

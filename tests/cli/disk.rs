@@ -96,7 +96,7 @@ fn animations_on_a_full_disk() {
     for name in ["a.gif", "a.apng", "a.y4m"] {
         let arguments = format!("animate in -o out/{name}");
         let Some(ran) = on_small_disk(&place, "64k", &arguments, "ls -A out") else { return };
-        let ran = ran.bad(4, &[&format!("cannot write out/{name}"), "disk is full"]);
+        let ran = ran.bad(4, &[&format!("cannot write out/{name}"), "disk is full", "nothing of this file is left"]);
         assert_eq!(ran.out, "", "{name}: nothing is left");
     }
 }

@@ -30,7 +30,7 @@ fn start_ignoring(ignored: &'static [c_int], place: &Place, arguments: &str, sig
 
 /// What is ignored when a program starts is so in those that it starts, too, and no shell takes that back.
 #[allow(unsafe_code, reason = "what signals do is set between fork and exec, and there is no safe way to")]
-fn set_signals(command: &mut Command, ignored: &'static [c_int]) {
+pub(crate) fn set_signals(command: &mut Command, ignored: &'static [c_int]) {
     use std::os::unix::process::CommandExt;
     let set = || {
         for signal in [SIGINT, SIGTERM, SIGHUP] {

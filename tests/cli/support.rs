@@ -232,21 +232,38 @@ pub(crate) fn skip(why: &str) {
     eprintln!("SKIPPED: {why}");
 }
 
-/// What runs a script in a folder by a Python that has NumPy, and returns what it prints; `None`, with a notice, if there is
-/// no such Python. With `LOCALSHAPE_REQUIRE_NUMPY=1` there must be one.
+/// Whether there is an `ffmpeg`, with a notice if there is none. With `LOCALSHAPE_REQUIRE_FFMPEG=1` there must be one.
+#[cfg(feature = "render")]
+pub(crate) fn has_ffmpeg() -> bool {
+    let is_there = Command::new("ffmpeg").arg("-version").output().is_ok();
+    if !is_there {
+        let missing = "there is no ffmpeg: `apt install ffmpeg`";
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_FFMPEG").is_none_or(|value| value != "1"), "{missing}");
+        skip(missing);
+    }
+    is_there
+}
+
+/// What runs a script in a folder by a Python that has NumPy, as [`python`].
 pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
+    python("numpy")
+}
+
+/// What runs a script in a folder by a Python that has a package, `numpy` or `PIL`, and returns what it prints; `None`,
+/// with a notice, if there is no such Python. With `LOCALSHAPE_REQUIRE_PYTHON=1` there must be one.
+pub(crate) fn python(package: &str) -> Option<impl Fn(&Path, &str) -> String + use<>> {
     // By way of a shell, which says so if there is no Python at all.
     let run_by = |python: &str, folder: &Path, script: &str| {
         let mut command = Command::new("sh");
         command.args(["-c", "exec $0 -c \"$1\"", python, script]).current_dir(folder).stdin(Stdio::null());
         run(&mut command)
     };
-    let has_numpy = |python: &&str| run_by(python, Path::new("."), "import numpy").status == Some(0);
+    let has_package = |python: &&str| run_by(python, Path::new("."), &format!("import {package}")).status == Some(0);
     // The first may be one of the user's own, without the packages of the system.
-    let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_numpy) else {
-        let missing = "there is no Python with NumPy: `apt install python3-numpy`";
-        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_NUMPY").is_none_or(|value| value != "1"), "{missing}");
-        skip(missing);
+    let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_package) else {
+        let missing = format!("there is no Python with {package}: `apt install python3-{}`", package.to_lowercase());
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PYTHON").is_none_or(|value| value != "1"), "{missing}");
+        skip(&missing);
         return None;
     };
     Some(move |folder: &Path, script: &str| {

@@ -1,6 +1,8 @@
-//! The page that shows a comparison: what stands in it, and that it can be used in a browser, by pointer and by keys.
+//! What a browser shows: the page of a comparison, which can be used by pointer and by keys, and animations.
 
 mod browser;
+#[cfg(feature = "render")]
+mod players;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
