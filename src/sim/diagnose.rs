@@ -1,7 +1,7 @@
 //! What the diagnostics of a state are computed from: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
-use super::diagnostics::{Diagnostics, Moment};
+use super::diagnostics::{Diagnostics, Facts};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -58,7 +58,7 @@ impl Diagnose {
         let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
         let turned_over: Vec<_> = volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect();
         let placement = self.placement(state.position);
-        let moment = Moment {
+        let facts = Facts {
             mass: &self.body.mass,
             state,
             gravity,
@@ -70,7 +70,7 @@ impl Diagnose {
             placement: &placement,
             centred: &self.centred,
         };
-        (Diagnostics::of(&moment), turned_over, placement)
+        (Diagnostics::of(&facts), turned_over, placement)
     }
 
     /// Signed volume of an element now and at rest (m³, in the plane m²).

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 
 /// What diagnostics are computed from.
-pub(super) struct Moment<'a> {
+pub(super) struct Facts<'a> {
     /// Mass of each node (kg).
     pub(super) mass: &'a [f64],
     pub(super) state: Nodes<'a>,
@@ -29,7 +29,7 @@ pub(super) struct Moment<'a> {
     pub(super) centred: &'a [DVec3],
 }
 
-impl Moment<'_> {
+impl Facts<'_> {
     /// The sum over all nodes of something that follows from mass (kg), position (m) and velocity (m/s), in their order.
     fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
         let Nodes { position, velocity } = self.state;
@@ -102,9 +102,9 @@ pub enum Reach {
 
 /// Makes of each entry a field of [`Diagnostics`] and a [`Diagnostic`]. An entry is what it means, with its unit in
 /// brackets; its name in code, its key in files and its type; what a reader calls it; its unit; how far it gets; and how it
-/// is computed from the moment and from entries before it.
+/// is computed from the facts and from entries before it.
 macro_rules! diagnostics {
-    ($moment:ident: $(
+    ($facts:ident: $(
         $(#[doc = $meaning:literal])+
         $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
     )+) => {
@@ -116,7 +116,7 @@ macro_rules! diagnostics {
         }
 
         impl Diagnostics {
-            pub(super) fn of($moment: &Moment<'_>) -> Self {
+            pub(super) fn of($facts: &Facts<'_>) -> Self {
                 $(let $key: $type = $value;)+
                 Self { $($key),+ }
             }
@@ -178,37 +178,37 @@ macro_rules! diagnostics {
     };
 }
 
-diagnostics! { moment:
+diagnostics! { facts:
     /// Kinetic energy (J).
     Kinetic, kinetic: f64, "kinetic energy", "J", Goldens =
-        moment.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
+        facts.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
 
     /// Elastic energy (J).
-    Elastic, elastic: f64, "elastic energy", "J", Goldens = moment.report.energy.unwrap_or(f64::NAN);
+    Elastic, elastic: f64, "elastic energy", "J", Goldens = facts.report.energy.unwrap_or(f64::NAN);
 
     /// Potential energy in the field of gravity (J), zero at the origin.
     Gravitational, gravitational: f64, "energy in gravity", "J", Goldens =
-        moment.sum(|mass, position, _| -(mass * moment.gravity.dot(position)));
+        facts.sum(|mass, position, _| -(mass * facts.gravity.dot(position)));
 
     /// Momentum (kg m/s); as one number, its length.
-    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = moment.sum(|mass, _, velocity| velocity * mass);
+    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = facts.sum(|mass, _, velocity| velocity * mass);
 
     /// Angular momentum about the origin (kg m²/s); as one number, its length.
     AngularMomentum, angular_momentum: DVec3, "angular momentum", "kg m²/s", Frames =
-        moment.sum(|mass, position, velocity| position.cross(velocity) * mass);
+        facts.sum(|mass, position, velocity| position.cross(velocity) * mass);
 
     /// The largest angular acceleration that approximation errors of the rotations amount to (rad/s²), α of Eq. (18).
-    Residual, residual: f64, "residual α", "rad/s²", Frames = moment.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
+    Residual, residual: f64, "residual α", "rad/s²", Frames = facts.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
 
     /// How many elements have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
-        moment.turned_over.iter().filter(|&&turned| turned).count();
+        facts.turned_over.iter().filter(|&&turned| turned).count();
 
     /// Total signed volume over the rest value; in the plane, area.
-    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = moment.volume / moment.volume_at_rest;
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volume / facts.volume_at_rest;
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
-    ShapeError, shape_error: f64, "shape error", "m", Summaries = moment.shape_error();
+    ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
 
     /// The sum of all energies (J).
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
