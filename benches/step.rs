@@ -63,7 +63,8 @@ fn scene(body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
         "
     );
     for (at, (model, more)) in runs.iter().enumerate() {
-        text += &format!("[[run]]\nname = '{at}'\nmodel = {{ stiffness = 1e4, damping_ratio = 0.1, {model} }}\n{more}\n");
+        text +=
+            &format!("[[run]]\nname = '{at}'\nmodel = {{ stiffness = 1e4, damping_ratio = 0.1, {model} }}\n{more}\n");
     }
     Scene::parse(&text, "step", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -151,23 +152,23 @@ fn main() {
             "plain shape, Eq. (15) twice",
             "plain springs, all",
         ];
-        let mut cases: Vec<_> =
-            (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 0)).collect();
+        let mut cases: Vec<_> = (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 0)).collect();
         cases.push(Case::new("shape, 2 threads", &scene_of_lattice, 0, 1));
         cases.push(Case::new("springs, all, 2 threads", &scene_of_lattice, 2, 1));
         let one = [("kind = 'shape-based'", "")];
-        let other = |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 0);
+        let other =
+            |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 0);
         if cells <= 40 {
             let cube = format!("cells = [{cells}, {cells}, {cells}], side = 0.1");
             cases.push(other(format!("lattice = {{ {cube}, irregular = 0.2 }}"), ", 0", "irregular hexahedra"));
-            cases.push(other(
-                format!("lattice = {{ {cube}, elements = 'tetrahedra' }}"),
-                ", 0",
-                "tetrahedra",
-            ));
+            cases.push(other(format!("lattice = {{ {cube}, elements = 'tetrahedra' }}"), ", 0", "tetrahedra"));
             let side = (cells * cells * cells).isqrt();
             let square = format!("cells = [{side}, {side}], side = 0.1");
-            cases.push(other(format!("lattice = {{ {square}, irregular = 0.2 }}"), "", "irregular squares in the plane"));
+            cases.push(other(
+                format!("lattice = {{ {square}, irregular = 0.2 }}"),
+                "",
+                "irregular squares in the plane",
+            ));
             cases.push(other(
                 format!("lattice = {{ {square}, elements = 'triangles' }}"),
                 "",

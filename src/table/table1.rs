@@ -299,6 +299,7 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
             "[[run]]
             name = '{name}'
             step = {:?}
+            kernel = 'reference'
             model = {{ kind = 'shape-based', stiffness = {stiffness:?}, rotation = '{rotation}'{passes} }}
             ",
             case.step()

@@ -10,7 +10,7 @@ use localshape::sim::motion::{Motion, Place};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
-use localshape::sim::world::{Stepping, Surroundings, World};
+use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
 use std::path::Path;
 
 const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
@@ -110,7 +110,7 @@ fn two_parts_move_like_each_alone() {
     let shape = shape_based(1e4, 20.0);
     let spring = mass_spring(&second, 1e4, 0.0, Springs::EdgesFaceDiagonals);
     for integrator in ALL {
-        let stepping = Stepping::new(integrator, 1e-3);
+        let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(integrator, 1e-3) };
         let start = |body: &localshape::sim::Body, shift: DVec3| {
             let mut noise = Noise(6);
             let position = body.rest.iter().map(|&at| at + shift + noise.vector() * 0.005).collect();
