@@ -43,7 +43,8 @@ fn simulate_on_a_full_disk() {
 #[test]
 fn states_on_a_full_disk() {
     let place = Place::new();
-    place.write("long.toml", &lasting("10"));
+    // More nodes, so that states take most of the room.
+    place.write("long.toml", &lasting("10").replace("cells = [2, 1, 1]", "cells = [3, 3, 3]"));
     let Some(ran) = on_small_disk(&place, "400k", "simulate long.toml -o out --states", "ls -A out") else { return };
     let ran = ran.bad(4, &["cannot write out/states.npz", "disk is full"]);
     assert_eq!(ran.out.lines().collect::<Vec<_>>(), ["diagnostics.csv", "run.json"]);
