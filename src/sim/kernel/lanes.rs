@@ -1,0 +1,681 @@
+//! Vectors of doubles, and the choice of the widest that the processor has.
+//!
+//! A kernel is written once, generic over [`Lanes`], as a [`Work`]; [`Set::run`] compiles it for every vector set and
+//! runs the one chosen. Each operation is one IEEE operation per lane, rounded once, so a kernel in which no lane depends
+//! on the others has the same bits for every set. Not a number has no fixed bits.
+
+#![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
+#![expect(unsafe_code, reason = "vector instructions, which a processor may lack, and unchecked loads and stores")]
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// The most lanes that any set has. Arrays padded to a multiple of it suit all.
+pub(in crate::sim) const MOST: usize = 8;
+
+/// A vector of doubles, and what can be done with every lane of it.
+///
+/// Every function is `#[inline(always)]`, so that it becomes part of a function compiled for its set. Only [`Set::run`]
+/// may name an implementation.
+pub(in crate::sim) trait Lanes:
+    Copy + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// One truth value per lane.
+    type Mask: Copy;
+    /// The number of lanes, a power of two and at most [`MOST`].
+    const WIDTH: usize;
+
+    /// The same value in all lanes.
+    fn splat(value: f64) -> Self;
+    /// [`Self::WIDTH`] values from memory, of any alignment.
+    ///
+    /// # Safety
+    /// They are readable.
+    unsafe fn load(from: *const f64) -> Self;
+    /// Writes [`Self::WIDTH`] values to memory, of any alignment.
+    ///
+    /// # Safety
+    /// They are writable, by nobody else.
+    unsafe fn store(self, to: *mut f64);
+    /// `self · factor + summand`, rounded once.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// `summand − self · factor`, rounded once.
+    fn neg_mul_add(self, factor: Self, summand: Self) -> Self;
+    /// `self · factor − minuend`, rounded once.
+    fn mul_sub(self, factor: Self, minuend: Self) -> Self;
+    /// `self / divisor`.
+    fn div(self, divisor: Self) -> Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// The lesser of both; `other` where one is no number.
+    fn min(self, other: Self) -> Self;
+    /// The greater of both; `other` where one is no number.
+    fn max(self, other: Self) -> Self;
+    /// Without its sign.
+    fn abs(self) -> Self;
+    /// `self < other`; false where one is no number.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`; false where one is no number.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `self` where `mask` is true, `other` elsewhere.
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
+    /// `[previous.last, self.first, …]`: all lanes move up by one.
+    fn shift_in(self, previous: Self) -> Self;
+    /// One bit per lane, the lowest for the first.
+    fn bits(mask: Self::Mask) -> u32;
+    /// The mask with these bits.
+    fn mask(bits: u32) -> Self::Mask;
+    /// True where both are.
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+
+    /// All lanes as an array; those beyond [`Self::WIDTH`] are 0.
+    #[inline(always)]
+    fn to_array(self) -> [f64; MOST] {
+        let mut array = [0.0; MOST];
+        // SAFETY: WIDTH ≤ MOST.
+        unsafe { self.store(array.as_mut_ptr()) };
+        array
+    }
+
+    /// The first lanes of an array.
+    #[inline(always)]
+    fn from_array(array: [f64; MOST]) -> Self {
+        // SAFETY: WIDTH ≤ MOST.
+        unsafe { Self::load(array.as_ptr()) }
+    }
+
+    /// Whether any lane is true.
+    #[inline(always)]
+    fn any(mask: Self::Mask) -> bool {
+        Self::bits(mask) != 0
+    }
+
+    /// The bits of a mask that is true in all lanes.
+    const ALL: u32 = (1 << Self::WIDTH) - 1;
+}
+
+/// Something to be computed with the lanes of some set.
+pub(in crate::sim) trait Work {
+    /// What comes out.
+    type Output;
+    /// Computes it. Implementations are `#[inline(always)]`.
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// A vector set that this processor has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) struct Set(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    #[cfg(target_arch = "aarch64")]
+    Neon,
+}
+
+impl Set {
+    /// The widest that this processor has.
+    pub(in crate::sim) fn best() -> Self {
+        Self::all().last().unwrap_or(Self(Kind::Portable))
+    }
+
+    /// All that this processor has, the narrowest first. None changes a bit of a result.
+    pub(in crate::sim) fn all() -> impl Iterator<Item = Self> {
+        let kinds = [
+            Some(Kind::Portable),
+            #[cfg(target_arch = "x86_64")]
+            (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Kind::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            (is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("fma")).then_some(Kind::Avx512),
+            #[cfg(target_arch = "aarch64")]
+            Some(Kind::Neon),
+        ];
+        // Miri interprets; it knows few vector instructions.
+        kinds.into_iter().flatten().filter(|&kind| !cfg!(miri) || kind == Kind::Portable).map(Self)
+    }
+
+    /// Computes `work` with the lanes of this set.
+    #[inline]
+    pub(in crate::sim) fn run<W: Work>(self, work: W) -> W::Output {
+        match self.0 {
+            Kind::Portable => work.run::<portable::Vector>(),
+            // SAFETY: `all` has found these features in the processor, and no other set can be made.
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => unsafe { x86::avx2(work) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512 => unsafe { x86::avx512(work) },
+            #[cfg(target_arch = "aarch64")]
+            Kind::Neon => work.run::<neon::Vector>(),
+        }
+    }
+}
+
+/// Operators that are one operation per lane.
+macro_rules! operators {
+    ($vector:ty, $($trait:ident $name:ident ($a:ident, $b:ident) $body:expr;)*; -$c:ident $neg:expr) => {
+        $(impl $trait for $vector {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                let ($a, $b) = (self.0, other.0);
+                Self($body)
+            }
+        })*
+        impl Neg for $vector {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                let $c = self.0;
+                Self($neg)
+            }
+        }
+    };
+}
+
+/// Plain arrays, for any processor. Where it has no fused operations a library computes the same bits.
+mod portable {
+    use super::*;
+    use std::array::from_fn;
+
+    const N: usize = 4;
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Vector([f64; N]);
+
+    operators! { Vector,
+        Add add (a, b) from_fn(|at| a[at] + b[at]);
+        Sub sub (a, b) from_fn(|at| a[at] - b[at]);
+        Mul mul (a, b) from_fn(|at| a[at] * b[at]);;
+        -a from_fn(|at| -a[at])
+    }
+
+    impl Vector {
+        #[inline(always)]
+        fn each(self, other: Self, one: impl Fn(f64, f64) -> f64) -> Self {
+            Self(from_fn(|at| one(self.0[at], other.0[at])))
+        }
+        #[inline(always)]
+        fn test(self, other: Self, one: impl Fn(f64, f64) -> bool) -> [bool; N] {
+            from_fn(|at| one(self.0[at], other.0[at]))
+        }
+    }
+
+    impl Lanes for Vector {
+        type Mask = [bool; N];
+        const WIDTH: usize = N;
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self([value; N])
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f64) -> Self {
+            // SAFETY: the caller's; an array has the alignment of its entries.
+            Self(unsafe { *from.cast::<[f64; N]>() })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f64) {
+            // SAFETY: as above.
+            unsafe { *to.cast::<[f64; N]>() = self.0 }
+        }
+        #[inline(always)]
+        fn mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(from_fn(|at| self.0[at].mul_add(factor.0[at], summand.0[at])))
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
+            (-self).mul_add(factor, summand)
+        }
+        #[inline(always)]
+        fn mul_sub(self, factor: Self, minuend: Self) -> Self {
+            self.mul_add(factor, -minuend)
+        }
+        #[inline(always)]
+        fn div(self, divisor: Self) -> Self {
+            self.each(divisor, |a, b| a / b)
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(self.0.map(f64::sqrt))
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            self.each(other, |a, b| if a < b { a } else { b })
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            self.each(other, |a, b| if a > b { a } else { b })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(self.0.map(f64::abs))
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> [bool; N] {
+            self.test(other, |a, b| a < b)
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> [bool; N] {
+            self.test(other, |a, b| a <= b)
+        }
+        #[inline(always)]
+        fn select(self, mask: [bool; N], other: Self) -> Self {
+            Self(from_fn(|at| if mask[at] { self.0[at] } else { other.0[at] }))
+        }
+        #[inline(always)]
+        fn shift_in(self, previous: Self) -> Self {
+            Self(from_fn(|at| if at == 0 { previous.0[N - 1] } else { self.0[at - 1] }))
+        }
+        #[inline(always)]
+        fn bits(mask: [bool; N]) -> u32 {
+            mask.iter().rev().fold(0, |bits, &lane| bits << 1 | u32::from(lane))
+        }
+        #[inline(always)]
+        fn mask(bits: u32) -> [bool; N] {
+            from_fn(|at| bits >> at & 1 == 1)
+        }
+        #[inline(always)]
+        fn both(a: [bool; N], b: [bool; N]) -> [bool; N] {
+            from_fn(|at| a[at] && b[at])
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::*;
+    use std::arch::x86_64::*;
+
+    /// Runs `work` compiled for AVX2.
+    ///
+    /// # Safety
+    /// The processor has these features.
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) unsafe fn avx2<W: Work>(work: W) -> W::Output {
+        work.run::<Avx2>()
+    }
+
+    /// Runs `work` compiled for AVX-512.
+    ///
+    /// # Safety
+    /// The processor has these features.
+    #[target_feature(enable = "avx512f,avx2,fma")]
+    pub(super) unsafe fn avx512<W: Work>(work: W) -> W::Output {
+        work.run::<Avx512>()
+    }
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Avx2(__m256d);
+    #[derive(Clone, Copy)]
+    pub(super) struct Avx512(__m512d);
+
+    // SAFETY of every block below: only `avx2` and `avx512` name these types, and their callers vouch for the processor.
+    // Pointers are the caller's of `load` and `store`.
+    operators! { Avx2,
+        Add add (a, b) unsafe { _mm256_add_pd(a, b) };
+        Sub sub (a, b) unsafe { _mm256_sub_pd(a, b) };
+        Mul mul (a, b) unsafe { _mm256_mul_pd(a, b) };;
+        -a unsafe { _mm256_xor_pd(a, _mm256_set1_pd(-0.0)) }
+    }
+    operators! { Avx512,
+        Add add (a, b) unsafe { _mm512_add_pd(a, b) };
+        Sub sub (a, b) unsafe { _mm512_sub_pd(a, b) };
+        Mul mul (a, b) unsafe { _mm512_mul_pd(a, b) };;
+        -a unsafe { _mm512_castsi512_pd(_mm512_xor_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(i64::MIN))) }
+    }
+
+    impl Lanes for Avx2 {
+        type Mask = __m256d;
+        const WIDTH: usize = 4;
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(value) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f64) -> Self {
+            Self(unsafe { _mm256_loadu_pd(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f64) {
+            unsafe { _mm256_storeu_pd(to, self.0) }
+        }
+        #[inline(always)]
+        fn mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_pd(self.0, factor.0, summand.0) })
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { _mm256_fnmadd_pd(self.0, factor.0, summand.0) })
+        }
+        #[inline(always)]
+        fn mul_sub(self, factor: Self, minuend: Self) -> Self {
+            Self(unsafe { _mm256_fmsub_pd(self.0, factor.0, minuend.0) })
+        }
+        #[inline(always)]
+        fn div(self, divisor: Self) -> Self {
+            Self(unsafe { _mm256_div_pd(self.0, divisor.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm256_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm256_min_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm256_max_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(self, mask: __m256d, other: Self) -> Self {
+            Self(unsafe { _mm256_blendv_pd(other.0, self.0, mask) })
+        }
+        #[inline(always)]
+        fn shift_in(self, previous: Self) -> Self {
+            // The upper half of the one and the lower half of the other, then the odd of that and the even of `self`.
+            Self(unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous.0, self.0), self.0) })
+        }
+        #[inline(always)]
+        fn bits(mask: __m256d) -> u32 {
+            unsafe { _mm256_movemask_pd(mask) as u32 }
+        }
+        #[inline(always)]
+        fn mask(bits: u32) -> __m256d {
+            unsafe {
+                let lanes = _mm256_set_epi64x(8, 4, 2, 1);
+                let own = _mm256_and_si256(_mm256_set1_epi64x(i64::from(bits)), lanes);
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(own, lanes))
+            }
+        }
+        #[inline(always)]
+        fn both(a: __m256d, b: __m256d) -> __m256d {
+            unsafe { _mm256_and_pd(a, b) }
+        }
+    }
+
+    impl Lanes for Avx512 {
+        type Mask = __mmask8;
+        const WIDTH: usize = 8;
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { _mm512_set1_pd(value) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f64) -> Self {
+            Self(unsafe { _mm512_loadu_pd(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f64) {
+            unsafe { _mm512_storeu_pd(to, self.0) }
+        }
+        #[inline(always)]
+        fn mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, summand.0) })
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, summand.0) })
+        }
+        #[inline(always)]
+        fn mul_sub(self, factor: Self, minuend: Self) -> Self {
+            Self(unsafe { _mm512_fmsub_pd(self.0, factor.0, minuend.0) })
+        }
+        #[inline(always)]
+        fn div(self, divisor: Self) -> Self {
+            Self(unsafe { _mm512_div_pd(self.0, divisor.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm512_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm512_min_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm512_max_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm512_abs_pd(self.0) })
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> __mmask8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> __mmask8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(self, mask: __mmask8, other: Self) -> Self {
+            Self(unsafe { _mm512_mask_blend_pd(mask, other.0, self.0) })
+        }
+        #[inline(always)]
+        fn shift_in(self, previous: Self) -> Self {
+            Self(unsafe {
+                let (low, high) = (_mm512_castpd_si512(previous.0), _mm512_castpd_si512(self.0));
+                _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(high, low))
+            })
+        }
+        #[inline(always)]
+        fn bits(mask: __mmask8) -> u32 {
+            u32::from(mask)
+        }
+        #[inline(always)]
+        fn mask(bits: u32) -> __mmask8 {
+            bits as __mmask8
+        }
+        #[inline(always)]
+        fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
+            a & b
+        }
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+mod neon {
+    use super::*;
+    use std::arch::aarch64::*;
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Vector(float64x2_t);
+
+    // SAFETY of every block below: every processor of this architecture has NEON. Pointers are the caller's.
+    operators! { Vector,
+        Add add (a, b) unsafe { vaddq_f64(a, b) };
+        Sub sub (a, b) unsafe { vsubq_f64(a, b) };
+        Mul mul (a, b) unsafe { vmulq_f64(a, b) };;
+        -a unsafe { vnegq_f64(a) }
+    }
+
+    impl Lanes for Vector {
+        type Mask = uint64x2_t;
+        const WIDTH: usize = 2;
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { vdupq_n_f64(value) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f64) -> Self {
+            Self(unsafe { vld1q_f64(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f64) {
+            unsafe { vst1q_f64(to, self.0) }
+        }
+        #[inline(always)]
+        fn mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { vfmaq_f64(summand.0, self.0, factor.0) })
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
+            Self(unsafe { vfmsq_f64(summand.0, self.0, factor.0) })
+        }
+        #[inline(always)]
+        fn mul_sub(self, factor: Self, minuend: Self) -> Self {
+            self.mul_add(factor, -minuend)
+        }
+        #[inline(always)]
+        fn div(self, divisor: Self) -> Self {
+            Self(unsafe { vdivq_f64(self.0, divisor.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { vsqrtq_f64(self.0) })
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            self.select(self.lt(other), other)
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            self.select(other.lt(self), other)
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { vabsq_f64(self.0) })
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> uint64x2_t {
+            unsafe { vcltq_f64(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> uint64x2_t {
+            unsafe { vcleq_f64(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(self, mask: uint64x2_t, other: Self) -> Self {
+            Self(unsafe { vbslq_f64(mask, self.0, other.0) })
+        }
+        #[inline(always)]
+        fn shift_in(self, previous: Self) -> Self {
+            Self(unsafe { vextq_f64::<1>(previous.0, self.0) })
+        }
+        #[inline(always)]
+        fn bits(mask: uint64x2_t) -> u32 {
+            unsafe { (vgetq_lane_u64::<0>(mask) & 1 | vgetq_lane_u64::<1>(mask) & 2) as u32 }
+        }
+        #[inline(always)]
+        fn mask(bits: u32) -> uint64x2_t {
+            let lane = |at: u32| if bits >> at & 1 == 1 { u64::MAX } else { 0 };
+            unsafe { vsetq_lane_u64::<1>(lane(1), vdupq_n_u64(lane(0))) }
+        }
+        #[inline(always)]
+        fn both(a: uint64x2_t, b: uint64x2_t) -> uint64x2_t {
+            unsafe { vandq_u64(a, b) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation on three vectors: its results, lane after lane.
+    struct Everything([[f64; MOST]; 3]);
+
+    impl Work for Everything {
+        type Output = Vec<Vec<f64>>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Vec<Vec<f64>> {
+            // Eight lanes of each, in as many vectors as that takes.
+            let mut all = vec![Vec::new(); 20];
+            let mut previous = L::splat(9.0);
+            for first in (0..MOST).step_by(L::WIDTH) {
+                // SAFETY: WIDTH divides MOST.
+                let [a, b, c] = self.0.each_ref().map(|array| unsafe { L::load(array[first..].as_ptr()) });
+                let flag = |mask| {
+                    assert_eq!(L::bits(L::mask(L::bits(mask))), L::bits(mask));
+                    L::splat(1.0).select(mask, L::splat(0.0))
+                };
+                let results = [
+                    a + b,
+                    a - b,
+                    a * b,
+                    -a,
+                    a.mul_add(b, c),
+                    a.neg_mul_add(b, c),
+                    a.mul_sub(b, c),
+                    a.div(b),
+                    a.abs().sqrt(),
+                    a.min(b),
+                    a.max(b),
+                    a.abs(),
+                    flag(a.lt(b)),
+                    flag(a.le(b)),
+                    c.select(a.lt(b), a),
+                    a.shift_in(previous),
+                    flag(L::both(a.lt(b), b.le(c))),
+                    flag(L::mask(0b0110_1001 >> first)),
+                    L::splat(if L::any(L::mask(0)) { 1.0 } else { 0.0 }),
+                    L::from_array(a.to_array()),
+                ];
+                previous = a;
+                for (out, result) in all.iter_mut().zip(results) {
+                    out.extend_from_slice(&result.to_array()[..L::WIDTH]);
+                }
+            }
+            all
+        }
+    }
+
+    #[test]
+    fn every_set_does_what_one_lane_after_the_other_would() {
+        let a = [1.0, -0.1, 3e200, 5.0, 0.0, f64::NAN, 7.0 / 3.0, -1e-300];
+        let b = [1.0 / 3.0, 0.3, -2e150, 5.0, -0.0, 1.0, 0.7, 1e-20];
+        let c = [-1.0 / 3.0, 0.03, 1.0, f64::INFINITY, 4.0, 2.0, f64::NAN, 3.0];
+        let each =
+            |one: &dyn Fn(f64, f64, f64) -> f64| -> Vec<f64> { (0..MOST).map(|at| one(a[at], b[at], c[at])).collect() };
+        let flag = f64::from;
+        let expected = [
+            each(&|a, b, _| a + b),
+            each(&|a, b, _| a - b),
+            each(&|a, b, _| a * b),
+            each(&|a, _, _| -a),
+            each(&|a, b, c| a.mul_add(b, c)),
+            each(&|a, b, c| (-a).mul_add(b, c)),
+            each(&|a, b, c| a.mul_add(b, -c)),
+            each(&|a, b, _| a / b),
+            each(&|a, _, _| a.abs().sqrt()),
+            each(&|a, b, _| if a < b { a } else { b }),
+            each(&|a, b, _| if a > b { a } else { b }),
+            each(&|a, _, _| a.abs()),
+            each(&|a, b, _| flag(a < b)),
+            each(&|a, b, _| flag(a <= b)),
+            each(&|a, b, c| if a < b { c } else { a }),
+            [9.0].into_iter().chain(a).take(MOST).collect(),
+            each(&|a, b, c| flag(a < b && b <= c)),
+            [1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0].to_vec(),
+            vec![0.0; MOST],
+            a.to_vec(),
+        ];
+        // Not a number has no fixed bits.
+        let bits = |all: &[Vec<f64>]| -> Vec<Vec<u64>> {
+            all.iter()
+                .map(|one| one.iter().map(|v| if v.is_nan() { u64::MAX } else { v.to_bits() }).collect())
+                .collect()
+        };
+        for set in Set::all() {
+            assert_eq!(bits(&set.run(Everything([a, b, c]))), bits(&expected), "{set:?}");
+        }
+        assert!(Set::all().any(|set| set == Set::best()));
+    }
+}

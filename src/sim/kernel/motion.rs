@@ -1,0 +1,212 @@
+//! What happens to nodes once their forces are known, in lanes: Eqs. (2) and (3) and their rivals, the test for runaways,
+//! and collisions.
+
+use super::lanes::{Lanes, MOST};
+use glam::DVec3;
+
+/// A region outside which nodes touch nothing. It may be larger than what it stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::sim) enum Bound {
+    /// All points `p` with `normal · p ≤ height` (m).
+    HalfSpace { normal: DVec3, height: f64 },
+    /// All points between two corners (m).
+    Box { low: DVec3, high: DVec3 },
+}
+
+/// The contact of one node that is inside a bound: its index, position (m), velocity (m/s), and the acceleration with
+/// which it has moved (m/s²), zero for one that has moved at constant velocity.
+pub(in crate::sim) type Resolve<'a> = dyn Fn(usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
+
+/// What nodes meet.
+#[derive(Clone, Copy)]
+pub(in crate::sim) struct Around<'a> {
+    /// Where contact is possible.
+    pub(in crate::sim) bounds: &'a [Bound],
+    /// What it does.
+    pub(in crate::sim) resolve: &'a Resolve<'a>,
+    /// The speed (m/s) beyond which a node is lost.
+    pub(in crate::sim) speed_limit: f64,
+}
+
+/// A node whose new velocity is no number or beyond all reason: the step is not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) struct Runaway {
+    /// Steps that were taken before.
+    pub(in crate::sim) steps: u64,
+    /// The first such node.
+    pub(in crate::sim) node: usize,
+}
+
+/// What is done with the forces of one evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) enum Stage {
+    /// Eq. (2), then Eq. (3) with the new velocity.
+    SemiImplicitEuler,
+    /// Eq. (3) with the old velocity.
+    ExplicitEuler,
+    /// The first half of velocity Verlet: the way, and the velocity at its end if the acceleration stays.
+    Drift,
+    /// Its second half, with the acceleration at the new place.
+    Finish,
+    /// The second half of one step and the first of the next, where the forces do not depend on velocities.
+    FinishDrift,
+}
+
+impl Stage {
+    /// Whether accelerations are kept from one stage to the next.
+    pub(in crate::sim) fn is_verlet(self) -> bool {
+        matches!(self, Self::Drift | Self::Finish | Self::FinishDrift)
+    }
+}
+
+/// The motion of nodes in one pass.
+#[derive(Clone, Copy)]
+pub(in crate::sim) struct Motion<'a, L> {
+    stage: Stage,
+    step: L,
+    half: L,
+    gravity: [L; 3],
+    limit: L,
+    around: Around<'a>,
+}
+
+/// A vector of nodes.
+#[derive(Clone, Copy)]
+pub(in crate::sim) struct Nodes<L> {
+    pub(in crate::sim) position: [L; 3],
+    pub(in crate::sim) velocity: [L; 3],
+    pub(in crate::sim) acceleration: [L; 3],
+}
+
+impl<'a, L: Lanes> Motion<'a, L> {
+    #[inline(always)]
+    pub(in crate::sim) fn new(stage: Stage, step: f64, gravity: DVec3, around: Around<'a>) -> Self {
+        Self {
+            stage,
+            step: L::splat(step),
+            half: L::splat(0.5 * step),
+            gravity: gravity.to_array().map(L::splat),
+            limit: L::splat(around.speed_limit * around.speed_limit),
+            around,
+        }
+    }
+
+    /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node. `index` tells the
+    /// node in a lane. Returns one bit for each lane whose speed is out of bounds.
+    #[inline(always)]
+    pub(in crate::sim) fn advance(
+        &self,
+        nodes: &mut Nodes<L>,
+        force: [L; 3],
+        inverse_mass: L,
+        index: impl Fn(usize) -> usize,
+    ) -> u32 {
+        let zero = L::splat(0.0);
+        let alive = zero.lt(inverse_mass);
+        let now: [L; 3] =
+            std::array::from_fn(|axis| force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
+        let mut lost = 0;
+        let mut rests = [zero; 3];
+        match self.stage {
+            Stage::SemiImplicitEuler => {
+                for axis in 0..3 {
+                    nodes.velocity[axis] = now[axis].mul_add(self.step, nodes.velocity[axis]);
+                    nodes.position[axis] = nodes.velocity[axis].mul_add(self.step, nodes.position[axis]);
+                }
+            }
+            Stage::ExplicitEuler => {
+                for axis in 0..3 {
+                    nodes.position[axis] = nodes.velocity[axis].mul_add(self.step, nodes.position[axis]);
+                    nodes.velocity[axis] = now[axis].mul_add(self.step, nodes.velocity[axis]);
+                }
+            }
+            Stage::Drift => {
+                nodes.acceleration = now;
+                self.drift(nodes);
+                rests = now;
+            }
+            Stage::Finish | Stage::FinishDrift => {
+                for axis in 0..3 {
+                    let gain = now[axis] - nodes.acceleration[axis];
+                    nodes.velocity[axis] = gain.mul_add(self.half, nodes.velocity[axis]);
+                }
+                nodes.acceleration = now;
+                if self.stage == Stage::Finish {
+                    return self.lost(nodes);
+                }
+                lost = self.lost(nodes);
+                self.drift(nodes);
+                rests = now;
+            }
+        }
+        lost |= self.lost(nodes);
+        let mut inside = 0;
+        for bound in self.around.bounds {
+            inside |= L::bits(reaches(bound, nodes.position));
+        }
+        inside &= L::bits(alive);
+        if inside != 0 {
+            let [mut position, mut velocity, rests] =
+                [nodes.position, nodes.velocity, rests].map(|v| v.map(L::to_array));
+            touch(self.around.resolve, inside, std::array::from_fn(&index), &mut position, &mut velocity, &rests);
+            nodes.position = position.map(L::from_array);
+            nodes.velocity = velocity.map(L::from_array);
+        }
+        lost
+    }
+
+    /// The way of velocity Verlet, and the velocity at its end if the acceleration stays.
+    #[inline(always)]
+    fn drift(&self, nodes: &mut Nodes<L>) {
+        for axis in 0..3 {
+            let predicted = nodes.acceleration[axis].mul_add(self.step, nodes.velocity[axis]);
+            nodes.position[axis] = (nodes.velocity[axis] + predicted).mul_add(self.half, nodes.position[axis]);
+            nodes.velocity[axis] = predicted;
+        }
+    }
+
+    /// The lanes whose speed is out of bounds; what is no number is within none.
+    #[inline(always)]
+    fn lost(&self, nodes: &Nodes<L>) -> u32 {
+        let [x, y, z] = nodes.velocity;
+        let squared = z.mul_add(z, y.mul_add(y, x * x));
+        !L::bits(squared.le(self.limit)) & L::ALL
+    }
+}
+
+/// The contact of the lanes `inside` a bound. All nodes of a body that lies on a floor may come here, or none.
+#[inline(never)]
+fn touch(
+    resolve: &Resolve<'_>,
+    inside: u32,
+    index: [usize; MOST],
+    position: &mut [[f64; MOST]; 3],
+    velocity: &mut [[f64; MOST]; 3],
+    acceleration: &[[f64; MOST]; 3],
+) {
+    for lane in (0..MOST).filter(|lane| inside >> lane & 1 == 1) {
+        let of = |all: &[[f64; MOST]; 3]| DVec3::from_array(all.map(|axis| axis[lane]));
+        let (mut p, mut v) = (of(position), of(velocity));
+        resolve(index[lane], &mut p, &mut v, of(acceleration));
+        for axis in 0..3 {
+            (position[axis][lane], velocity[axis][lane]) = (p[axis], v[axis]);
+        }
+    }
+}
+
+/// The lanes inside a bound.
+#[inline(always)]
+fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
+    match bound {
+        Bound::HalfSpace { normal, height } => {
+            let [nx, ny, nz] = normal.to_array().map(L::splat);
+            nz.mul_add(z, ny.mul_add(y, nx * x)).le(L::splat(*height))
+        }
+        Bound::Box { low, high } => {
+            let [lx, ly, lz] = low.to_array().map(L::splat);
+            let [hx, hy, hz] = high.to_array().map(L::splat);
+            let inside = L::both(L::both(lx.le(x), x.le(hx)), L::both(ly.le(y), y.le(hy)));
+            L::both(inside, L::both(lz.le(z), z.le(hz)))
+        }
+    }
+}
