@@ -67,6 +67,60 @@ pub(in crate::sim) trait Lanes:
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
+    /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
+    ///
+    /// # Safety
+    /// Each row is readable.
+    #[inline(always)]
+    unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+        let mut columns = [[0.0; MOST]; 8];
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let row = unsafe { *row(lane).cast::<[f64; 8]>() };
+            columns.iter_mut().zip(row).for_each(|(column, value)| column[lane] = value);
+        }
+        columns.map(Self::from_array)
+    }
+    /// The columns of rows of four doubles.
+    ///
+    /// # Safety
+    /// Each row is readable.
+    #[inline(always)]
+    unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+        let mut columns = [[0.0; MOST]; 4];
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let row = unsafe { *row(lane).cast::<[f64; 4]>() };
+            columns.iter_mut().zip(row).for_each(|(column, value)| column[lane] = value);
+        }
+        columns.map(Self::from_array)
+    }
+    /// Writes columns as rows of eight doubles, the first lane's first.
+    ///
+    /// # Safety
+    /// Each row is writable, by nobody else.
+    #[inline(always)]
+    unsafe fn put_rows(columns: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+        let columns = columns.map(Self::to_array);
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            unsafe { *row(lane).cast::<[f64; 8]>() = columns.map(|column| column[lane]) };
+        }
+    }
+    /// Adds columns to rows of four doubles, one row after the other: two may be the same.
+    ///
+    /// # Safety
+    /// Each row is writable, by nobody else.
+    #[inline(always)]
+    unsafe fn add_rows(columns: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+        let columns = columns.map(Self::to_array);
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let sum = unsafe { &mut *row(lane).cast::<[f64; 4]>() };
+            sum.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += column[lane]);
+        }
+    }
+
     /// All lanes as an array; those beyond [`Self::WIDTH`] are 0.
     #[inline(always)]
     fn to_array(self) -> [f64; MOST] {
@@ -327,6 +381,42 @@ mod x86 {
         -a unsafe { _mm512_castsi512_pd(_mm512_xor_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(i64::MIN))) }
     }
 
+    /// Four rows as columns.
+    #[inline(always)]
+    fn transposed([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+        unsafe {
+            let [even_low, odd_low] = [_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b)];
+            let [even_high, odd_high] = [_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d)];
+            [
+                _mm256_permute2f128_pd::<0x20>(even_low, even_high),
+                _mm256_permute2f128_pd::<0x20>(odd_low, odd_high),
+                _mm256_permute2f128_pd::<0x31>(even_low, even_high),
+                _mm256_permute2f128_pd::<0x31>(odd_low, odd_high),
+            ]
+        }
+    }
+
+    /// Eight rows as columns.
+    #[inline(always)]
+    fn transposed_8(rows: [__m512d; 8]) -> [__m512d; 8] {
+        unsafe {
+            // Pairs of rows, the even columns and the odd ones; then what stands in the same place of all pairs.
+            let even = [0, 2, 4, 6].map(|at| _mm512_unpacklo_pd(rows[at], rows[at + 1]));
+            let odd = [0, 2, 4, 6].map(|at| _mm512_unpackhi_pd(rows[at], rows[at + 1]));
+            let [[c0, c2, c4, c6], [c1, c3, c5, c7]] = [even, odd].map(|[a, b, c, d]| {
+                let low = [_mm512_shuffle_f64x2::<0x88>(a, b), _mm512_shuffle_f64x2::<0x88>(c, d)];
+                let high = [_mm512_shuffle_f64x2::<0xdd>(a, b), _mm512_shuffle_f64x2::<0xdd>(c, d)];
+                [
+                    _mm512_shuffle_f64x2::<0x88>(low[0], low[1]),
+                    _mm512_shuffle_f64x2::<0x88>(high[0], high[1]),
+                    _mm512_shuffle_f64x2::<0xdd>(low[0], low[1]),
+                    _mm512_shuffle_f64x2::<0xdd>(high[0], high[1]),
+                ]
+            });
+            [c0, c1, c2, c3, c4, c5, c6, c7]
+        }
+    }
+
     impl Lanes for Avx2 {
         type Mask = __m256d;
         const WIDTH: usize = 4;
@@ -407,6 +497,36 @@ mod x86 {
         fn both(a: __m256d, b: __m256d) -> __m256d {
             unsafe { _mm256_and_pd(a, b) }
         }
+        #[inline(always)]
+        unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+            let rows = [0, 1, 2, 3].map(row);
+            let [low, high] = [0, 4].map(|first| {
+                let rows = rows.map(|row| unsafe { _mm256_loadu_pd(row.add(first)) });
+                transposed(rows).map(Self)
+            });
+            [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]]
+        }
+        #[inline(always)]
+        unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+            transposed([0, 1, 2, 3].map(|lane| unsafe { _mm256_loadu_pd(row(lane)) })).map(Self)
+        }
+        #[inline(always)]
+        unsafe fn put_rows(columns: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+            let rows = [0, 1, 2, 3].map(row);
+            for first in [0, 4] {
+                let values = transposed([0, 1, 2, 3].map(|at| columns[first + at].0));
+                for (row, value) in rows.into_iter().zip(values) {
+                    unsafe { _mm256_storeu_pd(row.add(first), value) };
+                }
+            }
+        }
+        #[inline(always)]
+        unsafe fn add_rows(columns: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+            let rows = transposed(columns.map(|column| column.0));
+            for (lane, value) in rows.into_iter().enumerate() {
+                unsafe { _mm256_storeu_pd(row(lane), _mm256_add_pd(_mm256_loadu_pd(row(lane)), value)) };
+            }
+        }
     }
 
     impl Lanes for Avx512 {
@@ -486,6 +606,60 @@ mod x86 {
         #[inline(always)]
         fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
             a & b
+        }
+        #[inline(always)]
+        unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+            let rows = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| unsafe { _mm512_loadu_pd(row(lane)) });
+            transposed_8(rows).map(Self)
+        }
+        #[inline(always)]
+        unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+            unsafe {
+                // Rows n and n + 2 side by side, so that what is unpacked has pairs of neighbours in its quarters.
+                let two = |at: usize| {
+                    let low = _mm512_castpd256_pd512(_mm256_loadu_pd(row(at)));
+                    _mm512_insertf64x4::<1>(low, _mm256_loadu_pd(row(at + 2)))
+                };
+                let [a, b, c, d] = [two(0), two(1), two(4), two(5)];
+                let even = [_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d)];
+                let odd = [_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d)];
+                [
+                    _mm512_shuffle_f64x2::<0x88>(even[0], even[1]),
+                    _mm512_shuffle_f64x2::<0x88>(odd[0], odd[1]),
+                    _mm512_shuffle_f64x2::<0xdd>(even[0], even[1]),
+                    _mm512_shuffle_f64x2::<0xdd>(odd[0], odd[1]),
+                ]
+                .map(Self)
+            }
+        }
+        #[inline(always)]
+        unsafe fn put_rows(columns: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+            let rows = transposed_8(columns.map(|column| column.0));
+            for (lane, value) in rows.into_iter().enumerate() {
+                unsafe { _mm512_storeu_pd(row(lane), value) };
+            }
+        }
+        #[inline(always)]
+        unsafe fn add_rows(columns: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+            unsafe {
+                let [x, y, z, w] = columns.map(|column| column.0);
+                let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+                let last = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+                // The even rows and the odd ones, two in each vector.
+                let [even, odd] = [
+                    (_mm512_unpacklo_pd(x, y), _mm512_unpacklo_pd(z, w)),
+                    (_mm512_unpackhi_pd(x, y), _mm512_unpackhi_pd(z, w)),
+                ]
+                .map(|(xy, zw)| [_mm512_permutex2var_pd(xy, first, zw), _mm512_permutex2var_pd(xy, last, zw)]);
+                for lane in 0..MOST {
+                    let two = [even, odd][lane % 2][lane / 4];
+                    let value = match lane / 2 % 2 {
+                        0 => _mm512_castpd512_pd256(two),
+                        _ => _mm512_extractf64x4_pd::<1>(two),
+                    };
+                    _mm256_storeu_pd(row(lane), _mm256_add_pd(_mm256_loadu_pd(row(lane)), value));
+                }
+            }
         }
     }
 }

@@ -50,12 +50,103 @@ pub(in crate::sim) enum Stage {
     Finish,
     /// The second half of one step and the first of the next, where the forces do not depend on velocities.
     FinishDrift,
+    /// The first half with accelerations that are known: no force is evaluated.
+    Coast,
 }
 
 impl Stage {
     /// Whether accelerations are kept from one stage to the next.
     pub(in crate::sim) fn is_verlet(self) -> bool {
-        matches!(self, Self::Drift | Self::Finish | Self::FinishDrift)
+        !matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
+    }
+}
+
+/// How positions and velocities move from one step to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) enum Scheme {
+    /// Eq. (2), then Eq. (3) with the new velocity.
+    SemiImplicitEuler,
+    /// Eq. (3) with the old velocity.
+    ExplicitEuler,
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+/// Forces and motion of a body in lanes.
+pub(in crate::sim) trait Kernel {
+    /// Evaluates the forces once, unless they are known, and moves all nodes; tells whether all are within the speed limit.
+    /// With `commit` what the evaluation finds becomes the memory of the next one.
+    fn pass(&mut self, stage: Stage, commit: bool, around: Around<'_>) -> bool;
+    /// Whether forces depend on velocities.
+    fn is_damped(&self) -> bool;
+    /// Whether accelerations belong to the present positions.
+    fn is_known(&mut self) -> &mut bool;
+    /// Copies the state.
+    fn keep(&mut self);
+    /// Puts the copy in the state's place.
+    fn restore(&mut self);
+    /// Position (m) and velocity (m/s) of one node.
+    fn node(&self, node: usize) -> (DVec3, DVec3);
+    /// The number of nodes.
+    fn len(&self) -> usize;
+}
+
+/// Takes steps.
+///
+/// # Errors
+/// When a node would become faster than the limit; the state is then that before the step.
+pub(in crate::sim) fn advance(
+    kernel: &mut (impl Kernel + ?Sized),
+    scheme: Scheme,
+    steps: u64,
+    around: Around<'_>,
+) -> Result<(), Runaway> {
+    /// The steps after which the state is kept anew. A copy costs a small part of them.
+    const KEPT: u64 = 32;
+    let mut done = 0;
+    while done < steps {
+        let now = KEPT.min(steps - done);
+        let was_known = *kernel.is_known();
+        kernel.keep();
+        if !several(kernel, scheme, now, around) {
+            // Somewhere in these steps: one by one, and back to the state before the last.
+            kernel.restore();
+            *kernel.is_known() = was_known;
+            let good = (0..now).take_while(|_| several(kernel, scheme, 1, around)).count() as u64;
+            let limit = around.speed_limit * around.speed_limit;
+            let is_lost = |&node: &usize| {
+                let squared = kernel.node(node).1.length_squared();
+                squared.is_nan() || squared > limit
+            };
+            let node = (0..kernel.len()).find(is_lost).unwrap_or(0);
+            kernel.restore();
+            *kernel.is_known() = was_known;
+            (0..good).for_each(|_| {
+                several(kernel, scheme, 1, around);
+            });
+            return Err(Runaway { steps: done + good, node });
+        }
+        done += now;
+    }
+    Ok(())
+}
+
+/// Takes steps; tells whether all nodes stayed within the limit.
+fn several(kernel: &mut (impl Kernel + ?Sized), scheme: Scheme, steps: u64, around: Around<'_>) -> bool {
+    let mut pass = |stage, commit| kernel.pass(stage, commit, around);
+    match scheme {
+        Scheme::SemiImplicitEuler => (0..steps).all(|_| pass(Stage::SemiImplicitEuler, true)),
+        Scheme::ExplicitEuler => (0..steps).all(|_| pass(Stage::ExplicitEuler, true)),
+        Scheme::VelocityVerlet if kernel.is_damped() => {
+            (0..steps).all(|_| kernel.pass(Stage::Drift, true, around) && kernel.pass(Stage::Finish, false, around))
+        }
+        Scheme::VelocityVerlet => {
+            let first = if *kernel.is_known() { Stage::Coast } else { Stage::Drift };
+            *kernel.is_known() = true;
+            kernel.pass(first, true, around)
+                && (1..steps).all(|_| kernel.pass(Stage::FinishDrift, true, around))
+                && kernel.pass(Stage::Finish, true, around)
+        }
     }
 }
 
@@ -103,6 +194,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
     ) -> u32 {
         let zero = L::splat(0.0);
         let alive = zero.lt(inverse_mass);
+        // The acceleration (m/s²).
         let now: [L; 3] =
             std::array::from_fn(|axis| force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
         let mut lost = 0;
@@ -124,6 +216,10 @@ impl<'a, L: Lanes> Motion<'a, L> {
                 nodes.acceleration = now;
                 self.drift(nodes);
                 rests = now;
+            }
+            Stage::Coast => {
+                rests = nodes.acceleration;
+                self.drift(nodes);
             }
             Stage::Finish | Stage::FinishDrift => {
                 for axis in 0..3 {

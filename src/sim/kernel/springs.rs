@@ -15,16 +15,13 @@
 
 use super::lanes::{Lanes, Set, Work};
 use super::memory::Aligned;
-use super::motion::{Around, Motion, Nodes, Runaway, Stage};
+use super::motion::{Around, Kernel, Motion, Nodes, Stage};
 use glam::DVec3;
 
 /// Nodes for which one family is done before the next: what they need stays in the first cache. It changes no bit.
 const CHUNK: usize = 128;
 /// Nodes that share a byte of presence.
 const BLOCK: usize = 8;
-/// The steps after which the state is kept anew, to which a run that goes wild returns.
-const KEPT: u64 = 32;
-
 /// Natural lengths that differ by no more than this part count as equal: round-off of coordinates up to a thousand
 /// lengths.
 const ALIKE: f64 = 1e-13;
@@ -180,7 +177,7 @@ impl Stencil {
             families: made,
             presence,
             tensions,
-            kept: state.clone(),
+            kept: Aligned::zeros(ARRAYS * stride),
             state,
             stride,
             slabs,
@@ -204,11 +201,8 @@ impl Stencil {
         }
     }
 
-    /// Position (m) and velocity (m/s) of one node.
-    pub(in crate::sim) fn node(&self, node: usize) -> (DVec3, DVec3) {
-        let all = self.state.as_slice();
-        let at = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| all[(first + axis) * self.stride + node]));
-        (at(0), at(VELOCITY))
+    fn arrays(&self) -> Arrays {
+        Arrays { state: self.state.pointer(), stride: self.stride }
     }
 
     /// Puts one node elsewhere.
@@ -220,54 +214,44 @@ impl Stencil {
             all[(VELOCITY + axis) * stride + node] = velocity[axis];
         }
     }
+}
 
-    /// Takes steps of semi-implicit (or explicit) Euler.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit; the state is then that before the step.
-    pub(in crate::sim) fn step(&mut self, stage: Stage, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
-        let mut done = 0;
-        while done < steps {
-            let now = KEPT.min(steps - done);
-            self.kept.as_mut_slice().copy_from_slice(self.state.as_slice());
-            if (0..now).any(|_| !self.pass(stage, around)) {
-                // Somewhere in these steps; step by step, to the state before.
-                self.state.as_mut_slice().copy_from_slice(self.kept.as_slice());
-                let good = (0..now).take_while(|_| self.pass(stage, around)).count() as u64;
-                let node = self.first_lost(around);
-                self.state.as_mut_slice().copy_from_slice(self.kept.as_slice());
-                (0..good).for_each(|_| {
-                    self.pass(stage, around);
-                });
-                return Err(Runaway { steps: done + good, node });
-            }
-            done += now;
-        }
-        Ok(())
-    }
-
-    /// The first node that is beyond the speed limit.
-    fn first_lost(&self, around: Around<'_>) -> usize {
-        let limit = around.speed_limit * around.speed_limit;
-        let is_lost = |&node: &usize| {
-            let squared = self.node(node).1.length_squared();
-            squared.is_nan() || squared > limit
-        };
-        (0..self.nodes).find(is_lost).unwrap_or(0)
-    }
-
-    /// Evaluates the forces once and moves all nodes; tells whether all are within the limit.
-    pub(in crate::sim) fn pass(&mut self, stage: Stage, around: Around<'_>) -> bool {
-        let (slabs, set) = (self.slabs.len(), self.set);
-        let view = View::new(self);
+impl Kernel for Stencil {
+    fn pass(&mut self, stage: Stage, _commit: bool, around: Around<'_>) -> bool {
         let mut lost = 0;
-        for slab in 0..slabs {
-            lost |= set.run(OneSlab { view: &view, slab, stage, around });
+        for slab in 0..self.slabs.len() {
+            lost |= self.set.run(OneSlab { springs: self, slab, stage, around });
         }
-        for slab in 1..slabs {
-            lost |= set.run(Deferred { view: &view, slab, stage, around });
+        for slab in 1..self.slabs.len() {
+            lost |= self.set.run(Deferred { springs: self, slab, stage, around });
         }
         lost == 0
+    }
+
+    fn is_damped(&self) -> bool {
+        self.damping > 0.0
+    }
+
+    fn is_known(&mut self) -> &mut bool {
+        &mut self.is_known
+    }
+
+    fn keep(&mut self) {
+        self.kept.copy_from(&mut self.state);
+    }
+
+    fn restore(&mut self) {
+        self.state.copy_from(&mut self.kept);
+    }
+
+    fn node(&self, node: usize) -> (DVec3, DVec3) {
+        let all = self.state.as_slice();
+        let at = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| all[(first + axis) * self.stride + node]));
+        (at(0), at(VELOCITY))
+    }
+
+    fn len(&self) -> usize {
+        self.nodes
     }
 }
 
@@ -277,34 +261,26 @@ fn staggered(count: usize) -> usize {
     (lines + (5 + 64 - lines % 64) % 64) * Aligned::LINE
 }
 
-/// What all threads share.
-struct View<'a> {
-    springs: &'a Stencil,
+/// The state's arrays.
+#[derive(Clone, Copy)]
+struct Arrays {
     state: *mut f64,
-    pulls: Vec<*mut f64>,
+    stride: usize,
 }
 
-impl<'a> View<'a> {
-    fn new(springs: &'a mut Stencil) -> Self {
-        let state = springs.state.pointer();
-        let pulls = springs.slabs.iter_mut().map(|slab| slab.pulls.pointer()).collect();
-        Self { springs, state, pulls }
-    }
-
+impl Arrays {
     /// Three coordinates of nodes from `at` on.
     #[inline(always)]
     unsafe fn load<L: Lanes>(&self, array: usize, at: usize) -> [L; 3] {
-        let stride = self.springs.stride;
         // SAFETY: the caller's; nodes and what is behind them are within a stride.
-        std::array::from_fn(|axis| unsafe { L::load(self.state.add((array + axis) * stride + at)) })
+        std::array::from_fn(|axis| unsafe { L::load(self.state.add((array + axis) * self.stride + at)) })
     }
 
     #[inline(always)]
     unsafe fn store<L: Lanes>(&self, array: usize, at: usize, values: [L; 3]) {
-        let stride = self.springs.stride;
         for (axis, value) in values.into_iter().enumerate() {
             // SAFETY: as above.
-            unsafe { value.store(self.state.add((array + axis) * stride + at)) };
+            unsafe { value.store(self.state.add((array + axis) * self.stride + at)) };
         }
     }
 
@@ -319,7 +295,7 @@ impl<'a> View<'a> {
                 velocity: self.load(VELOCITY, at),
                 acceleration: if stage.is_verlet() { self.load(ACCELERATION, at) } else { zero },
             };
-            let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.springs.stride + at));
+            let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
             let lost = motion.advance(&mut nodes, force, inverse_mass, |lane| at + lane);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
@@ -333,7 +309,7 @@ impl<'a> View<'a> {
 
 /// The springs that begin in a slab, and the motion of its nodes.
 struct OneSlab<'a> {
-    view: &'a View<'a>,
+    springs: &'a Stencil,
     slab: usize,
     stage: Stage,
     around: Around<'a>,
@@ -347,26 +323,30 @@ impl Work for OneSlab<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        if self.view.springs.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
+        if self.springs.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
     }
 }
 
 impl OneSlab<'_> {
     #[inline(always)]
     fn evaluate<L: Lanes, const DAMPED: bool>(self) -> u32 {
-        let Self { view, slab: number, stage, around } = self;
-        let springs = view.springs;
+        let Self { springs, slab: number, stage, around } = self;
         let slab = &springs.slabs[number];
-        let (pulls, start) = (view.pulls[number], slab.first * CHUNK);
+        let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
         let motion = Motion::<L>::new(stage, springs.step, springs.gravity, around);
         let (k, d, one, zero) = (L::splat(springs.stiffness), L::splat(springs.damping), L::splat(1.0), L::splat(0.0));
+        let all_tensions = springs.tensions.as_slice();
         let mut own = Own([[0.0; CHUNK]; 3]);
         let mut lost = 0;
         for chunk in slab.first..slab.last {
             let base = chunk * CHUNK;
             let count = (springs.nodes.next_multiple_of(BLOCK) - base).min(CHUNK);
             own.0 = [[0.0; CHUNK]; 3];
-            for (at, family) in springs.families.iter().enumerate() {
+            let families = if stage == Stage::Coast { &[][..] } else { &springs.families };
+            for (at, family) in families.iter().enumerate() {
+                let &Family { offset, tension, tensions } = family;
+                let listed = tensions.map(|begin| all_tensions[begin..].as_ptr());
+                let tension = L::splat(tension);
                 let present = &springs.presence[chunk * springs.families.len() + at];
                 for (block, &present) in present.iter().enumerate() {
                     if present == 0 {
@@ -374,21 +354,18 @@ impl OneSlab<'_> {
                     }
                     for part in (0..BLOCK).step_by(L::WIDTH) {
                         let i = base + block * BLOCK + part;
-                        let j = i + family.offset;
+                        let j = i + offset;
                         // SAFETY: i is a node of this slab or up to seven places behind the last, j at most `reach`
                         // farther; all arrays are that long. No other thread writes to the nodes i, nor to the nodes j,
                         // which are of this slab or deferred, nor to this slab's pulls.
                         unsafe {
-                            let [near, far] = [view.load::<L>(0, i), view.load::<L>(0, j)];
+                            let [near, far] = [arrays.load::<L>(0, i), arrays.load::<L>(0, j)];
                             let p: [L; 3] = std::array::from_fn(|axis| far[axis] - near[axis]);
                             let squared = p[2].mul_add(p[2], p[1].mul_add(p[1], p[0] * p[0]));
                             let inverse = one.div(squared.sqrt());
-                            let tension = match family.tensions {
-                                None => L::splat(family.tension),
-                                Some(begin) => L::load(springs.tensions.as_slice().as_ptr().add(begin + i)),
-                            };
+                            let tension = listed.map_or(tension, |listed| L::load(listed.add(i)));
                             let along = if DAMPED {
-                                let [near, far] = [view.load::<L>(VELOCITY, i), view.load::<L>(VELOCITY, j)];
+                                let [near, far] = [arrays.load::<L>(VELOCITY, i), arrays.load::<L>(VELOCITY, j)];
                                 let v: [L; 3] = std::array::from_fn(|axis| far[axis] - near[axis]);
                                 let product = v[2].mul_add(p[2], v[1].mul_add(p[1], v[0] * p[0]));
                                 (product * d).mul_sub(inverse, tension)
@@ -400,7 +377,7 @@ impl OneSlab<'_> {
                             for axis in 0..3 {
                                 let near = own.0[axis].as_mut_ptr().add(i - base);
                                 pull.mul_add(p[axis], L::load(near)).store(near);
-                                let far = pulls.add(axis * slab.stride + j - start);
+                                let far = pulls.add(axis * width + j - start);
                                 pull.neg_mul_add(p[axis], L::load(far)).store(far);
                             }
                         }
@@ -411,14 +388,14 @@ impl OneSlab<'_> {
             for i in (base..base + count).step_by(L::WIDTH) {
                 // SAFETY: as above.
                 unsafe {
-                    let place = |axis: usize| pulls.add(axis * slab.stride + i - start);
+                    let place = |axis: usize| pulls.add(axis * width + i - start);
                     let force: [L; 3] =
                         std::array::from_fn(|axis| L::load(place(axis)) + L::load(own.0[axis].as_ptr().add(i - base)));
                     if is_deferred {
                         force.into_iter().enumerate().for_each(|(axis, force)| force.store(place(axis)));
                     } else {
                         (0..3).for_each(|axis| zero.store(place(axis)));
-                        lost |= view.advance(&motion, stage, i, force);
+                        lost |= arrays.advance(&motion, stage, i, force);
                     }
                 }
             }
@@ -429,7 +406,7 @@ impl OneSlab<'_> {
 
 /// The motion of the first nodes of a slab.
 struct Deferred<'a> {
-    view: &'a View<'a>,
+    springs: &'a Stencil,
     slab: usize,
     stage: Stage,
     around: Around<'a>,
@@ -440,25 +417,24 @@ impl Work for Deferred<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { view, slab: number, stage, around } = self;
-        let springs = view.springs;
+        let Self { springs, slab: number, stage, around } = self;
         let [before, slab] = [number - 1, number].map(|number| &springs.slabs[number]);
         let motion = Motion::<L>::new(stage, springs.step, springs.gravity, around);
-        let zero = L::splat(0.0);
+        let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = 0;
         let start = slab.first * CHUNK;
         for i in (start..start + springs.deferred * CHUNK).step_by(L::WIDTH) {
             // SAFETY: slabs are longer than what is deferred. All slabs are done, and each thread has its own deferred
             // nodes.
             unsafe {
-                let halo = |axis: usize| view.pulls[number - 1].add(axis * before.stride + i - before.first * CHUNK);
-                let place = |axis: usize| view.pulls[number].add(axis * slab.stride + i - start);
+                let halo = |axis: usize| before.pulls.pointer().add(axis * before.stride + i - before.first * CHUNK);
+                let place = |axis: usize| slab.pulls.pointer().add(axis * slab.stride + i - start);
                 let force: [L; 3] = std::array::from_fn(|axis| L::load(halo(axis)) + L::load(place(axis)));
                 for axis in 0..3 {
                     zero.store(halo(axis));
                     zero.store(place(axis));
                 }
-                lost |= view.advance(&motion, stage, i, force);
+                lost |= arrays.advance(&motion, stage, i, force);
             }
         }
         lost

@@ -1,0 +1,426 @@
+//! The rotations of as many elements as there are lanes.
+//!
+//! With `R` the last rotation and `A = Σ r R0ᵀ` (now × rest), everything follows from `B = RᵀA`, which is the transposed
+//! of Eq. (15)'s matrix, seen in the axes of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque over `k`,
+//! and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and of unit length.
+
+use super::lanes::{Lanes, MOST};
+use crate::sim::rotation::davenport1968;
+use glam::{DMat3, DQuat};
+
+/// A vector in space, in every lane.
+pub(super) type Vector<L> = [L; 3];
+/// The columns of a matrix, in every lane.
+pub(super) type Matrix<L> = [[L; 3]; 3];
+
+/// How rotations are found in lanes.
+pub(super) trait Solver: Copy + Send + Sync + 'static {
+    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
+    ///
+    /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
+    /// it in round-off only.
+    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4];
+}
+
+/// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
+/// [`linearised::follow`](crate::sim::rotation::linearised::follow).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arctangent {
+    /// How often.
+    pub(super) passes: u32,
+}
+
+/// The optimum to round-off, by as many passes of fifth order as that takes: one where an element turns by less than
+/// some 1/250 rad from one evaluation to the next. Where no pass is certified to lead there, the global solver.
+///
+/// `v = v0 − (g·v0)(2H)⁻¹ v0` with `v0 = (2H)⁻¹ g` is the tangent of half the angle sought, up to terms of fifth order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quintic;
+
+impl Solver for Arctangent {
+    #[inline(always)]
+    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
+        let mut q = last;
+        let mut open = L::bits(live);
+        for _ in 0..self.passes {
+            let b = turned_back(a, &matrix(q, scale));
+            let well_posed = is_well_posed(&b);
+            let (next, in_range) = arctangent_pass(&b, q);
+            let sound = L::bits(L::both(well_posed, in_range));
+            let failed = open & !sound;
+            open &= sound;
+            q = choose(L::mask(open), next, q);
+            if failed != 0 {
+                q = global(a, q, failed);
+            }
+        }
+        q
+    }
+}
+
+impl Solver for Quintic {
+    #[inline(always)]
+    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
+        let mut q = last;
+        let mut open = L::bits(live);
+        let mut failed = 0;
+        for _ in 0..MOST_PASSES {
+            let b = turned_back(a, &matrix(q, scale));
+            let (next, sound, last) = quintic_pass(&b, q);
+            let sound = L::bits(sound);
+            failed |= open & !sound;
+            open &= sound;
+            // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
+            q = choose(L::mask(open), next, q);
+            open &= !L::bits(last);
+            if open == 0 {
+                break;
+            }
+        }
+        if failed | open != 0 {
+            q = global(a, q, failed | open);
+        }
+        q
+    }
+}
+
+/// After so many passes of [`Quintic`] the global solver takes over. Most sound lanes are there after three.
+const MOST_PASSES: u32 = 4;
+
+/// A pass of [`Quintic`] is sound where `H` is positive definite and `det H` at least this part of `(tr H)³`; a cube at
+/// rest has 1/27.
+const SOUND: f64 = 1e-5;
+
+/// A pass of [`Quintic`] is the last where `|v|²` is at most this, times the margin `m = 27 det H / (tr H)³`.
+///
+/// From an angle θ a pass leaves at most `0.3 θ⁵/m²` (worst of many, m from 0.05 to 1), and `|v| = θ/2`: so it leaves
+/// less than 1e-13 rad.
+const SHORT: f64 = 2.5e-6;
+
+/// What keeps the squares of homogeneous numbers within the range of doubles.
+const RANGE: (f64, f64) = (1e-200, 1e200);
+
+/// `scale` times the matrix of a unit quaternion.
+#[inline(always)]
+pub(super) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
+    let twice = scale + scale;
+    let (x2, y2, z2) = (twice * x, twice * y, twice * z);
+    let (xy, xz, yz) = (x2 * y, x2 * z, y2 * z);
+    [
+        [y2.neg_mul_add(y, z2.neg_mul_add(z, scale)), z2.mul_add(w, xy), y2.neg_mul_add(w, xz)],
+        [z2.neg_mul_add(w, xy), x2.neg_mul_add(x, z2.neg_mul_add(z, scale)), x2.mul_add(w, yz)],
+        [y2.mul_add(w, xz), x2.neg_mul_add(w, yz), x2.neg_mul_add(x, y2.neg_mul_add(y, scale))],
+    ]
+}
+
+/// `RᵀA`, as rows: entry `[i][j]` is in row `i` and column `j`.
+#[inline(always)]
+fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(&r[i], &a[j])))
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+}
+
+/// The torque over `k` (m²), in the axes of the element.
+#[inline(always)]
+fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
+    [b[2][1] - b[1][2], b[0][2] - b[2][0], b[1][0] - b[0][1]]
+}
+
+/// `q ⊗ (v, s)`, made of unit length, and whether that was possible.
+#[inline(always)]
+fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
+    let product = [
+        z.neg_mul_add(b, y.mul_add(c, w.mul_add(a, s * x))),
+        x.neg_mul_add(c, z.mul_add(a, w.mul_add(b, s * y))),
+        y.neg_mul_add(a, x.mul_add(b, w.mul_add(c, s * z))),
+        z.neg_mul_add(c, y.neg_mul_add(b, x.neg_mul_add(a, s * w))),
+    ];
+    let [x, y, z, w] = product;
+    let square = w.mul_add(w, z.mul_add(z, y.mul_add(y, x * x)));
+    let in_range = L::both(L::splat(RANGE.0).lt(square), square.lt(L::splat(RANGE.1)));
+    let inverse = L::splat(1.0).div(square.sqrt());
+    (product.map(|part| part * inverse), in_range)
+}
+
+/// One solution of Eq. (15), `C w = g` with `C = tr(B) I − Bᵀ`, and the rotation by `atan |w|` about it.
+#[inline(always)]
+fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
+    let g = axial(b);
+    let c0 = [b[1][1] + b[2][2], -b[0][1], -b[0][2]];
+    let c1 = [-b[1][0], b[0][0] + b[2][2], -b[1][2]];
+    let c2 = [-b[2][0], -b[2][1], b[0][0] + b[1][1]];
+    let c12 = cross(&c1, &c2);
+    let determinant = dot(&c0, &c12);
+    // In units of the determinant.
+    let w = [dot(&g, &c12), dot(&g, &cross(&c2, &c0)), dot(&g, &cross(&c0, &c1))];
+    let root = determinant.mul_add(determinant, dot(&w, &w)).sqrt();
+    turn(q, w, determinant + root)
+}
+
+#[inline(always)]
+fn cross<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> Vector<L> {
+    [a[1].mul_sub(b[2], a[2] * b[1]), a[2].mul_sub(b[0], a[0] * b[2]), a[0].mul_sub(b[1], a[1] * b[0])]
+}
+
+/// [`linearised::is_well_posed`](crate::sim::rotation::linearised::is_well_posed).
+#[inline(always)]
+fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
+    /// As there.
+    const WELL_POSED: f64 = 1e-9;
+    let (hx, hy, hz) = (b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]);
+    let half = L::splat(-0.5);
+    let (xy, xz, yz) = (half * (b[0][1] + b[1][0]), half * (b[0][2] + b[2][0]), half * (b[1][2] + b[2][1]));
+    let size = ((hx.abs() + hy.abs()) + (hz.abs() + xy.abs())) + (xz.abs() + yz.abs());
+    let minor = hx.mul_sub(hy, xy * xy);
+    let cofactors = [hy.mul_sub(hz, yz * yz), yz.mul_sub(xz, xy * hz), xy.mul_sub(yz, hy * xz)];
+    let determinant = dot(&[hx, xy, xz], &cofactors);
+    let least = L::splat(WELL_POSED) * size;
+    let (second, third) = (least * size, least * size * size);
+    L::both(least.lt(hx), L::both(second.lt(minor), third.lt(determinant)))
+}
+
+/// One pass of [`Quintic`], where it is sound, and where it is the last.
+///
+/// Homogeneous, so that nothing is divided: with `d = det 2H` and `w = adj(2H) g` the turn is
+/// `(d² w − (g·w) adj(2H) w, d³)`.
+#[inline(always)]
+fn quintic_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
+    let g = axial(b);
+    let sums = [b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]];
+    // 2H, of which the off-diagonal entries are kept with their signs turned.
+    let [hx, hy, hz] = sums.map(|sum| sum + sum);
+    let (xy, xz, yz) = (b[0][1] + b[1][0], b[0][2] + b[2][0], b[1][2] + b[2][1]);
+    // Its adjugate, which is symmetric, too.
+    let (axx, ayy, azz) = (hy.mul_sub(hz, yz * yz), hx.mul_sub(hz, xz * xz), hx.mul_sub(hy, xy * xy));
+    let (axy, axz, ayz) = (xz.mul_add(yz, xy * hz), xy.mul_add(yz, xz * hy), xy.mul_add(xz, yz * hx));
+    let d = xz.neg_mul_add(axz, xy.neg_mul_add(axy, hx * axx));
+    let adjugate = [[axx, axy, axz], [axy, ayy, ayz], [axz, ayz, azz]];
+    let w = adjugate.each_ref().map(|row| dot(row, &g));
+    let gw = dot(&g, &w);
+    let d2 = d * d;
+    let v = adjugate.each_ref().map(|row| gw.neg_mul_add(dot(row, &w), L::splat(0.0)));
+    let v = [d2.mul_add(w[0], v[0]), d2.mul_add(w[1], v[1]), d2.mul_add(w[2], v[2])];
+    let d3 = d2 * d;
+    let (next, in_range) = turn(q, v, d3);
+    let trace = (hx + hy) + hz;
+    let cube = trace * trace * trace;
+    let zero = L::splat(0.0);
+    let definite = L::both(zero.lt(hx), L::both(zero.lt(azz), (L::splat(SOUND) * cube).lt(d)));
+    // |v|² ≤ SHORT · 27 d / tr³, with v in units of d³.
+    let short = (dot(&v, &v) * cube).le(L::splat(27.0 * SHORT) * d * (d3 * d3));
+    (next, L::both(definite, in_range), short)
+}
+
+#[inline(always)]
+fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
+    [a[0].select(mask, b[0]), a[1].select(mask, b[1]), a[2].select(mask, b[2]), a[3].select(mask, b[3])]
+}
+
+/// The optimum nearest to `last` in those lanes whose bits are set.
+#[inline(always)]
+fn global<L: Lanes>(a: &Matrix<L>, last: [L; 4], lanes: u32) -> [L; 4] {
+    let moments = a.map(|column| column.map(L::to_array));
+    let mut q = last.map(L::to_array);
+    global_of_arrays(&moments, &mut q, lanes);
+    q.map(L::from_array)
+}
+
+#[cold]
+#[inline(never)]
+fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: u32) {
+    for lane in (0..MOST).filter(|lane| lanes >> lane & 1 == 1) {
+        // The solver takes the transposed of `a`.
+        let at_rest = DMat3::from_cols_array_2d(&[0, 1, 2].map(|row| [0, 1, 2].map(|column| a[column][row][lane])));
+        let last = DQuat::from_array([0, 1, 2, 3].map(|part| q[part][lane]));
+        let found = davenport1968::optimum(at_rest, last).to_array();
+        (0..4).for_each(|part| q[part][lane] = found[part]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lanes::{Set, Work};
+    use super::*;
+    use crate::sim::rotation::linearised;
+    use glam::DVec3;
+
+    /// Follows one element after the other.
+    struct Follow<'a, S>(S, &'a [(DMat3, DQuat)]);
+
+    impl<S: Solver> Work for Follow<'_, S> {
+        type Output = Vec<DQuat>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Vec<DQuat> {
+            let mut found = Vec::new();
+            for some in self.1.chunks(L::WIDTH) {
+                let lane = |of: &dyn Fn(&(DMat3, DQuat)) -> f64| {
+                    L::from_array(std::array::from_fn(|at| some.get(at).map_or(0.0, of)))
+                };
+                // `Σ R0 rᵀ` has in its columns the rows of `a`.
+                let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
+                let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
+                let live = L::mask((1u32 << some.len()) - 1);
+                let q = self.0.follow(&a, L::splat(1.0), q, live).map(L::to_array);
+                found.extend((0..some.len()).map(|at| DQuat::from_array([0, 1, 2, 3].map(|part: usize| q[part][at]))));
+            }
+            found
+        }
+    }
+
+    /// The sine of half the angle between two rotations, times two.
+    fn angle(a: DQuat, b: DQuat) -> f64 {
+        2.0 * (a * b.conjugate()).xyz().length()
+    }
+
+    /// Numbers from −1 to 1 that look random.
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    fn quaternion(random: &mut impl FnMut() -> f64, size: f64) -> DQuat {
+        DQuat::from_xyzw(random() * size, random() * size, random() * size, 1.0).normalize()
+    }
+
+    /// Moments of elements of all sorts, each with a rotation to start from: well-shaped and turned a little, turned
+    /// far, squeezed, turned inside out, flat, on a line, at a point.
+    fn all_sorts(largest_turn: f64) -> Vec<(DMat3, DQuat)> {
+        let mut random = random(3);
+        let stretches = [
+            DVec3::ONE,
+            DVec3::new(1.0, 0.8, 0.6),
+            DVec3::new(2.0, 0.5, 0.2),
+            DVec3::new(1.0, 0.1, 0.1),
+            DVec3::new(1.0, 1.0, -0.5),
+            DVec3::new(1.0, 0.3, -0.25),
+            DVec3::new(1.0, 0.9, -0.9),
+            DVec3::new(1.0, 0.7, 0.0),
+            DVec3::X,
+            DVec3::ZERO,
+            DVec3::ONE * 1e-60,
+            DVec3::ONE * 1e-9,
+        ];
+        (0..4800)
+            .map(|at| {
+                let axes = DMat3::from_quat(quaternion(&mut random, 2.0));
+                let stretch = axes * DMat3::from_diagonal(stretches[at % stretches.len()]) * axes.transpose();
+                let turn = quaternion(&mut random, 3.0);
+                let last = (turn * quaternion(&mut random, largest_turn)).normalize();
+                ((DMat3::from_quat(turn) * stretch).transpose(), last)
+            })
+            .collect()
+    }
+
+    /// Whether the optimum is one, and no small error of `at_rest` turns it far.
+    fn is_decided(at_rest: DMat3) -> bool {
+        let s = DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)) * at_rest;
+        let trace = s.x_axis.x + s.y_axis.y + s.z_axis.z;
+        let hessian = DMat3::from_diagonal(DVec3::splat(trace)) - s;
+        hessian.determinant() > 1e-3 * trace * trace * trace
+    }
+
+    fn assert_same_bits_for_all<S: Solver>(solver: S, elements: &[(DMat3, DQuat)]) -> Vec<DQuat> {
+        let found = Set::best().run(Follow(solver, elements));
+        for set in Set::all() {
+            assert_eq!(set.run(Follow(solver, elements)), found, "{set:?}");
+        }
+        // Nor do neighbours matter.
+        let backwards: Vec<_> = elements.iter().copied().rev().collect();
+        let mut again = Set::best().run(Follow(solver, &backwards));
+        again.reverse();
+        assert_eq!(again, found);
+        assert!(found.iter().all(|q| (q.length_squared() - 1.0).abs() < 1e-15));
+        found
+    }
+
+    #[test]
+    fn eq_15_as_printed_is_that_of_the_reference() {
+        for largest_turn in [0.01, 0.3, 3.0] {
+            let elements = all_sorts(largest_turn);
+            for passes in [1, 2, 3] {
+                let found = assert_same_bits_for_all(Arctangent { passes }, &elements);
+                for (&(at_rest, last), found) in elements.iter().zip(found) {
+                    let reference =
+                        linearised::follow(at_rest, last, passes, |a| linearised::turn(linearised::solve(a)));
+                    let tolerance = if is_decided(at_rest) { 1e-13 } else { continue };
+                    assert!(angle(found, reference) < tolerance, "{at_rest} {last}: {}", angle(found, reference));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_quintic_finds_the_optimum_from_anywhere() {
+        for largest_turn in [0.001, 0.003, 0.01, 0.1, 0.5, 3.0] {
+            let elements = all_sorts(largest_turn);
+            let found = assert_same_bits_for_all(Quintic, &elements);
+            for (&(at_rest, last), found) in elements.iter().zip(found) {
+                let optimum = davenport1968::optimum(at_rest, last);
+                let trace = |q| {
+                    let a = DMat3::from_quat(q) * at_rest;
+                    a.x_axis.x + a.y_axis.y + a.z_axis.z
+                };
+                let size = at_rest.to_cols_array().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+                assert!(trace(found) > trace(optimum) - 1e-11 * size, "{at_rest} {last}");
+                if is_decided(at_rest) {
+                    assert!(angle(found, optimum) < 2e-13, "{at_rest} {last}: {}", angle(found, optimum));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_pass_of_the_quintic_takes_the_error_to_its_fifth_power() {
+        /// One pass from a turn (rad) about a slanting axis.
+        struct Pass(DMat3, DQuat);
+        impl Work for Pass {
+            type Output = (DQuat, bool, bool);
+            #[inline(always)]
+            fn run<L: Lanes>(self) -> Self::Output {
+                let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| L::splat(self.0.col(row)[column])));
+                let q = self.1.to_array().map(L::splat);
+                let (q, sound, last) = quintic_pass(&turned_back(&a, &matrix(q, L::splat(1.0))), q);
+                (DQuat::from_array(q.map(|part| part.to_array()[0])), L::any(sound), L::any(last))
+            }
+        }
+        let stretch = DMat3::from_cols_array(&[1.1, 0.05, -0.02, 0.05, 0.9, 0.03, -0.02, 0.03, 0.8]);
+        for (turn, least, most, last) in [
+            (0.1, 5e-7, 2e-6, false),
+            (0.01, 5e-12, 2e-11, false),
+            (0.003, 0.0, 1e-13, true),
+            (0.001, 0.0, 2e-15, true),
+        ] {
+            let axis = DVec3::new(1.0, 2.0, -0.5).normalize() * (0.5f64 * turn);
+            let start = DQuat::from_xyzw(axis.x, axis.y, axis.z, 1.0).normalize();
+            let (found, sound, is_last) = Set::best().run(Pass(stretch, start));
+            let error = angle(found, DQuat::IDENTITY);
+            assert!((least..=most).contains(&error) && sound && is_last == last, "{turn}: {error}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_live_keeps_its_rotation() {
+        struct Idle;
+        impl Work for Idle {
+            type Output = ();
+            #[inline(always)]
+            fn run<L: Lanes>(self) {
+                let nan = [[L::splat(f64::NAN); 3]; 3];
+                let q = [0.5, -0.5, 0.1, 0.7].map(L::splat);
+                let one = L::splat(1.0);
+                let none = L::mask(0);
+                for found in [Quintic.follow(&nan, one, q, none), Arctangent { passes: 2 }.follow(&nan, one, q, none)] {
+                    assert_eq!(found.map(L::to_array), q.map(L::to_array));
+                }
+            }
+        }
+        Set::all().for_each(|set| set.run(Idle));
+    }
+}
