@@ -12,7 +12,7 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 #![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 
-use super::lanes::{Lanes, MOST, Set, Work};
+use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Around, Kernel, Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
@@ -523,15 +523,15 @@ impl<L: Lanes> Own<'_, L> {
             let (k, d) = (k * valence, d * valence);
             let (position, velocity) = ([px, py, pz], [vx, vy, vz]);
             let force: [L; 3] =
-                std::array::from_fn(|axis| d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
+                each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
             let mut acceleration = [L::splat(0.0); 3];
             if self.stage.is_verlet() {
-                acceleration = std::array::from_fn(|axis| L::load(accelerations.add(axis * MOST)));
+                acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = Nodes { position, velocity, acceleration };
             let lost = self.motion.advance(&mut nodes, force, inverse_mass, index);
             if self.stage.is_verlet() {
-                (0..3).for_each(|axis| nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
+                each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
             let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);
             L::put_rows([px, py, vx, vy, pz, vz, inverse_mass, valence], record);
@@ -647,15 +647,15 @@ impl Elements<'_> {
                                 velocity[axis] = velocity[axis] + v[axis];
                             }
                             let rest = L::load(rest.add((corner * 3 + axis) * MOST + lanes));
-                            a[axis] = [0, 1, 2].map(|row| p[row].mul_add(rest, a[axis][row]));
+                            a[axis] = each!(3, row => p[row].mul_add(rest, a[axis][row]));
                         }
                     }
-                    let last = [0, 1, 2, 3].map(|entry| L::load(turns.add(entry * MOST + lanes)));
+                    let last = each!(4, entry => L::load(turns.add(entry * MOST + lanes)));
                     let live = if live > lanes { (1u32 << (live - lanes).min(L::WIDTH)) - 1 } else { 0 };
                     let scale = L::load(class.scale.pointer().add(block * MOST + lanes));
                     let turn = solver.follow(&a, scale, last, L::mask(live));
                     if commit {
-                        turn.iter().enumerate().for_each(|(entry, value)| value.store(turns.add(entry * MOST + lanes)));
+                        each!(4, entry => turn[entry].store(turns.add(entry * MOST + lanes)));
                     }
                     let matrix = rotation::matrix(turn, k);
                     for axis in 0..3 {
@@ -672,10 +672,12 @@ impl Elements<'_> {
                 for corner in 0..corners {
                     for lanes in (0..MOST).step_by(L::WIDTH) {
                         let node = nodes.add(corner * MOST + lanes);
-                        let load = |entry: usize| L::load(out.0[entry].as_ptr().add(lanes));
-                        let [x, y, z] = [0, 1, 2].map(|axis| L::load(rest.add((corner * 3 + axis) * MOST + lanes)));
-                        let [fx, fy, fz] = [0, 1, 2].map(|axis| {
-                            z.mul_add(load(9 + axis), y.mul_add(load(6 + axis), x.mul_add(load(3 + axis), load(axis))))
+                        let out = out.0.as_ptr().cast::<f64>().add(lanes);
+                        let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST + lanes)));
+                        let [fx, fy, fz] = each!(3, axis => {
+                            let [w, mx] = each!(2, entry => L::load(out.add((3 * entry + axis) * MOST)));
+                            let [my, mz] = each!(2, entry => L::load(out.add((6 + 3 * entry + axis) * MOST)));
+                            z.mul_add(mz, y.mul_add(my, x.mul_add(mx, w)))
                         });
                         L::add_rows([fx, fy, fz, zero], |lane| sums.add(*node.add(lane) as usize * SUM));
                     }
@@ -707,7 +709,7 @@ impl Elements<'_> {
                         let node = nodes.add(corner * MOST + lanes);
                         let [px, py, vx, vy] =
                             L::columns_4(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const());
-                        let [x, y] = [0, 1].map(|axis| L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
+                        let [x, y] = each!(2, axis => L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
                         position = [position[0] + px, position[1] + py];
                         if DAMPED {
                             velocity = [velocity[0] + vx, velocity[1] + vy];
@@ -716,12 +718,12 @@ impl Elements<'_> {
                         turn[1] = y.neg_mul_add(px, x.mul_add(py, turn[1]));
                     }
                     // Where no angle is better than another, the last one is kept.
-                    let last = [0, 1].map(|entry| L::load(turns.add(entry * MOST + lanes)));
+                    let last = each!(2, entry => L::load(turns.add(entry * MOST + lanes)));
                     let inverse = one.div(turn[1].mul_add(turn[1], turn[0] * turn[0]).sqrt());
                     let is_sound = L::both(zero.lt(inverse), inverse.le(most));
-                    let turn = [0, 1].map(|entry: usize| (turn[entry] * inverse).select(is_sound, last[entry]));
+                    let turn = each!(2, entry => (turn[entry] * inverse).select(is_sound, last[entry]));
                     if commit {
-                        turn.iter().enumerate().for_each(|(entry, value)| value.store(turns.add(entry * MOST + lanes)));
+                        each!(2, entry => turn[entry].store(turns.add(entry * MOST + lanes)));
                     }
                     for axis in 0..2 {
                         let mut mean = position[axis] * k_mean;
@@ -735,11 +737,11 @@ impl Elements<'_> {
                 for corner in 0..corners {
                     for lanes in (0..MOST).step_by(L::WIDTH) {
                         let node = nodes.add(corner * MOST + lanes);
-                        let load = |entry: usize| L::load(out.0[entry].as_ptr().add(lanes));
-                        let [x, y] = [0, 1].map(|axis| L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
-                        let (cosine, sine) = (load(2), load(3));
-                        let fx = y.neg_mul_add(sine, x.mul_add(cosine, load(0)));
-                        let fy = y.mul_add(cosine, x.mul_add(sine, load(1)));
+                        let out = out.0.as_ptr().cast::<f64>().add(lanes);
+                        let [x, y] = each!(2, axis => L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
+                        let [wx, wy, cosine, sine] = each!(4, entry => L::load(out.add(entry * MOST)));
+                        let fx = y.neg_mul_add(sine, x.mul_add(cosine, wx));
+                        let fy = y.mul_add(cosine, x.mul_add(sine, wy));
                         L::add_rows([fx, fy, zero, zero], |lane| sums.add(*node.add(lane) as usize * SUM));
                     }
                 }
@@ -761,11 +763,11 @@ impl Elements<'_> {
                 let nodes = class.nodes.as_ptr().add(block * 2 * MOST);
                 let tension = class.rest.pointer().add(block * MOST);
                 for lanes in (0..MOST).step_by(L::WIDTH) {
-                    let [near, far] = [0, 1].map(|corner| {
+                    let [near, far] = each!(2, corner => {
                         let node = nodes.add(corner * MOST + lanes);
                         L::columns(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const())
                     });
-                    let [px, py, vx, vy, pz, vz, ..]: [L; 8] = std::array::from_fn(|entry| far[entry] - near[entry]);
+                    let [px, py, vx, vy, pz, vz, ..] = each!(8, entry => far[entry] - near[entry]);
                     let squared = pz.mul_add(pz, py.mul_add(py, px * px));
                     let inverse = one.div(squared.sqrt());
                     let tension = L::load(tension.add(lanes));
@@ -776,14 +778,13 @@ impl Elements<'_> {
                     };
                     // Coincident nodes have no direction.
                     let pull = along.mul_add(inverse, k).select(zero.lt(squared), zero);
-                    for (axis, p) in [px, py, pz].into_iter().enumerate() {
-                        (pull * p).store(out.0[axis].as_mut_ptr().add(lanes));
-                    }
+                    let p = [px, py, pz];
+                    each!(3, axis => (pull * p[axis]).store(out.0[axis].as_mut_ptr().add(lanes)));
                 }
                 for corner in 0..2 {
                     for lanes in (0..MOST).step_by(L::WIDTH) {
                         let node = nodes.add(corner * MOST + lanes);
-                        let [x, y, z] = [0, 1, 2].map(|axis: usize| {
+                        let [x, y, z] = each!(3, axis => {
                             let force = L::load(out.0[axis].as_ptr().add(lanes));
                             if corner == 0 { force } else { -force }
                         });

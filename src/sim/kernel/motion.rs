@@ -1,7 +1,7 @@
 //! What happens to nodes once their forces are known, in lanes: Eqs. (2) and (3) and their rivals, the test for runaways,
 //! and collisions.
 
-use super::lanes::{Lanes, MOST};
+use super::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
 /// A region outside which nodes touch nothing. It may be larger than what it stands for.
@@ -176,7 +176,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
             stage,
             step: L::splat(step),
             half: L::splat(0.5 * step),
-            gravity: gravity.to_array().map(L::splat),
+            gravity: each!(3, axis => L::splat(gravity[axis])),
             limit: L::splat(around.speed_limit * around.speed_limit),
             around,
         }
@@ -195,8 +195,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         let zero = L::splat(0.0);
         let alive = zero.lt(inverse_mass);
         // The acceleration (m/s²).
-        let now: [L; 3] =
-            std::array::from_fn(|axis| force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
+        let now = each!(3, axis => force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
         let mut lost = 0;
         let mut rests = [zero; 3];
         match self.stage {
@@ -242,11 +241,19 @@ impl<'a, L: Lanes> Motion<'a, L> {
         }
         inside &= L::bits(alive);
         if inside != 0 {
-            let [mut position, mut velocity, rests] =
-                [nodes.position, nodes.velocity, rests].map(|v| v.map(L::to_array));
-            touch(self.around.resolve, inside, std::array::from_fn(&index), &mut position, &mut velocity, &rests);
-            nodes.position = position.map(L::from_array);
-            nodes.velocity = velocity.map(L::from_array);
+            let mut position = each!(3, axis => nodes.position[axis].to_array());
+            let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
+            let rests = each!(3, axis => rests[axis].to_array());
+            touch(
+                self.around.resolve,
+                inside,
+                each!(8, lane => if lane < L::WIDTH { index(lane) } else { 0 }),
+                &mut position,
+                &mut velocity,
+                &rests,
+            );
+            nodes.position = each!(3, axis => L::from_array(position[axis]));
+            nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
         }
         lost
     }
@@ -295,12 +302,12 @@ fn touch(
 fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
     match bound {
         Bound::HalfSpace { normal, height } => {
-            let [nx, ny, nz] = normal.to_array().map(L::splat);
+            let [nx, ny, nz] = each!(3, axis => L::splat(normal[axis]));
             nz.mul_add(z, ny.mul_add(y, nx * x)).le(L::splat(*height))
         }
         Bound::Box { low, high } => {
-            let [lx, ly, lz] = low.to_array().map(L::splat);
-            let [hx, hy, hz] = high.to_array().map(L::splat);
+            let [lx, ly, lz] = each!(3, axis => L::splat(low[axis]));
+            let [hx, hy, hz] = each!(3, axis => L::splat(high[axis]));
             let inside = L::both(L::both(lx.le(x), x.le(hx)), L::both(ly.le(y), y.le(hy)));
             L::both(inside, L::both(lz.le(z), z.le(hz)))
         }

@@ -13,7 +13,7 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
-use super::lanes::{Lanes, Set, Work};
+use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Around, Kernel, Motion, Nodes, Stage};
 use glam::DVec3;
@@ -273,15 +273,13 @@ impl Arrays {
     #[inline(always)]
     unsafe fn load<L: Lanes>(&self, array: usize, at: usize) -> [L; 3] {
         // SAFETY: the caller's; nodes and what is behind them are within a stride.
-        std::array::from_fn(|axis| unsafe { L::load(self.state.add((array + axis) * self.stride + at)) })
+        each!(3, axis => unsafe { L::load(self.state.add((array + axis) * self.stride + at)) })
     }
 
     #[inline(always)]
     unsafe fn store<L: Lanes>(&self, array: usize, at: usize, values: [L; 3]) {
-        for (axis, value) in values.into_iter().enumerate() {
-            // SAFETY: as above.
-            unsafe { value.store(self.state.add((array + axis) * self.stride + at)) };
-        }
+        // SAFETY: as above.
+        each!(3, axis => unsafe { values[axis].store(self.state.add((array + axis) * self.stride + at)) });
     }
 
     /// Moves the nodes from `at` on.
@@ -360,13 +358,13 @@ impl OneSlab<'_> {
                         // which are of this slab or deferred, nor to this slab's pulls.
                         unsafe {
                             let [near, far] = [arrays.load::<L>(0, i), arrays.load::<L>(0, j)];
-                            let p: [L; 3] = std::array::from_fn(|axis| far[axis] - near[axis]);
+                            let p = each!(3, axis => far[axis] - near[axis]);
                             let squared = p[2].mul_add(p[2], p[1].mul_add(p[1], p[0] * p[0]));
                             let inverse = one.div(squared.sqrt());
                             let tension = listed.map_or(tension, |listed| L::load(listed.add(i)));
                             let along = if DAMPED {
                                 let [near, far] = [arrays.load::<L>(VELOCITY, i), arrays.load::<L>(VELOCITY, j)];
-                                let v: [L; 3] = std::array::from_fn(|axis| far[axis] - near[axis]);
+                                let v = each!(3, axis => far[axis] - near[axis]);
                                 let product = v[2].mul_add(p[2], v[1].mul_add(p[1], v[0] * p[0]));
                                 (product * d).mul_sub(inverse, tension)
                             } else {
@@ -392,9 +390,9 @@ impl OneSlab<'_> {
                     let force: [L; 3] =
                         std::array::from_fn(|axis| L::load(place(axis)) + L::load(own.0[axis].as_ptr().add(i - base)));
                     if is_deferred {
-                        force.into_iter().enumerate().for_each(|(axis, force)| force.store(place(axis)));
+                        each!(3, axis => force[axis].store(place(axis)));
                     } else {
-                        (0..3).for_each(|axis| zero.store(place(axis)));
+                        each!(3, axis => zero.store(place(axis)));
                         lost |= arrays.advance(&motion, stage, i, force);
                     }
                 }
@@ -429,7 +427,7 @@ impl Work for Deferred<'_> {
             unsafe {
                 let halo = |axis: usize| before.pulls.pointer().add(axis * before.stride + i - before.first * CHUNK);
                 let place = |axis: usize| slab.pulls.pointer().add(axis * slab.stride + i - start);
-                let force: [L; 3] = std::array::from_fn(|axis| L::load(halo(axis)) + L::load(place(axis)));
+                let force = each!(3, axis => L::load(halo(axis)) + L::load(place(axis)));
                 for axis in 0..3 {
                     zero.store(halo(axis));
                     zero.store(place(axis));
