@@ -451,8 +451,8 @@ impl Work for OnePart<'_> {
                     (Law::Plane, false) => elements.plane::<L, false>(),
                     (Law::Arctangent(passes), true) => elements.space::<L, true>(rotation::Arctangent { passes }),
                     (Law::Arctangent(passes), false) => elements.space::<L, false>(rotation::Arctangent { passes }),
-                    (Law::Optimal, true) => elements.space::<L, true>(rotation::Quintic),
-                    (Law::Optimal, false) => elements.space::<L, false>(rotation::Quintic),
+                    (Law::Optimal, true) => elements.space::<L, true>(rotation::Optimum),
+                    (Law::Optimal, false) => elements.space::<L, false>(rotation::Optimum),
                     (Law::Spring, true) => elements.springs::<L, true>(),
                     (Law::Spring, false) => elements.springs::<L, false>(),
                 }
@@ -610,6 +610,10 @@ struct Elements<'a> {
     commit: bool,
 }
 
+/// Blocks of which first all moments are summed up, then all rotations found, then all forces summed up: the processor
+/// finds the rotations of several blocks at the same time, each a long chain.
+const BATCH: usize = 8;
+
 /// What the elements of a block do to all their corners: `w̄` and `k M`, lane by lane.
 #[repr(C, align(64))]
 struct Block([[f64; MOST]; 12]);
@@ -625,61 +629,96 @@ impl Elements<'_> {
         let k_mean = L::splat(constants.stiffness / corners as f64);
         let d_mean = L::splat(constants.damping / corners as f64);
         let zero = L::splat(0.0);
-        for block in 0..class.elements.len().div_ceil(MOST) {
-            let live = (class.elements.len() - block * MOST).min(MOST);
-            let mut out = Block([[0.0; MOST]; 12]);
+        let blocks = class.elements.len().div_ceil(MOST);
+        let mut batch = [const { Block([[0.0; MOST]; 12]) }; BATCH];
+        for begin in (0..blocks).step_by(BATCH) {
+            let batch = &mut batch[..BATCH.min(blocks - begin)];
             // SAFETY: the arrays have an entry for each block, corner, coordinate and lane; the records named are the
             // part's, which is this thread's.
             unsafe {
-                let nodes = class.nodes.as_ptr().add(block * corners * MOST);
-                let rest = class.rest.pointer().add(block * corners * 3 * MOST);
-                let turns = class.turns.pointer().add(block * 4 * MOST);
-                for lanes in (0..MOST).step_by(L::WIDTH) {
-                    let (mut position, mut velocity, mut a) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
-                    for corner in 0..corners {
-                        let node = nodes.add(corner * MOST + lanes);
-                        let [px, py, vx, vy, pz, vz, ..] =
-                            L::columns(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const());
-                        let (p, v) = ([px, py, pz], [vx, vy, vz]);
-                        for axis in 0..3 {
-                            position[axis] = position[axis] + p[axis];
-                            if DAMPED {
-                                velocity[axis] = velocity[axis] + v[axis];
+                for (block, sums) in (begin..).zip(&mut *batch) {
+                    let nodes = class.nodes.as_ptr().add(block * corners * MOST);
+                    let rest = class.rest.pointer().add(block * corners * 3 * MOST);
+                    for lanes in (0..MOST).step_by(L::WIDTH) {
+                        let (mut position, mut velocity, mut a) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
+                        for corner in 0..corners {
+                            let node = nodes.add(corner * MOST + lanes);
+                            let [px, py, vx, vy, pz, vz, ..] =
+                                L::columns(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const());
+                            let (p, v) = ([px, py, pz], [vx, vy, vz]);
+                            for axis in 0..3 {
+                                position[axis] = position[axis] + p[axis];
+                                if DAMPED {
+                                    velocity[axis] = velocity[axis] + v[axis];
+                                }
+                                let rest = L::load(rest.add((corner * 3 + axis) * MOST + lanes));
+                                a[axis] = each!(3, row => p[row].mul_add(rest, a[axis][row]));
                             }
-                            let rest = L::load(rest.add((corner * 3 + axis) * MOST + lanes));
-                            a[axis] = each!(3, row => p[row].mul_add(rest, a[axis][row]));
                         }
-                    }
-                    let last = each!(4, entry => L::load(turns.add(entry * MOST + lanes)));
-                    let live = if live > lanes { (1u32 << (live - lanes).min(L::WIDTH)) - 1 } else { 0 };
-                    let scale = L::load(class.scale.pointer().add(block * MOST + lanes));
-                    let turn = solver.follow(&a, scale, last, L::mask(live));
-                    if commit {
-                        each!(4, entry => turn[entry].store(turns.add(entry * MOST + lanes)));
-                    }
-                    let matrix = rotation::matrix(turn, k);
-                    for axis in 0..3 {
-                        let mut mean = position[axis] * k_mean;
-                        if DAMPED {
-                            mean = velocity[axis].mul_add(d_mean, mean);
-                        }
-                        mean.store(out.0[axis].as_mut_ptr().add(lanes));
-                        for column in 0..3 {
-                            matrix[column][axis].store(out.0[3 + 3 * column + axis].as_mut_ptr().add(lanes));
+                        for axis in 0..3 {
+                            let mut mean = position[axis] * k_mean;
+                            if DAMPED {
+                                mean = velocity[axis].mul_add(d_mean, mean);
+                            }
+                            mean.store(sums.0[axis].as_mut_ptr().add(lanes));
+                            each!(3, row => a[axis][row].store(sums.0[3 + 3 * axis + row].as_mut_ptr().add(lanes)));
                         }
                     }
                 }
-                for corner in 0..corners {
+                // Two vectors at a time; an odd last block goes with itself.
+                for first in (0..batch.len()).step_by(2) {
+                    let two = [first, (first + 1).min(batch.len() - 1)];
+                    let blocks = [begin + two[0], begin + two[1]];
                     for lanes in (0..MOST).step_by(L::WIDTH) {
-                        let node = nodes.add(corner * MOST + lanes);
-                        let out = out.0.as_ptr().cast::<f64>().add(lanes);
-                        let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST + lanes)));
-                        let [fx, fy, fz] = each!(3, axis => {
-                            let [w, mx] = each!(2, entry => L::load(out.add((3 * entry + axis) * MOST)));
-                            let [my, mz] = each!(2, entry => L::load(out.add((6 + 3 * entry + axis) * MOST)));
-                            z.mul_add(mz, y.mul_add(my, x.mul_add(mx, w)))
+                        let out = each!(2, at => batch[two[at]].0.as_mut_ptr().cast::<f64>().add(lanes));
+                        let turns = each!(2, at => class.turns.pointer().add(blocks[at] * 4 * MOST + lanes));
+                        let a = each!(2, at =>
+                            each!(3, axis => each!(3, row => L::load(out[at].add((3 + 3 * axis + row) * MOST)))));
+                        let last = each!(2, at => each!(4, entry => L::load(turns[at].add(entry * MOST))));
+                        let live = each!(2, at => {
+                            let left = class.elements.len().saturating_sub(blocks[at] * MOST + lanes);
+                            L::mask((1 << left.min(L::WIDTH)) - 1)
                         });
-                        L::add_rows([fx, fy, fz, zero], |lane| sums.add(*node.add(lane) as usize * SUM));
+                        let scale = each!(2, at => L::load(class.scale.pointer().add(blocks[at] * MOST + lanes)));
+                        let turn = solver.follow_two([&a[0], &a[1]], scale, last, live);
+                        each!(2, at => {
+                            if commit {
+                                each!(4, entry => turn[at][entry].store(turns[at].add(entry * MOST)));
+                            }
+                            let matrix = rotation::matrix(turn[at], k);
+                            each!(3, axis => each!(3, row =>
+                                matrix[axis][row].store(out[at].add((3 + 3 * axis + row) * MOST))));
+                        });
+                    }
+                }
+                for (block, out) in (begin..).zip(&*batch) {
+                    let nodes = class.nodes.as_ptr().add(block * corners * MOST);
+                    let rest = class.rest.pointer().add(block * corners * 3 * MOST);
+                    if L::WIDTH == MOST {
+                        let out = out.0.as_ptr().cast::<f64>();
+                        let w = each!(3, axis => L::load(out.add(axis * MOST)));
+                        let m = each!(3, axis => each!(3, row => L::load(out.add((3 + 3 * axis + row) * MOST))));
+                        for corner in 0..corners {
+                            let node = nodes.add(corner * MOST);
+                            let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST)));
+                            let [fx, fy, fz] = each!(3, axis =>
+                                z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], w[axis]))));
+                            L::add_rows([fx, fy, fz, zero], |lane| sums.add(*node.add(lane) as usize * SUM));
+                        }
+                        continue;
+                    }
+                    for corner in 0..corners {
+                        for lanes in (0..MOST).step_by(L::WIDTH) {
+                            let node = nodes.add(corner * MOST + lanes);
+                            let out = out.0.as_ptr().cast::<f64>().add(lanes);
+                            let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST + lanes)));
+                            let [fx, fy, fz] = each!(3, axis => {
+                                let [mx, my, mz] = each!(3, column => L::load(out.add((3 + 3 * column + axis) * MOST)));
+                                let w = L::load(out.add(axis * MOST));
+                                z.mul_add(mz, y.mul_add(my, x.mul_add(mx, w)))
+                            });
+                            L::add_rows([fx, fy, fz, zero], |lane| sums.add(*node.add(lane) as usize * SUM));
+                        }
                     }
                 }
             }
