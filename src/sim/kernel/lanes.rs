@@ -9,6 +9,48 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+/// An array of three or four values, each by an expression of its index. Not `array::map`: its closures are functions of
+/// their own, compiled without the vector set, and not always made part of the kernel.
+macro_rules! each {
+    (3, $at:ident => $value:expr) => {
+        [
+            {
+                let $at = 0usize;
+                $value
+            },
+            {
+                let $at = 1usize;
+                $value
+            },
+            {
+                let $at = 2usize;
+                $value
+            },
+        ]
+    };
+    (4, $at:ident => $value:expr) => {
+        [
+            {
+                let $at = 0usize;
+                $value
+            },
+            {
+                let $at = 1usize;
+                $value
+            },
+            {
+                let $at = 2usize;
+                $value
+            },
+            {
+                let $at = 3usize;
+                $value
+            },
+        ]
+    };
+}
+pub(super) use each;
+
 /// The most lanes that any set has. Arrays padded to a multiple of it suit all.
 pub(in crate::sim) const MOST: usize = 8;
 

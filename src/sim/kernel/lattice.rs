@@ -17,8 +17,8 @@
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
 use super::array::Array;
-use super::lanes::{Lanes, MOST, Set, Work};
-use super::rotation::{Arctangent, Quintic, Solver, matrix};
+use super::lanes::{Lanes, MOST, Set, Work, each};
+use super::rotation::{Arctangent, Optimum, Solver, matrix};
 use super::{Around, Bound, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
@@ -287,7 +287,7 @@ impl Lattice {
         macro_rules! run {
             ($damped:literal) => {
                 match rotation {
-                    Rotation::Quintic => set.run(Solved::<_, $damped>(&sweep, Quintic, &mut bad)),
+                    Rotation::Optimum => set.run(Solved::<_, $damped>(&sweep, Optimum, &mut bad)),
                     Rotation::Arctangent { passes } => {
                         set.run(Solved::<_, $damped>(&sweep, Arctangent { passes }, &mut bad));
                     }
@@ -411,7 +411,7 @@ impl Sweep<'_> {
         while at < self.grid.layer() {
             // SAFETY: `at` is a multiple of a width below `layer`.
             unsafe {
-                let force = [0, 1, 2].map(|axis| L::load(self.below.add(axis * self.stride + at)));
+                let force = each!(3, axis => L::load(self.below.add(axis * self.stride + at)));
                 if let Some(node) = self.update::<L, DAMPED>(plane, at, 1.0, force) {
                     return Some(node);
                 }
@@ -461,17 +461,19 @@ impl Sweep<'_> {
             let is_cube = self.ratio == [1.0; 3];
             if !is_cube {
                 for column in 0..3 {
-                    edges[column] = edges[column].map(|edge| edge * L::splat(self.ratio[column]));
+                    edges[column] = each!(3, axis => edges[column][axis] * L::splat(self.ratio[column]));
                 }
             }
             let turns = self.turns.add(plane * 4 * self.box_stride + at);
-            let last = [0, 1, 2, 3].map(|part| L::load(turns.add(part * self.box_stride)));
+            let last = each!(4, part => L::load(turns.add(part * self.box_stride)));
             let q = solver.follow(&edges, L::splat(self.scale), last, L::splat(0.0).lt(live));
-            (0..4).for_each(|part| q[part].store(turns.add(part * self.box_stride)));
+            for part in 0..4 {
+                q[part].store(turns.add(part * self.box_stride));
+            }
             let mut shape = matrix(q, L::splat(self.half) * live);
             if !is_cube {
                 for column in 0..3 {
-                    shape[column] = shape[column].map(|part| part * L::splat(self.ratio[column]));
+                    shape[column] = each!(3, axis => shape[column][axis] * L::splat(self.ratio[column]));
                 }
             }
             [mean, shape[0], shape[1], shape[2]]
@@ -525,11 +527,11 @@ impl Sweep<'_> {
             let valence = L::load(self.valence.add(at)) * L::splat(heights);
             let push = L::load(place(PUSH));
             let (stiffness, damping) = (L::splat(self.stiffness) * valence, L::splat(self.damping) * valence);
-            let mut gain = self.gain.map(L::splat);
+            let mut gain = each!(3, axis => L::splat(self.gain[axis]));
             if at + L::WIDTH > layer {
                 // What fills the last vector stays where it is.
                 let nodes = L::mask((1 << (layer - at)) - 1);
-                gain = gain.map(|gain| gain.select(nodes, L::splat(0.0)));
+                gain = each!(3, axis => gain[axis].select(nodes, L::splat(0.0)));
             }
             let (mut p, mut v) = ([push; 3], [push; 3]);
             for axis in 0..3 {
@@ -565,9 +567,9 @@ impl Sweep<'_> {
     /// Lets those nodes whose bits are set meet what is around.
     #[inline(always)]
     fn meet<L: Lanes>(&self, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
-        let (mut p, mut v) = (p.map(L::to_array), v.map(L::to_array));
+        let (mut p, mut v) = (each!(3, axis => p[axis].to_array()), each!(3, axis => v[axis].to_array()));
         self.meet_one_by_one(first, near, &mut p, &mut v);
-        (p.map(L::from_array), v.map(L::from_array))
+        (each!(3, axis => L::from_array(p[axis])), each!(3, axis => L::from_array(v[axis])))
     }
 
     #[inline(never)]
@@ -705,7 +707,7 @@ mod tests {
     fn reference(body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
         let (passes, rotation) = match parameters.rotation {
             Rotation::Arctangent { passes } => (passes, RotationReading::Arctangent),
-            Rotation::Quintic => (1, RotationReading::Exact),
+            Rotation::Optimum => (1, RotationReading::Exact),
         };
         let model = ShapeBased {
             stiffness: parameters.stiffness,
@@ -740,7 +742,7 @@ mod tests {
                 let body = lattice(cells, sides);
                 let state = start(&body, 0.05);
                 for (damping, rotation) in
-                    [(0.0, Rotation::Quintic), (0.7, Rotation::Quintic), (0.7, Rotation::Arctangent { passes: 2 })]
+                    [(0.0, Rotation::Optimum), (0.7, Rotation::Optimum), (0.7, Rotation::Arctangent { passes: 2 })]
                 {
                     let parameters = parameters(damping, rotation);
                     let (found, _) = run(&body, &state, parameters, Set::best(), 10, 100);
@@ -757,7 +759,7 @@ mod tests {
             let body = lattice(cells, DVec3::new(0.5, 0.3, 0.8));
             // Shaken so much that some elements turn over.
             let state = start(&body, 0.6);
-            for rotation in [Rotation::Quintic, Rotation::Arctangent { passes: 2 }] {
+            for rotation in [Rotation::Optimum, Rotation::Arctangent { passes: 2 }] {
                 let all = Set::all().map(|set| run(&body, &state, parameters(0.3, rotation), set, 1, 300));
                 let all: Vec<_> = all.collect();
                 assert!(all.windows(2).all(|two| two[0] == two[1]), "{cells:?} {rotation:?}");

@@ -20,8 +20,8 @@ pub(in crate::sim) enum Rotation {
         /// How often.
         passes: u32,
     },
-    /// The optimum to round-off; see [`rotation::Quintic`].
-    Quintic,
+    /// The optimum to round-off; see [`rotation::Optimum`].
+    Optimum,
 }
 
 /// A region outside of which nothing has to be asked whether a node touches it.
