@@ -10,7 +10,7 @@ pub mod field;
 pub mod grip;
 pub mod hull;
 pub mod integrate;
-pub(crate) mod kernel;
+mod kernel;
 pub mod lists;
 pub mod model;
 pub mod motion;

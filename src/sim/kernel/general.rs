@@ -14,9 +14,10 @@
 
 use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
-use super::motion::{Around, Kernel, Motion, Nodes, Stage};
+use super::motion::{Kernel, Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
-use crate::sim::body::{Body, IndexLists, bounds};
+use super::{Around, Rotation};
+use crate::sim::body::{Body, Dimension, IndexLists, bounds};
 use glam::DVec3;
 
 /// Doubles in the record of a node, a cache line: px, py, vx, vy, pz, vz, 1/m, and the number of its elements. What the
@@ -29,13 +30,11 @@ const SUM: usize = 4;
 
 /// What an element does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::sim) enum Law {
+enum Law {
     /// Eq. (4) in the plane, with the rotation of Eq. (9).
     Plane,
-    /// Eq. (4) in space, with Eq. (15) as printed, solved a number of times.
-    Arctangent(u32),
-    /// Eq. (4) in space, with the optimal rotation.
-    Optimal,
+    /// Eq. (4) in space.
+    Space(Rotation),
     /// Eq. (1): the elements are pairs of nodes.
     Spring,
 }
@@ -115,8 +114,12 @@ struct Shared {
 }
 
 impl General {
-    /// The elements of a body at work by Eq. (4).
-    pub(in crate::sim) fn new(body: &Body, law: Law, constants: Constants, set: Set) -> Self {
+    /// The elements of a body at work by Eq. (4). In the plane there is no choice of rotations.
+    pub(in crate::sim) fn new(body: &Body, rotation: Rotation, constants: Constants, set: Set) -> Self {
+        let law = match body.dimension {
+            Dimension::Plane => Law::Plane,
+            Dimension::Space => Law::Space(rotation),
+        };
         Self::with(&body.elements, &body.rest, &body.mass, law, constants, set)
     }
 
@@ -273,7 +276,7 @@ impl Law {
     fn memory(self) -> usize {
         match self {
             Self::Plane => 2,
-            Self::Arctangent(_) | Self::Optimal => 4,
+            Self::Space(_) => 4,
             Self::Spring => 0,
         }
     }
@@ -282,7 +285,7 @@ impl Law {
     fn axes(self) -> usize {
         match self {
             Self::Plane => 2,
-            Self::Arctangent(_) | Self::Optimal => 3,
+            Self::Space(_) => 3,
             Self::Spring => 0,
         }
     }
@@ -377,14 +380,14 @@ impl Class {
 }
 
 impl Kernel for General {
-    fn pass(&mut self, stage: Stage, commit: bool, around: Around<'_>) -> bool {
+    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool {
         let mut lost = 0;
         for part in 0..self.parts.len() {
-            lost |= self.set.run(OnePart { body: self, part, stage, commit, around });
+            lost |= self.set.run(OnePart { body: self, part, stage, commit, number, around });
         }
         if !self.shared.places.is_empty() {
             let blocks = 0..self.shared.index.len() / MOST;
-            lost |= self.set.run(SharedNodes { body: self, blocks, stage, around });
+            lost |= self.set.run(SharedNodes { body: self, blocks, stage, number, around });
         }
         lost == 0
     }
@@ -434,6 +437,7 @@ struct OnePart<'a> {
     part: usize,
     stage: Stage,
     commit: bool,
+    number: u64,
     around: Around<'a>,
 }
 
@@ -449,17 +453,21 @@ impl Work for OnePart<'_> {
                 match (self.body.law, self.body.constants.damping > 0.0) {
                     (Law::Plane, true) => elements.plane::<L, true>(),
                     (Law::Plane, false) => elements.plane::<L, false>(),
-                    (Law::Arctangent(passes), true) => elements.space::<L, true>(rotation::Arctangent { passes }),
-                    (Law::Arctangent(passes), false) => elements.space::<L, false>(rotation::Arctangent { passes }),
-                    (Law::Optimal, true) => elements.space::<L, true>(rotation::Optimum),
-                    (Law::Optimal, false) => elements.space::<L, false>(rotation::Optimum),
+                    (Law::Space(Rotation::Arctangent { passes }), true) => {
+                        elements.space::<L, true>(rotation::Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Arctangent { passes }), false) => {
+                        elements.space::<L, false>(rotation::Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Optimum), true) => elements.space::<L, true>(rotation::Optimum),
+                    (Law::Space(Rotation::Optimum), false) => elements.space::<L, false>(rotation::Optimum),
                     (Law::Spring, true) => elements.springs::<L, true>(),
                     (Law::Spring, false) => elements.springs::<L, false>(),
                 }
             }
         }
         let Constants { step, gravity, .. } = self.body.constants;
-        let motion = Motion::<L>::new(self.stage, step, gravity, self.around);
+        let motion = Motion::<L>::new(self.stage, step, gravity, self.number, self.around);
         let own = Own { motion, stage: self.stage, constants: &self.body.constants };
         let (records, sums) = (part.records.pointer(), part.sums.pointer());
         let mut lost = 0;
@@ -545,6 +553,7 @@ struct SharedNodes<'a> {
     body: &'a General,
     blocks: std::ops::Range<usize>,
     stage: Stage,
+    number: u64,
     around: Around<'a>,
 }
 
@@ -553,8 +562,8 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { body: &General { ref shared, ref parts, ref constants, .. }, blocks, stage, around } = self;
-        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, around);
+        let Self { body: &General { ref shared, ref parts, ref constants, .. }, blocks, stage, number, around } = self;
+        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
         let own = Own { motion, stage, constants };
         let mut lost = 0;
         for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {

@@ -2,40 +2,9 @@
 //! and collisions.
 
 use super::lanes::{Lanes, MOST, each};
+use super::{Around, Bound, Resolve, Runaway};
 use glam::DVec3;
-
-/// A region outside which nodes touch nothing. It may be larger than what it stands for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::sim) enum Bound {
-    /// All points `p` with `normal · p ≤ height` (m).
-    HalfSpace { normal: DVec3, height: f64 },
-    /// All points between two corners (m).
-    Box { low: DVec3, high: DVec3 },
-}
-
-/// The contact of one node that is inside a bound: its index, position (m), velocity (m/s), and the acceleration with
-/// which it has moved (m/s²), zero for one that has moved at constant velocity.
-pub(in crate::sim) type Resolve<'a> = dyn Fn(usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
-
-/// What nodes meet.
-#[derive(Clone, Copy)]
-pub(in crate::sim) struct Around<'a> {
-    /// Where contact is possible.
-    pub(in crate::sim) bounds: &'a [Bound],
-    /// What it does.
-    pub(in crate::sim) resolve: &'a Resolve<'a>,
-    /// The speed (m/s) beyond which a node is lost.
-    pub(in crate::sim) speed_limit: f64,
-}
-
-/// A node whose new velocity is no number or beyond all reason: the step is not taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::sim) struct Runaway {
-    /// Steps that were taken before.
-    pub(in crate::sim) steps: u64,
-    /// The first such node.
-    pub(in crate::sim) node: usize,
-}
+use std::ops::Range;
 
 /// What is done with the forces of one evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,8 +44,9 @@ pub(in crate::sim) enum Scheme {
 /// Forces and motion of a body in lanes.
 pub(in crate::sim) trait Kernel {
     /// Evaluates the forces once, unless they are known, and moves all nodes; tells whether all are within the speed limit.
-    /// With `commit` what the evaluation finds becomes the memory of the next one.
-    fn pass(&mut self, stage: Stage, commit: bool, around: Around<'_>) -> bool;
+    /// With `commit` what the evaluation finds becomes the memory of the next one. `number` is that of the step in this
+    /// call.
+    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool;
     /// Whether forces depend on velocities.
     fn is_damped(&self) -> bool;
     /// Whether accelerations belong to the present positions.
@@ -108,44 +78,47 @@ pub(in crate::sim) fn advance(
         let now = KEPT.min(steps - done);
         let was_known = *kernel.is_known();
         kernel.keep();
-        if !several(kernel, scheme, now, around) {
+        if !several(kernel, scheme, done..done + now, around) {
             // Somewhere in these steps: one by one, and back to the state before the last.
             kernel.restore();
             *kernel.is_known() = was_known;
-            let good = (0..now).take_while(|_| several(kernel, scheme, 1, around)).count() as u64;
-            let limit = around.speed_limit * around.speed_limit;
+            let is_good = |kernel: &mut _, at| several::<_>(kernel, scheme, at..at + 1, around);
+            let taken = (done..done + now).take_while(|&at| is_good(&mut *kernel, at)).last().map_or(done, |at| at + 1);
+            let limit = (around.speed_limit)(taken);
             let is_lost = |&node: &usize| {
                 let squared = kernel.node(node).1.length_squared();
-                squared.is_nan() || squared > limit
+                squared.is_nan() || squared > limit * limit
             };
             let node = (0..kernel.len()).find(is_lost).unwrap_or(0);
             kernel.restore();
             *kernel.is_known() = was_known;
-            (0..good).for_each(|_| {
-                several(kernel, scheme, 1, around);
-            });
-            return Err(Runaway { steps: done + good, node });
+            for at in done..taken {
+                several(kernel, scheme, at..at + 1, around);
+            }
+            return Err(Runaway { taken, node });
         }
         done += now;
     }
     Ok(())
 }
 
-/// Takes steps; tells whether all nodes stayed within the limit.
-fn several(kernel: &mut (impl Kernel + ?Sized), scheme: Scheme, steps: u64, around: Around<'_>) -> bool {
-    let mut pass = |stage, commit| kernel.pass(stage, commit, around);
+/// Takes steps of these numbers; tells whether all nodes stayed within the limit.
+fn several<K: Kernel + ?Sized>(kernel: &mut K, scheme: Scheme, steps: Range<u64>, around: Around<'_>) -> bool {
+    let (first, last) = (steps.start, steps.end - 1);
     match scheme {
-        Scheme::SemiImplicitEuler => (0..steps).all(|_| pass(Stage::SemiImplicitEuler, true)),
-        Scheme::ExplicitEuler => (0..steps).all(|_| pass(Stage::ExplicitEuler, true)),
-        Scheme::VelocityVerlet if kernel.is_damped() => {
-            (0..steps).all(|_| kernel.pass(Stage::Drift, true, around) && kernel.pass(Stage::Finish, false, around))
+        Scheme::SemiImplicitEuler => {
+            steps.into_iter().all(|at| kernel.pass(Stage::SemiImplicitEuler, true, at, around))
         }
+        Scheme::ExplicitEuler => steps.into_iter().all(|at| kernel.pass(Stage::ExplicitEuler, true, at, around)),
+        Scheme::VelocityVerlet if kernel.is_damped() => steps
+            .into_iter()
+            .all(|at| kernel.pass(Stage::Drift, true, at, around) && kernel.pass(Stage::Finish, false, at, around)),
         Scheme::VelocityVerlet => {
-            let first = if *kernel.is_known() { Stage::Coast } else { Stage::Drift };
+            let begin = if *kernel.is_known() { Stage::Coast } else { Stage::Drift };
             *kernel.is_known() = true;
-            kernel.pass(first, true, around)
-                && (1..steps).all(|_| kernel.pass(Stage::FinishDrift, true, around))
-                && kernel.pass(Stage::Finish, true, around)
+            kernel.pass(begin, true, first, around)
+                && (first + 1..=last).all(|at| kernel.pass(Stage::FinishDrift, true, at, around))
+                && kernel.pass(Stage::Finish, true, last, around)
         }
     }
 }
@@ -157,7 +130,8 @@ pub(in crate::sim) struct Motion<'a, L> {
     step: L,
     half: L,
     gravity: [L; 3],
-    limit: L,
+    /// The squares of the speed limits before a new step begins and in it.
+    limits: [L; 2],
     around: Around<'a>,
 }
 
@@ -171,13 +145,20 @@ pub(in crate::sim) struct Nodes<L> {
 
 impl<'a, L: Lanes> Motion<'a, L> {
     #[inline(always)]
-    pub(in crate::sim) fn new(stage: Stage, step: f64, gravity: DVec3, around: Around<'a>) -> Self {
+    pub(in crate::sim) fn new(stage: Stage, step: f64, gravity: DVec3, number: u64, around: Around<'a>) -> Self {
+        let limits = match stage {
+            Stage::FinishDrift => [number - 1, number],
+            _ => [number; 2],
+        };
         Self {
             stage,
             step: L::splat(step),
             half: L::splat(0.5 * step),
             gravity: each!(3, axis => L::splat(gravity[axis])),
-            limit: L::splat(around.speed_limit * around.speed_limit),
+            limits: each!(2, at => {
+                let limit = (around.speed_limit)(limits[at]);
+                L::splat(limit * limit)
+            }),
             around,
         }
     }
@@ -227,14 +208,14 @@ impl<'a, L: Lanes> Motion<'a, L> {
                 }
                 nodes.acceleration = now;
                 if self.stage == Stage::Finish {
-                    return self.lost(nodes);
+                    return self.lost(nodes, 0);
                 }
-                lost = self.lost(nodes);
+                lost = self.lost(nodes, 0);
                 self.drift(nodes);
                 rests = now;
             }
         }
-        lost |= self.lost(nodes);
+        lost |= self.lost(nodes, 1);
         let mut inside = 0;
         for bound in self.around.bounds {
             inside |= L::bits(reaches(bound, nodes.position));
@@ -270,10 +251,10 @@ impl<'a, L: Lanes> Motion<'a, L> {
 
     /// The lanes whose speed is out of bounds; what is no number is within none.
     #[inline(always)]
-    fn lost(&self, nodes: &Nodes<L>) -> u32 {
+    fn lost(&self, nodes: &Nodes<L>, at: usize) -> u32 {
         let [x, y, z] = nodes.velocity;
         let squared = z.mul_add(z, y.mul_add(y, x * x));
-        !L::bits(squared.le(self.limit)) & L::ALL
+        !L::bits(squared.le(self.limits[at])) & L::ALL
     }
 }
 
@@ -303,13 +284,13 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
     match bound {
         Bound::HalfSpace { normal, height } => {
             let [nx, ny, nz] = each!(3, axis => L::splat(normal[axis]));
-            nz.mul_add(z, ny.mul_add(y, nx * x)).le(L::splat(*height))
+            nz.mul_add(z, ny.mul_add(y, nx * x)).lt(L::splat(*height))
         }
         Bound::Box { low, high } => {
             let [lx, ly, lz] = each!(3, axis => L::splat(low[axis]));
             let [hx, hy, hz] = each!(3, axis => L::splat(high[axis]));
-            let inside = L::both(L::both(lx.le(x), x.le(hx)), L::both(ly.le(y), y.le(hy)));
-            L::both(inside, L::both(lz.le(z), z.le(hz)))
+            let inside = L::both(L::both(lx.lt(x), x.lt(hx)), L::both(ly.lt(y), y.lt(hy)));
+            L::both(inside, L::both(lz.lt(z), z.lt(hz)))
         }
     }
 }

@@ -13,9 +13,10 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
+use super::Around;
 use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
-use super::motion::{Around, Kernel, Motion, Nodes, Stage};
+use super::motion::{Kernel, Motion, Nodes, Stage};
 use glam::DVec3;
 
 /// Nodes for which one family is done before the next: what they need stays in the first cache. It changes no bit.
@@ -217,13 +218,13 @@ impl Stencil {
 }
 
 impl Kernel for Stencil {
-    fn pass(&mut self, stage: Stage, _commit: bool, around: Around<'_>) -> bool {
+    fn pass(&mut self, stage: Stage, _commit: bool, number: u64, around: Around<'_>) -> bool {
         let mut lost = 0;
         for slab in 0..self.slabs.len() {
-            lost |= self.set.run(OneSlab { springs: self, slab, stage, around });
+            lost |= self.set.run(OneSlab { springs: self, slab, stage, number, around });
         }
         for slab in 1..self.slabs.len() {
-            lost |= self.set.run(Deferred { springs: self, slab, stage, around });
+            lost |= self.set.run(Deferred { springs: self, slab, stage, number, around });
         }
         lost == 0
     }
@@ -310,6 +311,7 @@ struct OneSlab<'a> {
     springs: &'a Stencil,
     slab: usize,
     stage: Stage,
+    number: u64,
     around: Around<'a>,
 }
 
@@ -328,10 +330,10 @@ impl Work for OneSlab<'_> {
 impl OneSlab<'_> {
     #[inline(always)]
     fn evaluate<L: Lanes, const DAMPED: bool>(self) -> u32 {
-        let Self { springs, slab: number, stage, around } = self;
-        let slab = &springs.slabs[number];
+        let Self { springs, slab: at, stage, number, around } = self;
+        let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
-        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, around);
+        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, number, around);
         let (k, d, one, zero) = (L::splat(springs.stiffness), L::splat(springs.damping), L::splat(1.0), L::splat(0.0));
         let all_tensions = springs.tensions.as_slice();
         let mut own = Own([[0.0; CHUNK]; 3]);
@@ -341,11 +343,11 @@ impl OneSlab<'_> {
             let count = (springs.nodes.next_multiple_of(BLOCK) - base).min(CHUNK);
             own.0 = [[0.0; CHUNK]; 3];
             let families = if stage == Stage::Coast { &[][..] } else { &springs.families };
-            for (at, family) in families.iter().enumerate() {
+            for (row, family) in families.iter().enumerate() {
                 let &Family { offset, tension, tensions } = family;
                 let listed = tensions.map(|begin| all_tensions[begin..].as_ptr());
                 let tension = L::splat(tension);
-                let present = &springs.presence[chunk * springs.families.len() + at];
+                let present = &springs.presence[chunk * springs.families.len() + row];
                 for (block, &present) in present.iter().enumerate() {
                     if present == 0 {
                         continue;
@@ -382,7 +384,7 @@ impl OneSlab<'_> {
                     }
                 }
             }
-            let is_deferred = number > 0 && chunk - slab.first < springs.deferred;
+            let is_deferred = at > 0 && chunk - slab.first < springs.deferred;
             for i in (base..base + count).step_by(L::WIDTH) {
                 // SAFETY: as above.
                 unsafe {
@@ -407,6 +409,7 @@ struct Deferred<'a> {
     springs: &'a Stencil,
     slab: usize,
     stage: Stage,
+    number: u64,
     around: Around<'a>,
 }
 
@@ -415,9 +418,9 @@ impl Work for Deferred<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { springs, slab: number, stage, around } = self;
-        let [before, slab] = [number - 1, number].map(|number| &springs.slabs[number]);
-        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, around);
+        let Self { springs, slab: at, stage, number, around } = self;
+        let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
+        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = 0;
         let start = slab.first * CHUNK;
