@@ -650,11 +650,17 @@ impl Elements<'_> {
                     let rest = class.rest.pointer().add(block * corners * 3 * MOST);
                     for lanes in (0..MOST).step_by(L::WIDTH) {
                         let (mut position, mut velocity, mut a) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
+                        let mut first = [zero; 3];
                         for corner in 0..corners {
                             let node = nodes.add(corner * MOST + lanes);
                             let [px, py, vx, vy, pz, vz, ..] =
                                 L::columns(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const());
-                            let (p, v) = ([px, py, pz], [vx, vy, vz]);
+                            let v = [vx, vy, vz];
+                            if corner == 0 {
+                                first = [px, py, pz];
+                            }
+                            // Relative to the first corner: of an element at a point nothing remains.
+                            let p = [px - first[0], py - first[1], pz - first[2]];
                             for axis in 0..3 {
                                 position[axis] = position[axis] + p[axis];
                                 if DAMPED {
@@ -665,7 +671,7 @@ impl Elements<'_> {
                             }
                         }
                         for axis in 0..3 {
-                            let mut mean = position[axis] * k_mean;
+                            let mut mean = position[axis].mul_add(k_mean, first[axis] * k);
                             if DAMPED {
                                 mean = velocity[axis].mul_add(d_mean, mean);
                             }
@@ -753,11 +759,16 @@ impl Elements<'_> {
                 let turns = class.turns.pointer().add(block * 2 * MOST);
                 for lanes in (0..MOST).step_by(L::WIDTH) {
                     let (mut position, mut velocity, mut turn) = ([zero; 2], [zero; 2], [zero; 2]);
+                    let mut first = [zero; 2];
                     for corner in 0..corners {
                         let node = nodes.add(corner * MOST + lanes);
                         let [px, py, vx, vy] =
                             L::columns_4(|lane| records.add(*node.add(lane) as usize * RECORD).cast_const());
                         let [x, y] = each!(2, axis => L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
+                        if corner == 0 {
+                            first = [px, py];
+                        }
+                        let (px, py) = (px - first[0], py - first[1]);
                         position = [position[0] + px, position[1] + py];
                         if DAMPED {
                             velocity = [velocity[0] + vx, velocity[1] + vy];
@@ -774,7 +785,7 @@ impl Elements<'_> {
                         each!(2, entry => turn[entry].store(turns.add(entry * MOST + lanes)));
                     }
                     for axis in 0..2 {
-                        let mut mean = position[axis] * k_mean;
+                        let mut mean = position[axis].mul_add(k_mean, first[axis] * k);
                         if DAMPED {
                             mean = velocity[axis].mul_add(d_mean, mean);
                         }

@@ -12,6 +12,9 @@ pub(in crate::sim) mod motion;
 mod rotation;
 pub(in crate::sim) mod springs;
 
+#[cfg(test)]
+mod tests;
+
 pub(in crate::sim) use lanes::Set;
 
 use glam::DVec3;

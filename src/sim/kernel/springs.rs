@@ -14,6 +14,7 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
 use super::Around;
+use super::general::Constants;
 use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Kernel, Motion, Nodes, Stage};
@@ -26,17 +27,6 @@ const BLOCK: usize = 8;
 /// Natural lengths that differ by no more than this part count as equal: round-off of coordinates up to a thousand
 /// lengths.
 const ALIKE: f64 = 1e-13;
-
-/// What the springs of a body are.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::sim) struct Material<'a> {
-    /// The ends of each spring.
-    pub(in crate::sim) springs: &'a [[u32; 2]],
-    /// `k` of Eq. (1) (N/m).
-    pub(in crate::sim) stiffness: f64,
-    /// `D` of Eq. (1) (N s/m).
-    pub(in crate::sim) damping: f64,
-}
 
 /// Springs of one family.
 struct Family {
@@ -53,10 +43,7 @@ pub(in crate::sim) struct Stencil {
     set: Set,
     nodes: usize,
     chunks: usize,
-    stiffness: f64,
-    damping: f64,
-    step: f64,
-    gravity: DVec3,
+    constants: Constants,
     /// By falling offset.
     families: Vec<Family>,
     /// One bit for each spring: chunk by chunk, family by family, block by block.
@@ -92,26 +79,25 @@ const ARRAYS: usize = 10;
 impl Stencil {
     /// The springs of a body at work, or nothing if they come in no families: where most lanes would be empty.
     pub(in crate::sim) fn new(
-        material: &Material<'_>,
+        springs: &[[u32; 2]],
         rest: &[DVec3],
         mass: &[f64],
-        gravity: DVec3,
-        step: f64,
+        constants: Constants,
         set: Set,
     ) -> Option<Self> {
         /// Lanes for each spring, at most. With less than half of them in use, gathering is faster.
         const SPARSE: usize = 2;
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
-        let mut springs: Vec<(usize, usize, usize)> = Vec::with_capacity(material.springs.len());
-        for ends in material.springs {
+        let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
+        for ends in springs {
             let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
-            springs.push((high - low, low, high));
+            sorted.push((high - low, low, high));
         }
-        springs.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
+        sorted.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
         // Two springs between the same nodes are two families with one offset.
         let mut families: Vec<Vec<(usize, usize, usize)>> = Vec::new();
-        for family in springs.chunk_by(|a, b| a.0 == b.0) {
+        for family in sorted.chunk_by(|a, b| a.0 == b.0) {
             let mut doubles = 0;
             let begin = families.len();
             for (at, &spring) in family.iter().enumerate() {
@@ -134,7 +120,7 @@ impl Stencil {
         let mut made = Vec::with_capacity(families.len());
         for (at, family) in families.iter().enumerate() {
             let tension =
-                |&(_, low, high): &(usize, usize, usize)| material.stiffness * (rest[low] - rest[high]).length();
+                |&(_, low, high): &(usize, usize, usize)| constants.stiffness * (rest[low] - rest[high]).length();
             for &(_, low, _) in family {
                 presence[low / CHUNK * families.len() + at][low % CHUNK / BLOCK] |= 1 << (low % BLOCK);
             }
@@ -171,10 +157,7 @@ impl Stencil {
             set,
             nodes,
             chunks,
-            stiffness: material.stiffness,
-            damping: material.damping,
-            step,
-            gravity,
+            constants,
             families: made,
             presence,
             tensions,
@@ -230,7 +213,7 @@ impl Kernel for Stencil {
     }
 
     fn is_damped(&self) -> bool {
-        self.damping > 0.0
+        self.constants.damping > 0.0
     }
 
     fn is_known(&mut self) -> &mut bool {
@@ -323,7 +306,7 @@ impl Work for OneSlab<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        if self.springs.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
+        if self.springs.constants.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
     }
 }
 
@@ -333,8 +316,9 @@ impl OneSlab<'_> {
         let Self { springs, slab: at, stage, number, around } = self;
         let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
-        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, number, around);
-        let (k, d, one, zero) = (L::splat(springs.stiffness), L::splat(springs.damping), L::splat(1.0), L::splat(0.0));
+        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let (k, d, one, zero) =
+            (L::splat(springs.constants.stiffness), L::splat(springs.constants.damping), L::splat(1.0), L::splat(0.0));
         let all_tensions = springs.tensions.as_slice();
         let mut own = Own([[0.0; CHUNK]; 3]);
         let mut lost = 0;
@@ -420,7 +404,7 @@ impl Work for Deferred<'_> {
     fn run<L: Lanes>(self) -> u32 {
         let Self { springs, slab: at, stage, number, around } = self;
         let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
-        let motion = Motion::<L>::new(stage, springs.step, springs.gravity, number, around);
+        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = 0;
         let start = slab.first * CHUNK;
