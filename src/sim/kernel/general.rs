@@ -16,9 +16,11 @@ use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Kernel, Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
+use super::team::Team;
 use super::{Around, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, bounds};
 use glam::DVec3;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Doubles in the record of a node, a cache line: px, py, vx, vy, pz, vz, 1/m, and the number of its elements. What the
 /// plane needs comes first.
@@ -61,6 +63,8 @@ pub(in crate::sim) struct General {
     shared: Shared,
     /// Where the first record of each node is.
     places: Vec<Place>,
+    /// Always there between passes.
+    team: Option<Team>,
     /// Whether the accelerations belong to the positions.
     is_known: bool,
 }
@@ -220,7 +224,12 @@ impl General {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         shared.kept = Aligned::zeros(whole * 3);
-        Self { set, law, constants, parts: made, shared, places, is_known: false }
+        Self { set, law, constants, parts: made, shared, places, team: Some(Team::new(1)), is_known: false }
+    }
+
+    /// Works with so many threads from now on, as far as there are parts for them.
+    pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
+        self.team = Some(Team::new(threads.clamp(1, self.parts.len())));
     }
 
     /// Takes a state over: positions, velocities, and the rotation of each element: a quaternion, or (cos, sin).
@@ -381,14 +390,24 @@ impl Class {
 
 impl Kernel for General {
     fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool {
-        let mut lost = 0;
-        for part in 0..self.parts.len() {
-            lost |= self.set.run(OnePart { body: self, part, stage, commit, number, around });
+        // Taken out for the time, so that threads may share the rest.
+        let Some(mut team) = self.team.take() else { return false };
+        let (body, threads, lost) = (&*self, team.len(), AtomicU32::new(0));
+        let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
+        let one_part = |part| body.set.run(OnePart { body, part, stage, commit, number, around });
+        team.run(&|me| {
+            let found = share(body.parts.len(), me).fold(0, |lost, part| lost | one_part(part));
+            lost.fetch_or(found, Ordering::Relaxed);
+        });
+        let shared = body.shared.index.len() / MOST;
+        if shared > 0 {
+            team.run(&|me| {
+                let blocks = share(shared, me);
+                lost.fetch_or(body.set.run(SharedNodes { body, blocks, stage, number, around }), Ordering::Relaxed);
+            });
         }
-        if !self.shared.places.is_empty() {
-            let blocks = 0..self.shared.index.len() / MOST;
-            lost |= self.set.run(SharedNodes { body: self, blocks, stage, number, around });
-        }
+        let lost = lost.into_inner();
+        self.team = Some(team);
         lost == 0
     }
 

@@ -11,6 +11,7 @@ mod memory;
 pub(in crate::sim) mod motion;
 mod rotation;
 pub(in crate::sim) mod springs;
+pub(in crate::sim) mod team;
 
 #[cfg(test)]
 mod tests;

@@ -18,7 +18,9 @@ use super::general::Constants;
 use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Kernel, Motion, Nodes, Stage};
+use super::team::Team;
 use glam::DVec3;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Nodes for which one family is done before the next: what they need stays in the first cache. It changes no bit.
 const CHUNK: usize = 128;
@@ -56,6 +58,8 @@ pub(in crate::sim) struct Stencil {
     slabs: Vec<Slab>,
     /// Chunks at the beginning of every slab but the first that move after all others.
     deferred: usize,
+    /// Always there between passes.
+    team: Option<Team>,
     /// Whether the accelerations belong to the positions.
     is_known: bool,
 }
@@ -166,8 +170,14 @@ impl Stencil {
             stride,
             slabs,
             deferred,
+            team: Some(Team::new(1)),
             is_known: false,
         })
+    }
+
+    /// Works with so many threads from now on, as far as there are slabs for them.
+    pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
+        self.team = Some(Team::new(threads.clamp(1, self.slabs.len())));
     }
 
     /// Takes a state over.
@@ -202,13 +212,27 @@ impl Stencil {
 
 impl Kernel for Stencil {
     fn pass(&mut self, stage: Stage, _commit: bool, number: u64, around: Around<'_>) -> bool {
-        let mut lost = 0;
-        for slab in 0..self.slabs.len() {
-            lost |= self.set.run(OneSlab { springs: self, slab, stage, number, around });
+        // Taken out for the time, so that threads may share the rest.
+        let Some(mut team) = self.team.take() else { return false };
+        let (springs, threads, lost) = (&*self, team.len(), AtomicU32::new(0));
+        let slabs = springs.slabs.len();
+        let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
+        team.run(&|me| {
+            for slab in share(me) {
+                let found = springs.set.run(OneSlab { springs, slab, stage, number, around });
+                lost.fetch_or(found, Ordering::Relaxed);
+            }
+        });
+        if slabs > 1 {
+            team.run(&|me| {
+                for slab in share(me).filter(|&slab| slab > 0) {
+                    let found = springs.set.run(Deferred { springs, slab, stage, number, around });
+                    lost.fetch_or(found, Ordering::Relaxed);
+                }
+            });
         }
-        for slab in 1..self.slabs.len() {
-            lost |= self.set.run(Deferred { springs: self, slab, stage, number, around });
-        }
+        let lost = lost.into_inner();
+        self.team = Some(team);
         lost == 0
     }
 
