@@ -640,7 +640,7 @@ struct Elements<'a> {
 
 /// Blocks of which first all moments are summed up, then all rotations found, then all forces summed up: the processor
 /// finds the rotations of several blocks at the same time, each a long chain.
-const BATCH: usize = 8;
+const BATCH: usize = 4;
 
 /// What the elements of a block do to all their corners: `w̄` and `k M`, lane by lane.
 #[repr(C, align(64))]

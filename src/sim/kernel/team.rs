@@ -34,8 +34,8 @@ unsafe impl Sync for Shared {}
 // SAFETY: as above; what it points to can be called from any thread.
 unsafe impl Send for Shared {}
 
-/// Looks for new work before a thread falls asleep: some 50 µs.
-const PATIENCE: u32 = 20_000;
+/// Looks for new work before a thread lets others run, or falls asleep: some tens of microseconds.
+const PATIENCE: u32 = 2_000;
 
 impl Team {
     /// So many threads in all, at least one.
@@ -78,9 +78,9 @@ impl Team {
         let own = catch_unwind(AssertUnwindSafe(|| work(0)));
         let mut looks = 0u32;
         while self.shared.left.load(Ordering::Acquire) > 0 {
-            looks += 1;
-            // More threads than processors: the others need this one's.
-            if looks % PATIENCE == 0 { thread::yield_now() } else { std::hint::spin_loop() }
+            looks = looks.saturating_add(1);
+            // With more threads than processors the others may need this one's.
+            if looks > PATIENCE { thread::yield_now() } else { std::hint::spin_loop() }
         }
         if let Err(panic) = own {
             resume_unwind(panic);
