@@ -107,12 +107,17 @@ impl Grid {
         self.row() * self.cells[1] - 1
     }
 
-    /// Numbers between one plane of nodes, or one of their coordinates, and the next: whole vectors, and a vector more of
-    /// boxes that reach a row and a node beyond their own numbers.
+    /// Numbers between one plane of nodes, or one of their coordinates, and the next: whole vectors, so many that what is
+    /// read for the last box, a row and two vectors ahead of it, is there.
     fn stride(&self) -> usize {
-        let stride = (self.boxes().next_multiple_of(MOST) + self.row() + 1).max(self.layer()).next_multiple_of(MOST);
+        let stride = (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST);
         // Coordinates that lie a multiple of a page apart would compete for the same places of the cache.
         if stride % 512 == 0 { stride + MOST } else { stride }
+    }
+
+    /// How many successive numbers a [`Ring`] holds.
+    fn ring(&self) -> usize {
+        CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
     /// Numbers between one plane of boxes and the next.
@@ -125,6 +130,10 @@ impl Grid {
 const NODE: usize = 7;
 const VELOCITY: usize = 3;
 const PUSH: usize = 6;
+
+/// Boxes that are gathered, then rotated, then stepped: so many that a processor finds independent work in each of these
+/// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
+const CHUNK: usize = 64;
 
 /// A lattice of equal boxes at work.
 pub(in crate::sim) struct Lattice {
@@ -151,10 +160,15 @@ struct Pattern {
 
 /// The memory of one thread that steps successive planes.
 struct Slab {
-    /// `w̄ + v`, `u` and `t` of the boxes of the plane, after a row of zeros.
+    /// A ring of nodes: for each axis sums over the two planes and two successive nodes along x, of positions, of their
+    /// differences along x and along z, and of velocities.
+    pairs: Array,
+    /// A ring of boxes: `w̄ + v`, `u` and `t`.
     rows: Array,
     /// What the boxes below pull at the nodes of a plane (N).
     below: Array,
+    /// Of a chunk of boxes the sums of edges, then `u`, `v` and `t` in their place; and `w̄`.
+    work: Array,
 }
 
 impl Lattice {
@@ -177,7 +191,13 @@ impl Lattice {
             let edge = |at: usize, cells: usize| if at == 0 || at == cells { 1.0 } else { 2.0 };
             pattern.valence[at] = edge(at % row, row - 1) * edge(at / row, rows);
         }
-        let slab = Slab { rows: Array::zeros(9 * grid.row_stride()), below: Array::zeros(3 * stride) };
+        let ring = grid.ring() + MOST;
+        let slab = Slab {
+            pairs: Array::zeros(12 * ring),
+            rows: Array::zeros(9 * ring),
+            below: Array::zeros(3 * stride),
+            work: Array::zeros(12 * CHUNK),
+        };
         let before = (nodes.clone(), turns.clone());
         Some(Self { set, grid, parameters, nodes, turns, before, pattern, slab })
     }
@@ -266,12 +286,14 @@ impl Lattice {
             turns: turns.as_mut_ptr(),
             live: pattern.live.as_ptr(),
             valence: pattern.valence.as_ptr(),
+            pairs: slab.pairs.as_mut_ptr(),
             rows: slab.rows.as_mut_ptr(),
             below: slab.below.as_mut_ptr(),
+            work: slab.work.as_mut_ptr(),
             grid: *grid,
             stride: grid.stride(),
             box_stride: grid.box_stride(),
-            row_stride: grid.row_stride(),
+            ring: grid.ring(),
             stiffness,
             damping,
             ratio: (grid.sides / side).to_array(),
@@ -303,25 +325,20 @@ impl Lattice {
     }
 }
 
-impl Grid {
-    /// Numbers between one number of the boxes of a plane and the next, with the row before.
-    fn row_stride(&self) -> usize {
-        self.row().next_multiple_of(MOST) + self.layer().next_multiple_of(MOST)
-    }
-}
-
 /// Everything a sweep reads and writes. See the fields of the same name.
 struct Sweep<'a> {
     nodes: *mut f64,
     turns: *mut f64,
     live: *const f64,
     valence: *const f64,
+    pairs: *mut f64,
     rows: *mut f64,
     below: *mut f64,
+    work: *mut f64,
     grid: Grid,
     stride: usize,
     box_stride: usize,
-    row_stride: usize,
+    ring: usize,
     stiffness: f64,
     damping: f64,
     /// The sides over their mean.
@@ -349,9 +366,10 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
         let planes = sweep.grid.cells[2];
         // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody else.
         unsafe {
-            sweep.clear_below::<L>();
+            sweep.clear::<L>();
+            let mut last_row = 0;
             for plane in 0..planes {
-                if let Some(node) = sweep.plane::<L, S, DAMPED>(plane, solver) {
+                if let Some(node) = sweep.plane::<L, S, DAMPED>(plane, solver, &mut last_row) {
                     *bad = Some(node);
                     return;
                 }
@@ -362,46 +380,151 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
 }
 
 impl Sweep<'_> {
+    /// Makes the boxes below the first plane, and before its first row, pull at nothing.
     #[inline(always)]
-    unsafe fn clear_below<L: Lanes>(&self) {
-        for at in (0..3 * self.stride).step_by(L::WIDTH) {
-            // SAFETY: `below` has three strides, which are whole vectors.
-            unsafe { L::splat(0.0).store(self.below.add(at)) };
+    unsafe fn clear<L: Lanes>(&self) {
+        // SAFETY: `below` has three strides, which are whole vectors; the rings are longer than a row in whole vectors.
+        unsafe {
+            for at in (0..3 * self.stride).step_by(L::WIDTH) {
+                L::splat(0.0).store(self.below.add(at));
+            }
+            let row = self.grid.row().next_multiple_of(MOST);
+            for part in 0..9 {
+                for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
+                    L::splat(0.0).store(self.rows.add(part * (self.ring + MOST) + at));
+                }
+            }
         }
     }
 
-    /// Steps the nodes of a plane, with the boxes between it and the next one.
+    /// Steps the nodes of a plane, with the boxes between it and the next one. `own` is the place in the ring of rows, before
+    /// which a row of zeros lies: the last nodes of a plane have no boxes.
     #[inline(always)]
-    unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, solver: S) -> Option<usize> {
+    unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        solver: S,
+        own: &mut usize,
+    ) -> Option<usize> {
         let zero = L::splat(0.0);
-        let layer = self.grid.layer();
+        let (row, layer) = (self.grid.row(), self.grid.layer());
         let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
         let heights = if plane == 0 { 1.0 } else { 2.0 };
-        let mut at = 0;
-        while at < layer {
-            // SAFETY: `at` is a multiple of a width below `layer`, and where boxes are asked for below their stride.
+        // The nodes up to which pairs are known; places in the ring of pairs; the sums over two planes of the next nodes.
+        let (mut known, mut end, mut here, mut next_row) = (0, 0, 0, row);
+        // SAFETY: a plane has nodes, in whole vectors.
+        let mut sums = unsafe { self.sums::<L, DAMPED>(plane, 0) };
+        for chunk in (0..layer).step_by(CHUNK) {
+            let boxes = self.box_stride.min(chunk + CHUNK);
+            // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where they are asked for. A
+            // chunk of `work` holds what is written to it. The ring holds the pairs of a chunk, a row and a vector more.
             unsafe {
-                let parts =
-                    if at < self.box_stride { self.boxes::<L, S, DAMPED>(plane, at, solver) } else { [[zero; 3]; 4] };
-                let (pull, rise) = self.along_y(at, parts);
-                // Along x, and then along z.
-                let mut force = [zero; 3];
-                for axis in 0..3 {
-                    let (high, low) = (pull[axis].0, pull[axis].1);
-                    let here = high.shift_in(pull_before[axis]) + low;
-                    let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
-                    (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
-                    let below = self.below.add(axis * self.stride + at);
-                    force[axis] = L::load(below) + (here - up);
-                    (here + up).store(below);
+                while known < boxes + row {
+                    sums = self.pair::<L, DAMPED>(plane, known, end, sums);
+                    known += L::WIDTH;
+                    end = self.next(end, L::WIDTH);
                 }
-                if let Some(node) = self.update::<L, DAMPED>(plane, at, heights, force) {
-                    return Some(node);
+                let mut at = chunk;
+                while at < boxes {
+                    self.gather::<L, DAMPED>(at, here, next_row);
+                    at += L::WIDTH;
+                    here = self.next(here, L::WIDTH);
+                    next_row = self.next(next_row, L::WIDTH);
+                }
+                let mut at = chunk;
+                while at < boxes {
+                    self.rotate::<L, S>(plane, at, solver);
+                    at += L::WIDTH;
+                }
+                let mut at = chunk;
+                while at < layer.min(chunk + CHUNK) {
+                    let (pull, rise) = self.along_y::<L>(at, *own, at < boxes);
+                    *own = self.next(*own, L::WIDTH);
+                    // Along x, and then along z.
+                    let mut force = [zero; 3];
+                    for axis in 0..3 {
+                        let (high, low) = pull[axis];
+                        let here = high.shift_in(pull_before[axis]) + low;
+                        let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
+                        (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
+                        let below = self.below.add(axis * self.stride + at);
+                        force[axis] = L::load(below) + (here - up);
+                        (here + up).store(below);
+                    }
+                    if let Some(node) = self.update::<L, DAMPED>(plane, at, heights, force) {
+                        return Some(node);
+                    }
+                    at += L::WIDTH;
                 }
             }
-            at += L::WIDTH;
         }
         None
+    }
+
+    /// The place in a ring that lies so far behind another.
+    #[inline(always)]
+    fn next(&self, place: usize, way: usize) -> usize {
+        let next = place + way;
+        if next >= self.ring { next - self.ring } else { next }
+    }
+
+    /// Writes to a ring; what lies across its end is there twice.
+    #[inline(always)]
+    unsafe fn put<L: Lanes>(&self, ring: *mut f64, part: usize, place: usize, value: L) {
+        // SAFETY: a ring has a vector more for each part, and places are multiples of a width.
+        unsafe {
+            let to = ring.add(part * (self.ring + MOST) + place);
+            value.store(to);
+            if place < MOST {
+                value.store(to.add(self.ring));
+            }
+        }
+    }
+
+    /// Of nodes the sums over this plane and the next of positions, of velocities, and the differences of positions.
+    #[inline(always)]
+    unsafe fn sums<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize) -> [[L; 3]; 3] {
+        let mut sums = [[L::splat(0.0); 3]; 3];
+        // SAFETY: a stride holds whole vectors as far as boxes are gathered.
+        unsafe {
+            let low = self.nodes.add(plane * NODE * self.stride + at);
+            let high = low.add(NODE * self.stride);
+            for axis in 0..3 {
+                let (a, b) = (L::load(low.add(axis * self.stride)), L::load(high.add(axis * self.stride)));
+                sums[axis][0] = a + b;
+                sums[axis][1] = b - a;
+                if DAMPED {
+                    let place = (VELOCITY + axis) * self.stride;
+                    sums[axis][2] = L::load(low.add(place)) + L::load(high.add(place));
+                }
+            }
+        }
+        sums
+    }
+
+    /// Writes the pairs of nodes, of which `sums` are known, and returns the sums of the next.
+    #[inline(always)]
+    unsafe fn pair<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        at: usize,
+        place: usize,
+        sums: [[L; 3]; 3],
+    ) -> [[L; 3]; 3] {
+        // SAFETY: see `sums` and `put`.
+        unsafe {
+            let next = self.sums::<L, DAMPED>(plane, at + L::WIDTH);
+            for axis in 0..3 {
+                let right = sums[axis][0].shift_out(next[axis][0]);
+                self.put(self.pairs, axis, place, sums[axis][0] + right);
+                self.put(self.pairs, 3 + axis, place, right - sums[axis][0]);
+                self.put(self.pairs, 6 + axis, place, sums[axis][1] + sums[axis][1].shift_out(next[axis][1]));
+                if DAMPED {
+                    self.put(self.pairs, 9 + axis, place, sums[axis][2] + sums[axis][2].shift_out(next[axis][2]));
+                }
+            }
+            next
+        }
     }
 
     /// Steps the nodes of the last plane, which has no boxes above.
@@ -421,82 +544,93 @@ impl Sweep<'_> {
         None
     }
 
-    /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
+    /// `w̄` of boxes, and the sums of their edges along each axis: the columns of `A` but for a factor. `here` and `next_row`
+    /// are places in the ring of pairs.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S) -> [[L; 3]; 4] {
-        let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and a node more.
+    unsafe fn gather<L: Lanes, const DAMPED: bool>(&self, at: usize, here: usize, next_row: usize) {
+        // SAFETY: `live` holds all boxes in whole vectors, a chunk of `work` what is written to it, and the ring whole
+        // vectors from any place.
         unsafe {
-            let low = self.nodes.add(plane * NODE * self.stride + at);
-            let high = low.add(NODE * self.stride);
+            let work = self.work.add(at % CHUNK);
             let live = L::load(self.live.add(at));
             let (mean_of_p, mean_of_v) =
                 (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
-            let mut edges = [[L::splat(0.0); 3]; 3];
-            let mut mean = [L::splat(0.0); 3];
+            let both = |part: usize| {
+                let from = self.pairs.add(part * (self.ring + MOST));
+                (L::load(from.add(here)), L::load(from.add(next_row)))
+            };
             for axis in 0..3 {
-                let both = |of: usize, offset: usize| {
-                    let place = of * self.stride + offset;
-                    (L::load(low.add(place)), L::load(high.add(place)))
-                };
-                // Two nodes along z, two along x: sum, and differences along x and z.
-                let pair = |offset: usize| {
-                    let ((a, b), (c, d)) = (both(axis, offset), both(axis, offset + 1));
-                    let (left, right) = (a + b, c + d);
-                    (left + right, right - left, (b - a) + (d - c))
-                };
-                let ((sum0, x0, z0), (sum1, x1, z1)) = (pair(0), pair(row));
-                edges[0][axis] = x0 + x1;
-                edges[1][axis] = sum1 - sum0;
-                edges[2][axis] = z0 + z1;
-                mean[axis] = mean_of_p * (sum0 + sum1);
+                let ((sum0, sum1), (x0, x1), (z0, z1)) = (both(axis), both(3 + axis), both(6 + axis));
+                let mut mean = mean_of_p * (sum0 + sum1);
                 if DAMPED {
-                    let pair = |offset: usize| {
-                        let ((a, b), (c, d)) = (both(VELOCITY + axis, offset), both(VELOCITY + axis, offset + 1));
-                        (a + b) + (c + d)
-                    };
-                    mean[axis] = mean_of_v.mul_add(pair(0) + pair(row), mean[axis]);
+                    let (a, b) = both(9 + axis);
+                    mean = mean_of_v.mul_add(a + b, mean);
                 }
-            }
-            let is_cube = self.ratio == [1.0; 3];
-            if !is_cube {
+                let columns = [x0 + x1, sum1 - sum0, z0 + z1];
                 for column in 0..3 {
-                    edges[column] = each!(3, axis => edges[column][axis] * L::splat(self.ratio[column]));
+                    let mut edge = columns[column];
+                    if !self.is_cube() {
+                        edge = edge * L::splat(self.ratio[column]);
+                    }
+                    edge.store(work.add((3 * column + axis) * CHUNK));
                 }
+                mean.store(work.add((9 + axis) * CHUNK));
             }
+        }
+    }
+
+    /// The rotations of boxes, and with them `u`, `v` and `t`: the forces on the corners are `w̄ ± u ± v ± t`, without `−w`
+    /// of the nodes.
+    #[inline(always)]
+    unsafe fn rotate<L: Lanes, S: Solver>(&self, plane: usize, at: usize, solver: S) {
+        // SAFETY: `live` and the turns hold all boxes of a plane in whole vectors.
+        unsafe {
+            let work = self.work.add(at % CHUNK);
+            let edges = each!(3, column => each!(3, axis => L::load(work.add((3 * column + axis) * CHUNK))));
+            let live = L::load(self.live.add(at));
             let turns = self.turns.add(plane * 4 * self.box_stride + at);
             let last = each!(4, part => L::load(turns.add(part * self.box_stride)));
             let q = solver.follow(&edges, L::splat(self.scale), last, L::splat(0.0).lt(live));
             for part in 0..4 {
                 q[part].store(turns.add(part * self.box_stride));
             }
-            let mut shape = matrix(q, L::splat(self.half) * live);
-            if !is_cube {
-                for column in 0..3 {
-                    shape[column] = each!(3, axis => shape[column][axis] * L::splat(self.ratio[column]));
+            let shape = matrix(q, L::splat(self.half) * live);
+            for column in 0..3 {
+                for axis in 0..3 {
+                    let mut part = shape[column][axis];
+                    if !self.is_cube() {
+                        part = part * L::splat(self.ratio[column]);
+                    }
+                    part.store(work.add((3 * column + axis) * CHUNK));
                 }
             }
-            [mean, shape[0], shape[1], shape[2]]
         }
+    }
+
+    #[inline(always)]
+    fn is_cube(&self) -> bool {
+        self.ratio == [1.0; 3]
     }
 
     /// Adds what the boxes of two rows do to the nodes between: for each axis the sum for the next node along x and for the
     /// own, and the part that changes its sign along z.
     #[inline(always)]
-    unsafe fn along_y<L: Lanes>(&self, at: usize, [mean, u, v, t]: [[L; 3]; 4]) -> ([(L, L); 3], [L; 3]) {
-        let first = self.grid.row().next_multiple_of(MOST) + at;
-        let row = self.grid.row();
-        // SAFETY: before the first box lies a row of zeros, and behind it a plane of nodes in whole vectors.
+    unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
+        // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
         unsafe {
-            let own = self.rows.add(first);
-            let put = |part: usize, value: L| value.store(own.add(part * self.row_stride));
+            let work = self.work.add(at % CHUNK);
+            let parts = each!(4, part => each!(3, axis => {
+                if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
+            }));
+            let [u, v, t, mean] = parts;
             for axis in 0..3 {
-                put(axis, mean[axis] + v[axis]);
-                put(3 + axis, u[axis]);
-                put(6 + axis, t[axis]);
+                self.put(self.rows, axis, own, mean[axis] + v[axis]);
+                self.put(self.rows, 3 + axis, own, u[axis]);
+                self.put(self.rows, 6 + axis, own, t[axis]);
             }
             // Of the row before, of which the first lanes may just have been written.
-            let get = |part: usize| L::load(own.add(part * self.row_stride).sub(row));
+            let before = self.next(own, self.ring - self.grid.row());
+            let get = |part: usize| L::load(self.rows.add(part * (self.ring + MOST) + before));
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
             for axis in 0..3 {
