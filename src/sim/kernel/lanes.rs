@@ -51,6 +51,25 @@ macro_rules! each {
 }
 pub(super) use each;
 
+/// A loop over 0, 1, 2, written out: a compiler that keeps it a loop keeps its lanes in memory.
+macro_rules! thrice {
+    ($at:ident => $body:expr) => {{
+        {
+            let $at = 0usize;
+            $body
+        }
+        {
+            let $at = 1usize;
+            $body
+        }
+        {
+            let $at = 2usize;
+            $body
+        }
+    }};
+}
+pub(super) use thrice;
+
 /// The most lanes that any set has. Arrays padded to a multiple of it suit all.
 pub(in crate::sim) const MOST: usize = 8;
 

@@ -17,9 +17,9 @@
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
 use super::array::Array;
-use super::lanes::{Lanes, MOST, Set, Work, each};
+use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
 use super::rotation::{Arctangent, Optimum, Solver, matrix};
-use super::{Around, Bound, Rotation, Runaway};
+use super::{Around, Bound, Resolve, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
 
@@ -281,6 +281,7 @@ impl Lattice {
         let Self { set, grid, parameters, nodes, turns, pattern, slab, .. } = self;
         let Parameters { stiffness, damping, rotation, gravity, step } = *parameters;
         let side = grid.sides.element_sum() / 3.0;
+        let ratio = (grid.sides / side).to_array();
         let sweep = Sweep {
             nodes: nodes.as_mut_ptr(),
             turns: turns.as_mut_ptr(),
@@ -296,7 +297,8 @@ impl Lattice {
             ring: grid.ring(),
             stiffness,
             damping,
-            ratio: (grid.sides / side).to_array(),
+            ratio,
+            is_cube: ratio == [1.0; 3],
             // The columns of A at rest are 2 side², and half a side is left out of them.
             scale: 1.0 / (4.0 * side),
             half: 0.5 * side * stiffness,
@@ -326,6 +328,9 @@ impl Lattice {
 }
 
 /// Everything a sweep reads and writes. See the fields of the same name.
+///
+/// A sweep works on a copy of its own, whose address nobody knows: else every store might change it.
+#[derive(Clone, Copy)]
 struct Sweep<'a> {
     nodes: *mut f64,
     turns: *mut f64,
@@ -343,6 +348,7 @@ struct Sweep<'a> {
     damping: f64,
     /// The sides over their mean.
     ratio: [f64; 3],
+    is_cube: bool,
     /// What makes sums of edges about 1.
     scale: f64,
     /// Half the mean side, times the stiffness (N).
@@ -362,7 +368,7 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self(sweep, solver, bad) = self;
+        let Self(&sweep, solver, bad) = self;
         let planes = sweep.grid.cells[2];
         // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody else.
         unsafe {
@@ -442,7 +448,7 @@ impl Sweep<'_> {
                     *own = self.next(*own, L::WIDTH);
                     // Along x, and then along z.
                     let mut force = [zero; 3];
-                    for axis in 0..3 {
+                    thrice!(axis => {
                         let (high, low) = pull[axis];
                         let here = high.shift_in(pull_before[axis]) + low;
                         let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
@@ -450,7 +456,7 @@ impl Sweep<'_> {
                         let below = self.below.add(axis * self.stride + at);
                         force[axis] = L::load(below) + (here - up);
                         (here + up).store(below);
-                    }
+                    });
                     if let Some(node) = self.update::<L, DAMPED>(plane, at, heights, force) {
                         return Some(node);
                     }
@@ -468,15 +474,21 @@ impl Sweep<'_> {
         if next >= self.ring { next - self.ring } else { next }
     }
 
-    /// Writes to a ring; what lies across its end is there twice.
+    /// Writes a number of each part to a ring; what lies across its end is there twice.
     #[inline(always)]
-    unsafe fn put<L: Lanes>(&self, ring: *mut f64, part: usize, place: usize, value: L) {
+    unsafe fn put<L: Lanes, const PARTS: usize>(&self, ring: *mut f64, place: usize, values: &[[L; 3]; PARTS]) {
+        let part = self.ring + MOST;
         // SAFETY: a ring has a vector more for each part, and places are multiples of a width.
         unsafe {
-            let to = ring.add(part * (self.ring + MOST) + place);
-            value.store(to);
+            let to = ring.add(place);
+            for group in 0..PARTS {
+                thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+            }
             if place < MOST {
-                value.store(to.add(self.ring));
+                let to = to.add(self.ring);
+                for group in 0..PARTS {
+                    thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+                }
             }
         }
     }
@@ -489,7 +501,7 @@ impl Sweep<'_> {
         unsafe {
             let low = self.nodes.add(plane * NODE * self.stride + at);
             let high = low.add(NODE * self.stride);
-            for axis in 0..3 {
+            thrice!(axis => {
                 let (a, b) = (L::load(low.add(axis * self.stride)), L::load(high.add(axis * self.stride)));
                 sums[axis][0] = a + b;
                 sums[axis][1] = b - a;
@@ -497,7 +509,7 @@ impl Sweep<'_> {
                     let place = (VELOCITY + axis) * self.stride;
                     sums[axis][2] = L::load(low.add(place)) + L::load(high.add(place));
                 }
-            }
+            });
         }
         sums
     }
@@ -514,14 +526,17 @@ impl Sweep<'_> {
         // SAFETY: see `sums` and `put`.
         unsafe {
             let next = self.sums::<L, DAMPED>(plane, at + L::WIDTH);
-            for axis in 0..3 {
-                let right = sums[axis][0].shift_out(next[axis][0]);
-                self.put(self.pairs, axis, place, sums[axis][0] + right);
-                self.put(self.pairs, 3 + axis, place, right - sums[axis][0]);
-                self.put(self.pairs, 6 + axis, place, sums[axis][1] + sums[axis][1].shift_out(next[axis][1]));
-                if DAMPED {
-                    self.put(self.pairs, 9 + axis, place, sums[axis][2] + sums[axis][2].shift_out(next[axis][2]));
-                }
+            let right = each!(3, axis => sums[axis][0].shift_out(next[axis][0]));
+            let pairs = [
+                each!(3, axis => sums[axis][0] + right[axis]),
+                each!(3, axis => right[axis] - sums[axis][0]),
+                each!(3, axis => sums[axis][1] + sums[axis][1].shift_out(next[axis][1])),
+            ];
+            if DAMPED {
+                let speeds = each!(3, axis => sums[axis][2] + sums[axis][2].shift_out(next[axis][2]));
+                self.put(self.pairs, place, &[pairs[0], pairs[1], pairs[2], speeds]);
+            } else {
+                self.put(self.pairs, place, &pairs);
             }
             next
         }
@@ -559,7 +574,7 @@ impl Sweep<'_> {
                 let from = self.pairs.add(part * (self.ring + MOST));
                 (L::load(from.add(here)), L::load(from.add(next_row)))
             };
-            for axis in 0..3 {
+            thrice!(axis => {
                 let ((sum0, sum1), (x0, x1), (z0, z1)) = (both(axis), both(3 + axis), both(6 + axis));
                 let mut mean = mean_of_p * (sum0 + sum1);
                 if DAMPED {
@@ -567,15 +582,15 @@ impl Sweep<'_> {
                     mean = mean_of_v.mul_add(a + b, mean);
                 }
                 let columns = [x0 + x1, sum1 - sum0, z0 + z1];
-                for column in 0..3 {
+                thrice!(column => {
                     let mut edge = columns[column];
-                    if !self.is_cube() {
+                    if !self.is_cube {
                         edge = edge * L::splat(self.ratio[column]);
                     }
                     edge.store(work.add((3 * column + axis) * CHUNK));
-                }
+                });
                 mean.store(work.add((9 + axis) * CHUNK));
-            }
+            });
         }
     }
 
@@ -595,21 +610,16 @@ impl Sweep<'_> {
                 q[part].store(turns.add(part * self.box_stride));
             }
             let shape = matrix(q, L::splat(self.half) * live);
-            for column in 0..3 {
-                for axis in 0..3 {
+            thrice!(column => {
+                thrice!(axis => {
                     let mut part = shape[column][axis];
-                    if !self.is_cube() {
+                    if !self.is_cube {
                         part = part * L::splat(self.ratio[column]);
                     }
                     part.store(work.add((3 * column + axis) * CHUNK));
-                }
-            }
+                });
+            });
         }
-    }
-
-    #[inline(always)]
-    fn is_cube(&self) -> bool {
-        self.ratio == [1.0; 3]
     }
 
     /// Adds what the boxes of two rows do to the nodes between: for each axis the sum for the next node along x and for the
@@ -623,22 +633,18 @@ impl Sweep<'_> {
                 if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
             }));
             let [u, v, t, mean] = parts;
-            for axis in 0..3 {
-                self.put(self.rows, axis, own, mean[axis] + v[axis]);
-                self.put(self.rows, 3 + axis, own, u[axis]);
-                self.put(self.rows, 6 + axis, own, t[axis]);
-            }
+            self.put(self.rows, own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
             let get = |part: usize| L::load(self.rows.add(part * (self.ring + MOST) + before));
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
-            for axis in 0..3 {
+            thrice!(axis => {
                 let sum = get(axis) + (mean[axis] - v[axis]);
                 let along = get(3 + axis) + u[axis];
                 pull[axis] = (sum + along, sum - along);
                 rise[axis] = get(6 + axis) + t[axis];
-            }
+            });
             (pull, rise)
         }
     }
@@ -668,7 +674,7 @@ impl Sweep<'_> {
                 gain = each!(3, axis => gain[axis].select(nodes, L::splat(0.0)));
             }
             let (mut p, mut v) = ([push; 3], [push; 3]);
-            for axis in 0..3 {
+            thrice!(axis => {
                 (p[axis], v[axis]) = (L::load(place(axis)), L::load(place(VELOCITY + axis)));
                 let mut force = p[axis].neg_mul_add(stiffness, force[axis]);
                 if DAMPED {
@@ -676,7 +682,7 @@ impl Sweep<'_> {
                 }
                 v[axis] = force.mul_add(push, v[axis] + gain[axis]);
                 p[axis] = v[axis].mul_add(L::splat(self.step), p[axis]);
-            }
+            });
             let square = v[2].mul_add(v[2], v[1].mul_add(v[1], v[0] * v[0]));
             let kept = L::bits(square.le(L::splat(self.limit)));
             if kept != L::ALL {
@@ -688,35 +694,34 @@ impl Sweep<'_> {
                 near |= L::bits(within(bound, &p));
             }
             if near != 0 {
-                (p, v) = self.meet(plane * layer + at, near, p, v);
+                let left = layer - at;
+                (p, v) = meet(self.around.resolve, plane * layer + at, near & ((1 << left.min(MOST)) - 1), p, v);
             }
-            for axis in 0..3 {
+            thrice!(axis => {
                 p[axis].store(place(axis));
                 v[axis].store(place(VELOCITY + axis));
-            }
+            });
         }
         None
     }
+}
 
-    /// Lets those nodes whose bits are set meet what is around.
-    #[inline(always)]
-    fn meet<L: Lanes>(&self, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
-        let (mut p, mut v) = (each!(3, axis => p[axis].to_array()), each!(3, axis => v[axis].to_array()));
-        self.meet_one_by_one(first, near, &mut p, &mut v);
-        (each!(3, axis => L::from_array(p[axis])), each!(3, axis => L::from_array(v[axis])))
-    }
+/// Lets those nodes whose bits are set meet what is around.
+#[inline(always)]
+fn meet<L: Lanes>(resolve: &Resolve<'_>, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
+    let (mut p, mut v) = (each!(3, axis => p[axis].to_array()), each!(3, axis => v[axis].to_array()));
+    meet_one_by_one(resolve, first, near, &mut p, &mut v);
+    (each!(3, axis => L::from_array(p[axis])), each!(3, axis => L::from_array(v[axis])))
+}
 
-    #[inline(never)]
-    fn meet_one_by_one(&self, first: usize, near: u32, p: &mut [[f64; MOST]; 3], v: &mut [[f64; MOST]; 3]) {
-        // What fills the last vector is no node.
-        let left = self.grid.layer() - first % self.grid.layer();
-        for lane in (0..MOST.min(left)).filter(|lane| near >> lane & 1 == 1) {
-            let vector = |of: &[[f64; MOST]; 3]| DVec3::from_array([0, 1, 2].map(|axis| of[axis][lane]));
-            let (mut position, mut velocity) = (vector(p), vector(v));
-            (self.around.resolve)(first + lane, &mut position, &mut velocity, DVec3::ZERO);
-            for axis in 0..3 {
-                (p[axis][lane], v[axis][lane]) = (position[axis], velocity[axis]);
-            }
+#[inline(never)]
+fn meet_one_by_one(resolve: &Resolve<'_>, first: usize, near: u32, p: &mut [[f64; MOST]; 3], v: &mut [[f64; MOST]; 3]) {
+    for lane in (0..MOST).filter(|lane| near >> lane & 1 == 1) {
+        let vector = |of: &[[f64; MOST]; 3]| DVec3::from_array([0, 1, 2].map(|axis| of[axis][lane]));
+        let (mut position, mut velocity) = (vector(p), vector(v));
+        resolve(first + lane, &mut position, &mut velocity, DVec3::ZERO);
+        for axis in 0..3 {
+            (p[axis][lane], v[axis][lane]) = (position[axis], velocity[axis]);
         }
     }
 }
