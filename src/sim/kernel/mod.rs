@@ -4,6 +4,7 @@
 //! when somebody looks. Its results have the same bits for every vector set and every number of threads.
 
 mod array;
+mod crew;
 mod lanes;
 pub(in crate::sim) mod lattice;
 mod rotation;
