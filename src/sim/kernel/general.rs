@@ -12,11 +12,11 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 #![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 
+use super::crew::Crew;
 use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Kernel, Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
-use super::team::Team;
 use super::{Around, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, bounds};
 use glam::DVec3;
@@ -64,7 +64,7 @@ pub(in crate::sim) struct General {
     /// Where the first record of each node is.
     places: Vec<Place>,
     /// Always there between passes.
-    team: Option<Team>,
+    crew: Option<Crew>,
     /// Whether the accelerations belong to the positions.
     is_known: bool,
 }
@@ -224,12 +224,12 @@ impl General {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         shared.kept = Aligned::zeros(whole * 3);
-        Self { set, law, constants, parts: made, shared, places, team: Some(Team::new(1)), is_known: false }
+        Self { set, law, constants, parts: made, shared, places, crew: Some(Crew::new(1)), is_known: false }
     }
 
     /// Works with so many threads from now on, as far as there are parts for them.
     pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
-        self.team = Some(Team::new(threads.clamp(1, self.parts.len())));
+        self.crew = Some(Crew::new(threads.clamp(1, self.parts.len())));
     }
 
     /// Takes a state over: positions, velocities, and the rotation of each element: a quaternion, or (cos, sin).
@@ -391,23 +391,23 @@ impl Class {
 impl Kernel for General {
     fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool {
         // Taken out for the time, so that threads may share the rest.
-        let Some(mut team) = self.team.take() else { return false };
-        let (body, threads, lost) = (&*self, team.len(), AtomicU32::new(0));
+        let Some(mut crew) = self.crew.take() else { return false };
+        let (body, threads, lost) = (&*self, crew.len(), AtomicU32::new(0));
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
         let one_part = |part| body.set.run(OnePart { body, part, stage, commit, number, around });
-        team.run(&|me| {
+        crew.run(&|me| {
             let found = share(body.parts.len(), me).fold(0, |lost, part| lost | one_part(part));
             lost.fetch_or(found, Ordering::Relaxed);
         });
         let shared = body.shared.index.len() / MOST;
         if shared > 0 {
-            team.run(&|me| {
+            crew.run(&|me| {
                 let blocks = share(shared, me);
                 lost.fetch_or(body.set.run(SharedNodes { body, blocks, stage, number, around }), Ordering::Relaxed);
             });
         }
         let lost = lost.into_inner();
-        self.team = Some(team);
+        self.crew = Some(crew);
         lost == 0
     }
 

@@ -71,6 +71,25 @@ macro_rules! each {
 }
 pub(super) use each;
 
+/// A loop over 0, 1, 2, written out: a compiler that keeps it a loop keeps its lanes in memory.
+macro_rules! thrice {
+    ($at:ident => $body:expr) => {{
+        {
+            let $at = 0usize;
+            $body
+        }
+        {
+            let $at = 1usize;
+            $body
+        }
+        {
+            let $at = 2usize;
+            $body
+        }
+    }};
+}
+pub(super) use thrice;
+
 /// The most lanes that any set has. Arrays padded to a multiple of it suit all.
 pub(in crate::sim) const MOST: usize = 8;
 
@@ -122,6 +141,8 @@ pub(in crate::sim) trait Lanes:
     fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// `[previous.last, self.first, …]`: all lanes move up by one.
     fn shift_in(self, previous: Self) -> Self;
+    /// `[self.second, …, next.first]`: all lanes move down by one.
+    fn shift_out(self, next: Self) -> Self;
     /// One bit per lane, the lowest for the first.
     fn bits(mask: Self::Mask) -> u32;
     /// The mask with these bits.
@@ -386,6 +407,10 @@ mod portable {
             Self(from_fn(|at| if at == 0 { previous.0[N - 1] } else { self.0[at - 1] }))
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(from_fn(|at| if at == N - 1 { next.0[0] } else { self.0[at + 1] }))
+        }
+        #[inline(always)]
         fn bits(mask: [bool; N]) -> u32 {
             mask.iter().rev().fold(0, |bits, &lane| bits << 1 | u32::from(lane))
         }
@@ -559,6 +584,10 @@ mod x86 {
             Self(unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous.0, self.0), self.0) })
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(unsafe { _mm256_shuffle_pd::<0b0101>(self.0, _mm256_permute2f128_pd::<0x21>(self.0, next.0)) })
+        }
+        #[inline(always)]
         fn bits(mask: __m256d) -> u32 {
             unsafe { _mm256_movemask_pd(mask) as u32 }
         }
@@ -672,6 +701,13 @@ mod x86 {
             Self(unsafe {
                 let (low, high) = (_mm512_castpd_si512(previous.0), _mm512_castpd_si512(self.0));
                 _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(high, low))
+            })
+        }
+        #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(unsafe {
+                let (low, high) = (_mm512_castpd_si512(self.0), _mm512_castpd_si512(next.0));
+                _mm512_castsi512_pd(_mm512_alignr_epi64::<1>(high, low))
             })
         }
         #[inline(always)]
@@ -814,6 +850,10 @@ mod neon {
             Self(unsafe { vextq_f64::<1>(previous.0, self.0) })
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(unsafe { vextq_f64::<1>(self.0, next.0) })
+        }
+        #[inline(always)]
         fn bits(mask: uint64x2_t) -> u32 {
             unsafe { (vgetq_lane_u64::<0>(mask) & 1 | vgetq_lane_u64::<1>(mask) & 2) as u32 }
         }
@@ -841,7 +881,7 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Vec<Vec<f64>> {
             // Eight lanes of each, in as many vectors as that takes.
-            let mut all = vec![Vec::new(); 20];
+            let mut all = vec![Vec::new(); 21];
             let mut previous = L::splat(9.0);
             for first in (0..MOST).step_by(L::WIDTH) {
                 // SAFETY: WIDTH divides MOST.
@@ -867,6 +907,7 @@ mod tests {
                     flag(a.le(b)),
                     c.select(a.lt(b), a),
                     a.shift_in(previous),
+                    c.shift_out(L::splat(6.0)),
                     flag(L::both(a.lt(b), b.le(c))),
                     flag(L::mask(0b0110_1001 >> first)),
                     L::splat(if L::any(L::mask(0)) { 1.0 } else { 0.0 }),
@@ -878,6 +919,14 @@ mod tests {
                 }
             }
             all
+        }
+    }
+
+    struct Width;
+    impl Work for Width {
+        type Output = usize;
+        fn run<L: Lanes>(self) -> usize {
+            L::WIDTH
         }
     }
 
@@ -906,6 +955,7 @@ mod tests {
             each(&|a, b, _| flag(a <= b)),
             each(&|a, b, c| if a < b { c } else { a }),
             [9.0].into_iter().chain(a).take(MOST).collect(),
+            Vec::new(),
             each(&|a, b, c| flag(a < b && b <= c)),
             [1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0].to_vec(),
             vec![0.0; MOST],
@@ -918,7 +968,14 @@ mod tests {
                 .collect()
         };
         for set in Set::all() {
-            assert_eq!(bits(&set.run(Everything([a, b, c]))), bits(&expected), "{set:?}");
+            let mut found = set.run(Everything([a, b, c]));
+            // Each vector was shifted by itself.
+            let width = set.run(Width);
+            let shifted = std::mem::take(&mut found[16]);
+            assert!((0..MOST).all(
+                |at| at % width == width - 1 && shifted[at] == 6.0 || shifted[at].to_bits() == c[at + 1].to_bits()
+            ));
+            assert_eq!(bits(&found), bits(&expected), "{set:?}");
         }
         assert!(Set::all().any(|set| set == Set::best()));
     }

@@ -4,6 +4,7 @@
 //! when somebody looks. Its results have the same bits for every vector set and every number of threads.
 
 mod array;
+mod crew;
 pub(in crate::sim) mod general;
 mod lanes;
 pub(in crate::sim) mod lattice;
@@ -11,7 +12,6 @@ mod memory;
 pub(in crate::sim) mod motion;
 mod rotation;
 pub(in crate::sim) mod springs;
-pub(in crate::sim) mod team;
 
 #[cfg(test)]
 mod tests;

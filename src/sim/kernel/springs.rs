@@ -14,11 +14,11 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
 use super::Around;
+use super::crew::Crew;
 use super::general::Constants;
 use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Kernel, Motion, Nodes, Stage};
-use super::team::Team;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -59,7 +59,7 @@ pub(in crate::sim) struct Stencil {
     /// Chunks at the beginning of every slab but the first that move after all others.
     deferred: usize,
     /// Always there between passes.
-    team: Option<Team>,
+    crew: Option<Crew>,
     /// Whether the accelerations belong to the positions.
     is_known: bool,
 }
@@ -170,14 +170,14 @@ impl Stencil {
             stride,
             slabs,
             deferred,
-            team: Some(Team::new(1)),
+            crew: Some(Crew::new(1)),
             is_known: false,
         })
     }
 
     /// Works with so many threads from now on, as far as there are slabs for them.
     pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
-        self.team = Some(Team::new(threads.clamp(1, self.slabs.len())));
+        self.crew = Some(Crew::new(threads.clamp(1, self.slabs.len())));
     }
 
     /// Takes a state over.
@@ -213,18 +213,18 @@ impl Stencil {
 impl Kernel for Stencil {
     fn pass(&mut self, stage: Stage, _commit: bool, number: u64, around: Around<'_>) -> bool {
         // Taken out for the time, so that threads may share the rest.
-        let Some(mut team) = self.team.take() else { return false };
-        let (springs, threads, lost) = (&*self, team.len(), AtomicU32::new(0));
+        let Some(mut crew) = self.crew.take() else { return false };
+        let (springs, threads, lost) = (&*self, crew.len(), AtomicU32::new(0));
         let slabs = springs.slabs.len();
         let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
-        team.run(&|me| {
+        crew.run(&|me| {
             for slab in share(me) {
                 let found = springs.set.run(OneSlab { springs, slab, stage, number, around });
                 lost.fetch_or(found, Ordering::Relaxed);
             }
         });
         if slabs > 1 {
-            team.run(&|me| {
+            crew.run(&|me| {
                 for slab in share(me).filter(|&slab| slab > 0) {
                     let found = springs.set.run(Deferred { springs, slab, stage, number, around });
                     lost.fetch_or(found, Ordering::Relaxed);
@@ -232,7 +232,7 @@ impl Kernel for Stencil {
             });
         }
         let lost = lost.into_inner();
-        self.team = Some(team);
+        self.crew = Some(crew);
         lost == 0
     }
 
