@@ -762,7 +762,7 @@ mod x86 {
                 let pairs = [even[0], odd[0], even[1], odd[1]];
                 each!(8, lane => {
                     let two = pairs[lane / 4 * 2 + lane % 2];
-                    let own = if lane / 2 % 2 == 0 { _mm512_castpd512_pd256(two) } else { _mm512_extractf64x4_pd::<1>(two) };
+                    let own = if lane & 2 == 0 { _mm512_castpd512_pd256(two) } else { _mm512_extractf64x4_pd::<1>(two) };
                     _mm256_storeu_pd(row(lane), _mm256_add_pd(_mm256_loadu_pd(row(lane)), own));
                 });
             }

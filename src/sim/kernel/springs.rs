@@ -44,7 +44,6 @@ struct Family {
 pub(in crate::sim) struct Stencil {
     set: Set,
     nodes: usize,
-    chunks: usize,
     constants: Constants,
     /// By falling offset.
     families: Vec<Family>,
@@ -160,7 +159,6 @@ impl Stencil {
         Some(Self {
             set,
             nodes,
-            chunks,
             constants,
             families: made,
             presence,
