@@ -17,11 +17,14 @@
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
 use super::array::Array;
-use super::lanes::{Lanes, MOST, Set, Work};
-use super::rotation::{Arctangent, Quintic, Solver, matrix};
-use super::{Around, Bound, Rotation, Runaway};
+use super::crew::{Crew, wait_until};
+use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
+use super::rotation::{Arctangent, Optimum, Solver, matrix};
+use super::{Around, Bound, Resolve, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// What a step computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,12 +110,17 @@ impl Grid {
         self.row() * self.cells[1] - 1
     }
 
-    /// Numbers between one plane of nodes, or one of their coordinates, and the next: whole vectors, and a vector more of
-    /// boxes that reach a row and a node beyond their own numbers.
+    /// Numbers between one plane of nodes, or one of their coordinates, and the next: whole vectors, so many that what is
+    /// read for the last box, a row and two vectors ahead of it, is there.
     fn stride(&self) -> usize {
-        let stride = (self.boxes().next_multiple_of(MOST) + self.row() + 1).max(self.layer()).next_multiple_of(MOST);
+        let stride = (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST);
         // Coordinates that lie a multiple of a page apart would compete for the same places of the cache.
         if stride % 512 == 0 { stride + MOST } else { stride }
+    }
+
+    /// How many successive numbers a [`Ring`] holds.
+    fn ring(&self) -> usize {
+        CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
     /// Numbers between one plane of boxes and the next.
@@ -126,6 +134,10 @@ const NODE: usize = 7;
 const VELOCITY: usize = 3;
 const PUSH: usize = 6;
 
+/// Boxes that are gathered, then rotated, then stepped: so many that a processor finds independent work in each of these
+/// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
+const CHUNK: usize = 64;
+
 /// A lattice of equal boxes at work.
 pub(in crate::sim) struct Lattice {
     set: Set,
@@ -138,7 +150,11 @@ pub(in crate::sim) struct Lattice {
     /// `nodes` and `turns` as they were before the steps of a call.
     before: (Array, Array),
     pattern: Pattern,
-    slab: Slab,
+    crew: Crew,
+    /// The memory of one thread after the other; see [`Slab`].
+    slabs: Array,
+    /// How far each thread is.
+    signals: Box<[Signal]>,
 }
 
 /// What all planes have in common.
@@ -149,17 +165,52 @@ struct Pattern {
     valence: Array,
 }
 
-/// The memory of one thread that steps successive planes.
+/// Where the memory of one thread lies, which steps successive planes of boxes and the nodes below them.
+///
+/// The plane of nodes between the boxes of two threads belongs to the upper one. Each writes what its boxes pull there;
+/// when both have, the upper one steps these nodes.
+#[derive(Clone, Copy)]
 struct Slab {
-    /// `w̄ + v`, `u` and `t` of the boxes of the plane, after a row of zeros.
-    rows: Array,
+    /// A ring of boxes: `w̄ + v`, `u` and `t`.
+    rows: usize,
     /// What the boxes below pull at the nodes of a plane (N).
-    below: Array,
+    below: usize,
+    /// What the lowest boxes pull at the nodes below them (N).
+    lowest: usize,
+    /// What the highest boxes pull at the nodes above them (N).
+    highest: usize,
+    /// Of a chunk of boxes `u`, `v`, `t` and `w̄`.
+    work: usize,
+    /// Where the memory of the next thread begins.
+    end: usize,
+}
+
+impl Slab {
+    fn new(grid: &Grid) -> Self {
+        let plane = 3 * grid.stride();
+        let below = 9 * (grid.ring() + MOST);
+        let (lowest, highest, work) = (below + plane, below + 2 * plane, below + 3 * plane);
+        // Threads share no line of the cache, nor two that a processor fetches together.
+        Self { rows: 0, below, lowest, highest, work, end: work + 12 * CHUNK + 2 * MOST }
+    }
+}
+
+/// How far a thread is. In a line of the cache of its own.
+#[derive(Default)]
+#[repr(align(128))]
+struct Signal {
+    /// Steps in which its boxes have been gathered and have pulled.
+    pulled: AtomicU64,
+    /// Steps that the nodes have taken that it shares with the thread below.
+    shared: AtomicU64,
 }
 
 impl Lattice {
     /// `None` if the body is no full lattice of equal boxes, numbered x fastest.
-    pub(in crate::sim) fn new(body: &Body, parameters: Parameters, set: Set) -> Option<Self> {
+    ///
+    /// Steps are taken by so many threads, but not more than there are planes of boxes along z. The number, like `set`,
+    /// changes no bit.
+    pub(in crate::sim) fn new(body: &Body, parameters: Parameters, set: Set, threads: usize) -> Option<Self> {
         let grid = Grid::of(body)?;
         let (stride, row) = (grid.stride(), grid.row());
         let [_, rows, planes] = grid.cells;
@@ -177,9 +228,11 @@ impl Lattice {
             let edge = |at: usize, cells: usize| if at == 0 || at == cells { 1.0 } else { 2.0 };
             pattern.valence[at] = edge(at % row, row - 1) * edge(at / row, rows);
         }
-        let slab = Slab { rows: Array::zeros(9 * grid.row_stride()), below: Array::zeros(3 * stride) };
+        let crew = Crew::new(threads.clamp(1, planes));
+        let slabs = Array::zeros(crew.len() * Slab::new(&grid).end);
+        let signals = (0..crew.len()).map(|_| Signal::default()).collect();
         let before = (nodes.clone(), turns.clone());
-        Some(Self { set, grid, parameters, nodes, turns, before, pattern, slab })
+        Some(Self { set, grid, parameters, nodes, turns, before, pattern, crew, slabs, signals })
     }
 
     /// Where the numbers of a node stand in `nodes`: the first of them; the others follow a stride apart.
@@ -243,89 +296,131 @@ impl Lattice {
     pub(in crate::sim) fn step(&mut self, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
         self.before.0.copy_from_slice(&self.nodes);
         self.before.1.copy_from_slice(&self.turns);
-        for step in 0..steps {
-            if let Some(node) = self.sweep((around.speed_limit)(step), around) {
-                self.nodes.copy_from_slice(&self.before.0);
-                self.turns.copy_from_slice(&self.before.1);
-                for again in 0..step {
-                    self.sweep((around.speed_limit)(again), around);
-                }
-                return Err(Runaway { taken: step, node });
-            }
+        if self.sweep(steps, around, true).is_none() {
+            return Ok(());
         }
-        Ok(())
+        // Threads are not always in the same step; one thread finds the first.
+        self.restore();
+        let found = self.sweep(steps, around, false);
+        self.restore();
+        if let Some(Runaway { taken, .. }) = found {
+            self.sweep(taken, around, false);
+        }
+        found.map_or(Ok(()), Err)
     }
 
-    /// One step; the first node that becomes too fast, if there is one, and then the step is not finished.
-    fn sweep(&mut self, speed_limit: f64, around: &Around<'_>) -> Option<usize> {
-        let Self { set, grid, parameters, nodes, turns, pattern, slab, .. } = self;
+    fn restore(&mut self) {
+        self.nodes.copy_from_slice(&self.before.0);
+        self.turns.copy_from_slice(&self.before.1);
+    }
+
+    /// Takes steps until a node becomes too fast; that step is left unfinished. By one thread it is the first such step and
+    /// its first such node.
+    pub(super) fn sweep(&mut self, steps: u64, around: &Around<'_>, together: bool) -> Option<Runaway> {
+        let Self { set, grid, parameters, nodes, turns, pattern, crew, slabs, signals, .. } = self;
         let Parameters { stiffness, damping, rotation, gravity, step } = *parameters;
         let side = grid.sides.element_sum() / 3.0;
+        let ratio = (grid.sides / side).to_array();
+        let members = if together { crew.len() } else { 1 };
+        for signal in &mut **signals {
+            *signal = Signal::default();
+        }
+        let stop = AtomicBool::new(false);
         let sweep = Sweep {
             nodes: nodes.as_mut_ptr(),
             turns: turns.as_mut_ptr(),
             live: pattern.live.as_ptr(),
             valence: pattern.valence.as_ptr(),
-            rows: slab.rows.as_mut_ptr(),
-            below: slab.below.as_mut_ptr(),
+            slabs: slabs.as_mut_ptr(),
+            slab: Slab::new(grid),
             grid: *grid,
             stride: grid.stride(),
             box_stride: grid.box_stride(),
-            row_stride: grid.row_stride(),
+            ring: grid.ring(),
             stiffness,
             damping,
-            ratio: (grid.sides / side).to_array(),
+            ratio,
+            is_cube: ratio == [1.0; 3],
             // The columns of A at rest are 2 side², and half a side is left out of them.
             scale: 1.0 / (4.0 * side),
             half: 0.5 * side * stiffness,
             gain: (gravity * step).to_array(),
             step,
-            limit: speed_limit * speed_limit,
+            limit: 0.0,
             around,
+            steps,
+            member: 0,
+            members,
+            signals,
+            stop: &stop,
         };
-        let mut bad = None;
-        macro_rules! run {
-            ($damped:literal) => {
-                match rotation {
-                    Rotation::Quintic => set.run(Solved::<_, $damped>(&sweep, Quintic, &mut bad)),
-                    Rotation::Arctangent { passes } => {
-                        set.run(Solved::<_, $damped>(&sweep, Arctangent { passes }, &mut bad));
+        let runaway = Mutex::new(None);
+        let work = |member: usize| {
+            // Others wait for this thread; if it panics they must not.
+            let _guard = StopOnPanic(&stop);
+            let mut found = None;
+            // SAFETY: each member has its own memory.
+            let slabs = unsafe { sweep.slabs().add(member * sweep.slab.end) };
+            let sweep = Sweep { member, slabs, ..sweep };
+            macro_rules! run {
+                ($damped:literal) => {
+                    match rotation {
+                        Rotation::Optimum => set.run(Solved::<_, $damped>(&sweep, Optimum, &mut found)),
+                        Rotation::Arctangent { passes } => {
+                            set.run(Solved::<_, $damped>(&sweep, Arctangent { passes }, &mut found));
+                        }
                     }
-                }
-            };
-        }
-        if damping == 0.0 {
-            run!(false)
+                };
+            }
+            if damping == 0.0 {
+                run!(false)
+            } else {
+                run!(true)
+            }
+            if let Some(found) = found {
+                *runaway.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
+            }
+        };
+        if members == 1 {
+            work(0)
         } else {
-            run!(true)
+            crew.run(&work)
         }
-        bad
+        runaway.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Grid {
-    /// Numbers between one number of the boxes of a plane and the next, with the row before.
-    fn row_stride(&self) -> usize {
-        self.row().next_multiple_of(MOST) + self.layer().next_multiple_of(MOST)
+struct StopOnPanic<'a>(&'a AtomicBool);
+
+impl Drop for StopOnPanic<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
     }
 }
 
 /// Everything a sweep reads and writes. See the fields of the same name.
+///
+/// A sweep works on a copy of its own, whose address nobody knows: else every store might change it.
+#[derive(Clone, Copy)]
 struct Sweep<'a> {
     nodes: *mut f64,
     turns: *mut f64,
     live: *const f64,
     valence: *const f64,
-    rows: *mut f64,
-    below: *mut f64,
+    /// The memory of this thread.
+    slabs: *mut f64,
+    slab: Slab,
     grid: Grid,
     stride: usize,
     box_stride: usize,
-    row_stride: usize,
+    ring: usize,
     stiffness: f64,
     damping: f64,
     /// The sides over their mean.
     ratio: [f64; 3],
+    is_cube: bool,
     /// What makes sums of edges about 1.
     scale: f64,
     /// Half the mean side, times the stiffness (N).
@@ -336,109 +431,242 @@ struct Sweep<'a> {
     /// The square of the speed limit.
     limit: f64,
     around: &'a Around<'a>,
+    steps: u64,
+    /// Which of the threads this is.
+    member: usize,
+    members: usize,
+    signals: &'a [Signal],
+    /// Set when there is no point in going on.
+    stop: &'a AtomicBool,
 }
 
+// SAFETY: threads write to planes of their own, and read those of others only when told that they may: see `Signal`.
+unsafe impl Sync for Sweep<'_> {}
+
 /// A sweep with a solver, damped or not.
-struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<usize>);
+struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<Runaway>);
 
 impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self(sweep, solver, bad) = self;
-        let planes = sweep.grid.cells[2];
-        // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody else.
-        unsafe {
-            sweep.clear_below::<L>();
-            for plane in 0..planes {
-                if let Some(node) = sweep.plane::<L, S, DAMPED>(plane, solver) {
-                    *bad = Some(node);
-                    return;
-                }
+        let Self(&sweep, solver, found) = self;
+        for step in 0..sweep.steps {
+            let limit = (sweep.around.speed_limit)(step);
+            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
+            let bad = unsafe { Sweep { limit: limit * limit, ..sweep }.step::<L, S, DAMPED>(step, solver) };
+            if let Some(node) = bad {
+                *found = Some(Runaway { taken: step, node });
+                sweep.stop.store(true, Ordering::Relaxed);
             }
-            *bad = sweep.top::<L, DAMPED>(planes);
+            if sweep.stop.load(Ordering::Relaxed) {
+                return;
+            }
         }
     }
 }
 
 impl Sweep<'_> {
     #[inline(always)]
-    unsafe fn clear_below<L: Lanes>(&self) {
+    fn slabs(&self) -> *mut f64 {
+        self.slabs
+    }
+
+    /// Takes a step with the planes of this thread.
+    #[inline(always)]
+    unsafe fn step<L: Lanes, S: Solver, const DAMPED: bool>(&self, step: u64, solver: S) -> Option<usize> {
+        let planes = self.grid.cells[2];
+        let first = planes * self.member / self.members;
+        let end = planes * (self.member + 1) / self.members;
+        let is_last = self.member + 1 == self.members;
+        // SAFETY: planes from `first` on are this thread's; the one at `end`, if it is another's, is read when that has
+        // stepped it and written by it when this thread has read it. So with what both pull there.
+        unsafe {
+            let memory = |part: usize| self.slabs.add(part);
+            if self.member == 0 {
+                self.clear::<L>(memory(self.slab.below));
+            }
+            for plane in first..end {
+                let is_end = plane + 1 == end && !is_last;
+                if is_end && !self.wait(|| self.signals[self.member + 1].shared.load(Ordering::Acquire) >= step) {
+                    return None;
+                }
+                let above = memory(if is_end { self.slab.highest } else { self.slab.below });
+                let is_shared = plane == first && self.member > 0;
+                if let Some(node) = self.plane::<L, S, DAMPED>(plane, solver, above, is_shared) {
+                    return Some(node);
+                }
+            }
+            self.signals[self.member].pulled.store(step + 1, Ordering::Release);
+            if is_last {
+                let below = memory(self.slab.below);
+                let bad = self.nodes_between::<L, DAMPED>(planes, |at| (L::load(below.add(at)), L::splat(0.0)));
+                if bad.is_some() {
+                    return bad;
+                }
+            }
+            if self.member > 0 {
+                let before = self.member - 1;
+                if !self.wait(|| self.signals[before].pulled.load(Ordering::Acquire) > step) {
+                    return None;
+                }
+                let below = memory(self.slab.highest).sub(self.slab.end);
+                let lowest = memory(self.slab.lowest);
+                let bad =
+                    self.nodes_between::<L, DAMPED>(first, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
+                if bad.is_some() {
+                    return bad;
+                }
+                self.signals[self.member].shared.store(step + 1, Ordering::Release);
+            }
+        }
+        None
+    }
+
+    /// Waits for another thread; false if that is in vain.
+    #[inline(never)]
+    fn wait(&self, is_so: impl Fn() -> bool) -> bool {
+        wait_until(|| is_so() || self.stop.load(Ordering::Relaxed));
+        is_so()
+    }
+
+    /// Makes the boxes below the first plane pull at nothing.
+    #[inline(always)]
+    unsafe fn clear<L: Lanes>(&self, below: *mut f64) {
         for at in (0..3 * self.stride).step_by(L::WIDTH) {
-            // SAFETY: `below` has three strides, which are whole vectors.
-            unsafe { L::splat(0.0).store(self.below.add(at)) };
+            // SAFETY: it has three strides, which are whole vectors.
+            unsafe { L::splat(0.0).store(below.add(at)) };
         }
     }
 
-    /// Steps the nodes of a plane, with the boxes between it and the next one.
+    /// Lets the boxes above a plane of nodes pull at it and at the next plane, and steps its nodes. What they pull at the
+    /// next plane goes to `above`. Where the plane `is_shared`, its nodes are not yet stepped.
     #[inline(always)]
-    unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, solver: S) -> Option<usize> {
+    unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        solver: S,
+        above: *mut f64,
+        is_shared: bool,
+    ) -> Option<usize> {
         let zero = L::splat(0.0);
         let layer = self.grid.layer();
         let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
-        let heights = if plane == 0 { 1.0 } else { 2.0 };
+        // The place in the ring of rows.
+        let mut own = 0;
+        // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where they are asked for. A
+        // chunk of `work` holds what is written to it. The ring holds more than a row in whole vectors; there is none before
+        // the first.
+        unsafe {
+            let (below, lowest) = (self.slabs.add(self.slab.below), self.slabs.add(self.slab.lowest));
+            let row = self.grid.row().next_multiple_of(MOST);
+            for part in 0..9 {
+                for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
+                    zero.store(self.slabs.add(self.slab.rows + part * (self.ring + MOST) + at));
+                }
+            }
+            for chunk in (0..layer).step_by(CHUNK) {
+                let boxes = self.box_stride.min(chunk + CHUNK);
+                let mut at = chunk;
+                while at < boxes {
+                    self.boxes::<L, S, DAMPED>(plane, at, solver);
+                    at += L::WIDTH;
+                }
+                let mut at = chunk;
+                while at < layer.min(chunk + CHUNK) {
+                    let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
+                    own = self.next(own, L::WIDTH);
+                    // Along x, and then along z.
+                    let mut force = [zero; 3];
+                    thrice!(axis => {
+                        let (high, low) = pull[axis];
+                        let here = high.shift_in(pull_before[axis]) + low;
+                        let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
+                        (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
+                        let place = axis * self.stride + at;
+                        if is_shared {
+                            (here - up).store(lowest.add(place));
+                        } else {
+                            force[axis] = L::load(below.add(place)) + (here - up);
+                        }
+                        (here + up).store(above.add(place));
+                    });
+                    if !is_shared && let Some(node) = self.update::<L, DAMPED>(plane, at, force) {
+                        return Some(node);
+                    }
+                    at += L::WIDTH;
+                }
+            }
+        }
+        None
+    }
+
+    /// Steps the nodes of a plane at which the boxes on both sides have pulled (N).
+    #[inline(always)]
+    unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        pulls: impl Fn(usize) -> (L, L),
+    ) -> Option<usize> {
         let mut at = 0;
-        while at < layer {
-            // SAFETY: `at` is a multiple of a width below `layer`, and where boxes are asked for below their stride.
-            unsafe {
-                let parts =
-                    if at < self.box_stride { self.boxes::<L, S, DAMPED>(plane, at, solver) } else { [[zero; 3]; 4] };
-                let (pull, rise) = self.along_y(at, parts);
-                // Along x, and then along z.
-                let mut force = [zero; 3];
-                for axis in 0..3 {
-                    let (high, low) = (pull[axis].0, pull[axis].1);
-                    let here = high.shift_in(pull_before[axis]) + low;
-                    let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
-                    (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
-                    let below = self.below.add(axis * self.stride + at);
-                    force[axis] = L::load(below) + (here - up);
-                    (here + up).store(below);
-                }
-                if let Some(node) = self.update::<L, DAMPED>(plane, at, heights, force) {
-                    return Some(node);
-                }
+        while at < self.grid.layer() {
+            let force = each!(3, axis => {
+                let (below, above) = pulls(axis * self.stride + at);
+                below + above
+            });
+            // SAFETY: `at` is a multiple of a width below `layer`.
+            if let Some(node) = unsafe { self.update::<L, DAMPED>(plane, at, force) } {
+                return Some(node);
             }
             at += L::WIDTH;
         }
         None
     }
 
-    /// Steps the nodes of the last plane, which has no boxes above.
+    /// The place in a ring that lies so far behind another.
     #[inline(always)]
-    unsafe fn top<L: Lanes, const DAMPED: bool>(&self, plane: usize) -> Option<usize> {
-        let mut at = 0;
-        while at < self.grid.layer() {
-            // SAFETY: `at` is a multiple of a width below `layer`.
-            unsafe {
-                let force = [0, 1, 2].map(|axis| L::load(self.below.add(axis * self.stride + at)));
-                if let Some(node) = self.update::<L, DAMPED>(plane, at, 1.0, force) {
-                    return Some(node);
+    fn next(&self, place: usize, way: usize) -> usize {
+        let next = place + way;
+        if next >= self.ring { next - self.ring } else { next }
+    }
+
+    /// Writes a number of each part to a ring; what lies across its end is there twice.
+    #[inline(always)]
+    unsafe fn put<L: Lanes, const PARTS: usize>(&self, ring: *mut f64, place: usize, values: &[[L; 3]; PARTS]) {
+        let part = self.ring + MOST;
+        // SAFETY: a ring has a vector more for each part, and places are multiples of a width.
+        unsafe {
+            let to = ring.add(place);
+            for group in 0..PARTS {
+                thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+            }
+            if place < MOST {
+                let to = to.add(self.ring);
+                for group in 0..PARTS {
+                    thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
                 }
             }
-            at += L::WIDTH;
         }
-        None
     }
 
     /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S) -> [[L; 3]; 4] {
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S) {
         let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and a node more.
+        // SAFETY: a stride holds all boxes in whole vectors, and a row and a node more; `live` and the turns hold all boxes of
+        // a plane in whole vectors, and a chunk of `work` what is written to it.
         unsafe {
             let low = self.nodes.add(plane * NODE * self.stride + at);
             let high = low.add(NODE * self.stride);
+            let work = self.slabs.add(self.slab.work + at % CHUNK);
             let live = L::load(self.live.add(at));
-            let (mean_of_p, mean_of_v) =
-                (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
+            let both = |of: usize, offset: usize| {
+                let place = of * self.stride + offset;
+                (L::load(low.add(place)), L::load(high.add(place)))
+            };
             let mut edges = [[L::splat(0.0); 3]; 3];
-            let mut mean = [L::splat(0.0); 3];
-            for axis in 0..3 {
-                let both = |of: usize, offset: usize| {
-                    let place = of * self.stride + offset;
-                    (L::load(low.add(place)), L::load(high.add(place)))
-                };
+            let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
+            thrice!(axis => {
                 // Two nodes along z, two along x: sum, and differences along x and z.
                 let pair = |offset: usize| {
                     let ((a, b), (c, d)) = (both(axis, offset), both(axis, offset + 1));
@@ -449,60 +677,56 @@ impl Sweep<'_> {
                 edges[0][axis] = x0 + x1;
                 edges[1][axis] = sum1 - sum0;
                 edges[2][axis] = z0 + z1;
-                mean[axis] = mean_of_p * (sum0 + sum1);
+                let mut mean = of_p * (sum0 + sum1);
                 if DAMPED {
                     let pair = |offset: usize| {
                         let ((a, b), (c, d)) = (both(VELOCITY + axis, offset), both(VELOCITY + axis, offset + 1));
                         (a + b) + (c + d)
                     };
-                    mean[axis] = mean_of_v.mul_add(pair(0) + pair(row), mean[axis]);
+                    mean = of_v.mul_add(pair(0) + pair(row), mean);
                 }
-            }
-            let is_cube = self.ratio == [1.0; 3];
-            if !is_cube {
-                for column in 0..3 {
-                    edges[column] = edges[column].map(|edge| edge * L::splat(self.ratio[column]));
-                }
+                mean.store(work.add((9 + axis) * CHUNK));
+            });
+            if !self.is_cube {
+                edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
             }
             let turns = self.turns.add(plane * 4 * self.box_stride + at);
-            let last = [0, 1, 2, 3].map(|part| L::load(turns.add(part * self.box_stride)));
+            let last = each!(4, part => L::load(turns.add(part * self.box_stride)));
             let q = solver.follow(&edges, L::splat(self.scale), last, L::splat(0.0).lt(live));
-            (0..4).for_each(|part| q[part].store(turns.add(part * self.box_stride)));
-            let mut shape = matrix(q, L::splat(self.half) * live);
-            if !is_cube {
-                for column in 0..3 {
-                    shape[column] = shape[column].map(|part| part * L::splat(self.ratio[column]));
-                }
+            for part in 0..4 {
+                q[part].store(turns.add(part * self.box_stride));
             }
-            [mean, shape[0], shape[1], shape[2]]
+            let mut shape = matrix(q, L::splat(self.half) * live);
+            if !self.is_cube {
+                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            }
+            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
         }
     }
 
     /// Adds what the boxes of two rows do to the nodes between: for each axis the sum for the next node along x and for the
     /// own, and the part that changes its sign along z.
     #[inline(always)]
-    unsafe fn along_y<L: Lanes>(&self, at: usize, [mean, u, v, t]: [[L; 3]; 4]) -> ([(L, L); 3], [L; 3]) {
-        let first = self.grid.row().next_multiple_of(MOST) + at;
-        let row = self.grid.row();
-        // SAFETY: before the first box lies a row of zeros, and behind it a plane of nodes in whole vectors.
+    unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
+        // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
         unsafe {
-            let own = self.rows.add(first);
-            let put = |part: usize, value: L| value.store(own.add(part * self.row_stride));
-            for axis in 0..3 {
-                put(axis, mean[axis] + v[axis]);
-                put(3 + axis, u[axis]);
-                put(6 + axis, t[axis]);
-            }
+            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            let parts = each!(4, part => each!(3, axis => {
+                if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
+            }));
+            let [u, v, t, mean] = parts;
+            self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
-            let get = |part: usize| L::load(own.add(part * self.row_stride).sub(row));
+            let before = self.next(own, self.ring - self.grid.row());
+            let get = |part: usize| L::load(self.slabs.add(self.slab.rows + part * (self.ring + MOST) + before));
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
-            for axis in 0..3 {
+            thrice!(axis => {
                 let sum = get(axis) + (mean[axis] - v[axis]);
                 let along = get(3 + axis) + u[axis];
                 pull[axis] = (sum + along, sum - along);
                 rise[axis] = get(6 + axis) + t[axis];
-            }
+            });
             (pull, rise)
         }
     }
@@ -510,29 +734,24 @@ impl Sweep<'_> {
     /// Eqs. (2) and (3) for nodes on which elements act with a force (N) besides `−w`, and what they meet. The first that
     /// becomes too fast, if there is one.
     #[inline(always)]
-    unsafe fn update<L: Lanes, const DAMPED: bool>(
-        &self,
-        plane: usize,
-        at: usize,
-        heights: f64,
-        force: [L; 3],
-    ) -> Option<usize> {
+    unsafe fn update<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, force: [L; 3]) -> Option<usize> {
         let layer = self.grid.layer();
         // SAFETY: a stride holds all nodes of a plane in whole vectors.
         unsafe {
             let node = self.nodes.add(plane * NODE * self.stride + at);
             let place = |of: usize| node.add(of * self.stride);
-            let valence = L::load(self.valence.add(at)) * L::splat(heights);
+            let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
+            let valence = L::load(self.valence.add(at)) * L::splat(planes);
             let push = L::load(place(PUSH));
             let (stiffness, damping) = (L::splat(self.stiffness) * valence, L::splat(self.damping) * valence);
-            let mut gain = self.gain.map(L::splat);
+            let mut gain = each!(3, axis => L::splat(self.gain[axis]));
             if at + L::WIDTH > layer {
                 // What fills the last vector stays where it is.
                 let nodes = L::mask((1 << (layer - at)) - 1);
-                gain = gain.map(|gain| gain.select(nodes, L::splat(0.0)));
+                gain = each!(3, axis => gain[axis].select(nodes, L::splat(0.0)));
             }
             let (mut p, mut v) = ([push; 3], [push; 3]);
-            for axis in 0..3 {
+            thrice!(axis => {
                 (p[axis], v[axis]) = (L::load(place(axis)), L::load(place(VELOCITY + axis)));
                 let mut force = p[axis].neg_mul_add(stiffness, force[axis]);
                 if DAMPED {
@@ -540,7 +759,7 @@ impl Sweep<'_> {
                 }
                 v[axis] = force.mul_add(push, v[axis] + gain[axis]);
                 p[axis] = v[axis].mul_add(L::splat(self.step), p[axis]);
-            }
+            });
             let square = v[2].mul_add(v[2], v[1].mul_add(v[1], v[0] * v[0]));
             let kept = L::bits(square.le(L::splat(self.limit)));
             if kept != L::ALL {
@@ -552,35 +771,34 @@ impl Sweep<'_> {
                 near |= L::bits(within(bound, &p));
             }
             if near != 0 {
-                (p, v) = self.meet(plane * layer + at, near, p, v);
+                let left = layer - at;
+                (p, v) = meet(self.around.resolve, plane * layer + at, near & ((1 << left.min(MOST)) - 1), p, v);
             }
-            for axis in 0..3 {
+            thrice!(axis => {
                 p[axis].store(place(axis));
                 v[axis].store(place(VELOCITY + axis));
-            }
+            });
         }
         None
     }
+}
 
-    /// Lets those nodes whose bits are set meet what is around.
-    #[inline(always)]
-    fn meet<L: Lanes>(&self, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
-        let (mut p, mut v) = (p.map(L::to_array), v.map(L::to_array));
-        self.meet_one_by_one(first, near, &mut p, &mut v);
-        (p.map(L::from_array), v.map(L::from_array))
-    }
+/// Lets those nodes whose bits are set meet what is around.
+#[inline(always)]
+fn meet<L: Lanes>(resolve: &Resolve<'_>, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
+    let (mut p, mut v) = (each!(3, axis => p[axis].to_array()), each!(3, axis => v[axis].to_array()));
+    meet_one_by_one(resolve, first, near, &mut p, &mut v);
+    (each!(3, axis => L::from_array(p[axis])), each!(3, axis => L::from_array(v[axis])))
+}
 
-    #[inline(never)]
-    fn meet_one_by_one(&self, first: usize, near: u32, p: &mut [[f64; MOST]; 3], v: &mut [[f64; MOST]; 3]) {
-        // What fills the last vector is no node.
-        let left = self.grid.layer() - first % self.grid.layer();
-        for lane in (0..MOST.min(left)).filter(|lane| near >> lane & 1 == 1) {
-            let vector = |of: &[[f64; MOST]; 3]| DVec3::from_array([0, 1, 2].map(|axis| of[axis][lane]));
-            let (mut position, mut velocity) = (vector(p), vector(v));
-            (self.around.resolve)(first + lane, &mut position, &mut velocity, DVec3::ZERO);
-            for axis in 0..3 {
-                (p[axis][lane], v[axis][lane]) = (position[axis], velocity[axis]);
-            }
+#[inline(never)]
+fn meet_one_by_one(resolve: &Resolve<'_>, first: usize, near: u32, p: &mut [[f64; MOST]; 3], v: &mut [[f64; MOST]; 3]) {
+    for lane in (0..MOST).filter(|lane| near >> lane & 1 == 1) {
+        let vector = |of: &[[f64; MOST]; 3]| DVec3::from_array([0, 1, 2].map(|axis| of[axis][lane]));
+        let (mut position, mut velocity) = (vector(p), vector(v));
+        resolve(first + lane, &mut position, &mut velocity, DVec3::ZERO);
+        for axis in 0..3 {
+            (p[axis][lane], v[axis][lane]) = (position[axis], velocity[axis]);
         }
     }
 }
@@ -689,7 +907,19 @@ mod tests {
     }
 
     fn run(body: &Body, state: &State, parameters: Parameters, set: Set, calls: u64, steps: u64) -> (State, Vec<f64>) {
-        let mut lattice = Lattice::new(body, parameters, set).expect("a lattice");
+        run_by(1, body, state, parameters, set, calls, steps)
+    }
+
+    fn run_by(
+        threads: usize,
+        body: &Body,
+        state: &State,
+        parameters: Parameters,
+        set: Set,
+        calls: u64,
+        steps: u64,
+    ) -> (State, Vec<f64>) {
+        let mut lattice = Lattice::new(body, parameters, set, threads).expect("a lattice");
         let mut memory = turns(body, state);
         lattice.load(&state.position, &state.velocity, &memory);
         let floor = floor();
@@ -706,7 +936,7 @@ mod tests {
     fn reference(body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
         let (passes, rotation) = match parameters.rotation {
             Rotation::Arctangent { passes } => (passes, RotationReading::Arctangent),
-            Rotation::Quintic => (1, RotationReading::Exact),
+            Rotation::Optimum => (1, RotationReading::Exact),
         };
         let model = ShapeBased {
             stiffness: parameters.stiffness,
@@ -741,7 +971,7 @@ mod tests {
                 let body = lattice(cells, sides);
                 let state = start(&body, 0.05);
                 for (damping, rotation) in
-                    [(0.0, Rotation::Quintic), (0.7, Rotation::Quintic), (0.7, Rotation::Arctangent { passes: 2 })]
+                    [(0.0, Rotation::Optimum), (0.7, Rotation::Optimum), (0.7, Rotation::Arctangent { passes: 2 })]
                 {
                     let parameters = parameters(damping, rotation);
                     let (found, _) = run(&body, &state, parameters, Set::best(), 10, 100);
@@ -758,11 +988,95 @@ mod tests {
             let body = lattice(cells, DVec3::new(0.5, 0.3, 0.8));
             // Shaken so much that some elements turn over.
             let state = start(&body, 0.6);
-            for rotation in [Rotation::Quintic, Rotation::Arctangent { passes: 2 }] {
+            for rotation in [Rotation::Optimum, Rotation::Arctangent { passes: 2 }] {
                 let all = Set::all().map(|set| run(&body, &state, parameters(0.3, rotation), set, 1, 300));
                 let all: Vec<_> = all.collect();
                 assert!(all.windows(2).all(|two| two[0] == two[1]), "{cells:?} {rotation:?}");
             }
         }
+    }
+
+    #[test]
+    fn every_number_of_threads_has_the_same_bits() {
+        for cells in [[3, 3, 3], [2, 3, 7], [17, 2, 4], [1, 1, 5], [4, 4, 1]] {
+            let body = lattice(cells, DVec3::splat(0.5));
+            let state = start(&body, 0.3);
+            let parameters = parameters(0.3, Rotation::Optimum);
+            let one = run(&body, &state, parameters, Set::best(), 3, 100);
+            for threads in [2, 3, 4, 7] {
+                assert_eq!(run_by(threads, &body, &state, parameters, Set::best(), 3, 100), one, "{cells:?} {threads}");
+            }
+        }
+    }
+
+    #[test]
+    fn before_a_runaway_the_state_is_that_of_the_step_before() {
+        let body = lattice([5, 3, 6], DVec3::splat(0.5));
+        let state = start(&body, 0.05);
+        // Far beyond what is stable.
+        let parameters = Parameters { step: 0.3, ..parameters(0.0, Rotation::Optimum) };
+        let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
+        let around = Around { bounds: &[], resolve: &resolve, speed_limit: &|step| 1e6 + step as f64 };
+        let memory = turns(&body, &state);
+        let make = |threads| {
+            let mut lattice = Lattice::new(&body, parameters, Set::best(), threads).expect("a lattice");
+            lattice.load(&state.position, &state.velocity, &memory);
+            lattice
+        };
+        let read = |lattice: &Lattice| {
+            let (mut state, mut memory) = (state.clone(), memory.clone());
+            lattice.store(&mut state.position, &mut state.velocity, &mut memory);
+            (state, memory)
+        };
+        let mut one = make(1);
+        let runaway = one.step(1000, &around).expect_err("unstable");
+        assert!((2..1000).contains(&runaway.taken), "{runaway:?}");
+        let mut up_to_there = make(1);
+        assert_eq!(up_to_there.step(runaway.taken, &around), Ok(()));
+        assert_eq!(read(&one), read(&up_to_there));
+        // The limit of the next step is that of the first step of a call.
+        assert_eq!(up_to_there.step(1, &around), Err(Runaway { taken: 0, node: runaway.node }));
+        assert_eq!(read(&one), read(&up_to_there));
+        for threads in [2, 3] {
+            let mut several = make(threads);
+            assert_eq!(several.step(1000, &around), Err(runaway));
+            assert_eq!(read(&several), read(&one));
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_lost_at_once() {
+        let body = lattice([3, 2, 2], DVec3::splat(0.5));
+        let state = start(&body, 0.0);
+        let mut lattice = Lattice::new(&body, parameters(0.1, Rotation::Optimum), Set::best(), 1).expect("a lattice");
+        lattice.load(&state.position, &state.velocity, &turns(&body, &state));
+        lattice.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
+        let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
+        let around = Around { bounds: &[], resolve: &resolve, speed_limit: &|_| 1e6 };
+        assert!(lattice.step(3, &around).is_err_and(|runaway| runaway.taken == 0));
+        assert!(lattice.node(17).0.y.is_nan() && lattice.node(0) == (state.position[0], state.velocity[0]));
+    }
+
+    #[test]
+    fn only_lattices_of_equal_boxes_are_recognised() {
+        let body = lattice([3, 2, 4], DVec3::new(0.5, 0.3, 0.8));
+        let grid = Grid::of(&body).expect("a lattice");
+        assert_eq!(grid.cells, [3, 2, 4]);
+        assert!((grid.sides - DVec3::new(0.5, 0.3, 0.8)).length() < 1e-14);
+        let with = |change: &dyn Fn(&mut Body)| {
+            let mut body = Body::clone(&body);
+            change(&mut body);
+            Grid::of(&body)
+        };
+        assert_eq!(with(&|body| body.rest[30].x += 1e-9), None);
+        assert_eq!(with(&|body| body.rest.iter_mut().for_each(|node| node.x *= -1.0)), None);
+        assert_eq!(with(&|body| body.dimension = Dimension::Plane), None);
+        let without_first = |body: &mut Body| body.elements = body.elements.iter().skip(1).collect();
+        assert_eq!(with(&without_first), None);
+        let backwards = |body: &mut Body| {
+            body.elements = (0..body.elements.len()).rev().map(|at| &body.elements[at]).collect();
+        };
+        assert_eq!(with(&backwards), None);
+        assert_eq!(with(&|body| body.elements = IndexLists::default()), None);
     }
 }

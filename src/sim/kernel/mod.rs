@@ -3,12 +3,22 @@
 //! A kernel owns positions, velocities and rotations in arrays of its own, takes any number of steps, and hands them out
 //! when somebody looks. Its results have the same bits for every vector set and every number of threads.
 
+#![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 mod array;
+mod crew;
 mod drive;
 pub mod floor;
+pub(in crate::sim) mod general;
 mod lanes;
 pub(in crate::sim) mod lattice;
+mod memory;
+pub(in crate::sim) mod motion;
 mod rotation;
+pub(in crate::sim) mod springs;
+
+#[cfg(test)]
+mod tests;
 
 pub(in crate::sim) use drive::ByKernel;
 pub(in crate::sim) use lanes::Set;
@@ -23,8 +33,8 @@ pub(in crate::sim) enum Rotation {
         /// How often.
         passes: u32,
     },
-    /// The optimum to round-off; see [`rotation::Quintic`].
-    Quintic,
+    /// The optimum to round-off; see [`rotation::Optimum`].
+    Optimum,
 }
 
 /// A region outside of which nothing has to be asked whether a node touches it.

@@ -1,0 +1,173 @@
+//! Threads that wait for work, and do it together.
+
+#![expect(unsafe_code, reason = "work that borrows is lent to threads that outlive it, and taken back before it ends")]
+
+use std::hint::spin_loop;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// How often a helper looks for work before it sleeps: some tens of microseconds, the time that waking one up takes.
+const LOOKS: u32 = 20_000;
+
+/// Work for one member of a crew, by its number.
+type Work<'a> = dyn Fn(usize) + Sync + 'a;
+
+/// The calling thread and its helpers, who end with it.
+pub(super) struct Crew {
+    shared: Arc<Shared>,
+    helpers: Vec<JoinHandle<()>>,
+}
+
+struct Shared {
+    /// What is to be done.
+    work: Mutex<Option<&'static Work<'static>>>,
+    /// How many pieces of work there have been; changes while `work` is locked.
+    round: AtomicU64,
+    wake: Condvar,
+    /// Helpers that are not yet through with this round.
+    busy: AtomicUsize,
+    panicked: AtomicBool,
+    end: AtomicBool,
+}
+
+impl Crew {
+    /// A crew of so many threads, the caller's among them.
+    pub(super) fn new(threads: usize) -> Self {
+        let shared = Arc::new(Shared {
+            work: Mutex::new(None),
+            round: AtomicU64::new(0),
+            wake: Condvar::new(),
+            busy: AtomicUsize::new(0),
+            panicked: AtomicBool::new(false),
+            end: AtomicBool::new(false),
+        });
+        let helpers = (1..threads)
+            .map_while(|number| {
+                let shared = Arc::clone(&shared);
+                std::thread::Builder::new().name("step".into()).spawn(move || shared.help(number)).ok()
+            })
+            .collect();
+        Self { shared, helpers }
+    }
+
+    /// The number of threads, which may be less than was asked for.
+    pub(super) fn len(&self) -> usize {
+        self.helpers.len() + 1
+    }
+
+    /// Calls `work` with each number below [`Self::len`], at the same time, and returns when all have returned.
+    ///
+    /// # Panics
+    /// If one of them does.
+    pub(super) fn run(&mut self, work: &Work<'_>) {
+        let Shared { busy, panicked, .. } = &*self.shared;
+        if self.helpers.is_empty() {
+            return work(0);
+        }
+        // SAFETY: helpers use it only until they are no longer busy, for which this function waits, come what may.
+        let lent = unsafe { std::mem::transmute::<&Work<'_>, &'static Work<'static>>(work) };
+        busy.store(self.helpers.len(), Ordering::Relaxed);
+        self.shared.tell(Some(lent));
+        let own = catch_unwind(AssertUnwindSafe(|| work(0)));
+        wait_until(|| busy.load(Ordering::Acquire) == 0);
+        if let Err(panic) = own {
+            panicked.store(false, Ordering::Relaxed);
+            std::panic::resume_unwind(panic);
+        }
+        assert!(!panicked.swap(false, Ordering::Relaxed), "a thread that helped has panicked");
+    }
+}
+
+impl Drop for Crew {
+    fn drop(&mut self) {
+        self.shared.end.store(true, Ordering::Relaxed);
+        self.shared.tell(None);
+        for helper in self.helpers.drain(..) {
+            // It catches the panics of its work.
+            drop(helper.join());
+        }
+    }
+}
+
+impl Shared {
+    fn tell(&self, work: Option<&'static Work<'static>>) {
+        let mut place = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+        *place = work;
+        self.round.fetch_add(1, Ordering::Release);
+        drop(place);
+        self.wake.notify_all();
+    }
+
+    /// The life of a helper.
+    fn help(&self, number: usize) {
+        let mut round = 0;
+        loop {
+            let mut looks = 0;
+            while looks < LOOKS && self.round.load(Ordering::Acquire) == round {
+                looks += 1;
+                spin_loop();
+            }
+            let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+            while self.round.load(Ordering::Acquire) == round {
+                work = self.wake.wait(work).unwrap_or_else(PoisonError::into_inner);
+            }
+            round += 1;
+            if self.end.load(Ordering::Relaxed) {
+                return;
+            }
+            let own = *work;
+            drop(work);
+            if let Some(own) = own
+                && catch_unwind(AssertUnwindSafe(|| own(number))).is_err()
+            {
+                self.panicked.store(true, Ordering::Relaxed);
+            }
+            self.busy.fetch_sub(1, Ordering::Release);
+        }
+    }
+}
+
+/// Waits for something that another thread is about to do.
+pub(super) fn wait_until(is_so: impl Fn() -> bool) {
+    let mut looks = 0u32;
+    while !is_so() {
+        looks += 1;
+        // It may have no processor to itself.
+        if looks.is_multiple_of(1000) || cfg!(miri) {
+            std::thread::yield_now();
+        } else {
+            spin_loop();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everyone_works_once_in_each_round() {
+        for threads in [1, 2, 5] {
+            let mut crew = Crew::new(threads);
+            let counts: Vec<_> = (0..threads).map(|_| AtomicUsize::new(0)).collect();
+            for round in 1..50 {
+                crew.run(&|number| {
+                    counts[number].fetch_add(1, Ordering::Relaxed);
+                });
+                assert!(counts.iter().all(|count| count.load(Ordering::Relaxed) == round));
+            }
+        }
+    }
+
+    #[test]
+    fn a_panic_reaches_the_caller() {
+        let mut crew = Crew::new(3);
+        for member in 0..3 {
+            let run = catch_unwind(AssertUnwindSafe(|| crew.run(&|number| assert_ne!(number, member))));
+            assert!(run.is_err());
+            crew.run(&|_| ());
+        }
+    }
+}
