@@ -660,30 +660,19 @@ impl Sweep<'_> {
             let high = low.add(NODE * self.stride);
             let work = self.slabs.add(self.slab.work + at % CHUNK);
             let live = L::load(self.live.add(at));
-            let both = |of: usize, offset: usize| {
-                let place = of * self.stride + offset;
-                (L::load(low.add(place)), L::load(high.add(place)))
-            };
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
-                // Two nodes along z, two along x: sum, and differences along x and z.
-                let pair = |offset: usize| {
-                    let ((a, b), (c, d)) = (both(axis, offset), both(axis, offset + 1));
-                    let (left, right) = (a + b, c + d);
-                    (left + right, right - left, (b - a) + (d - c))
-                };
-                let ((sum0, x0, z0), (sum1, x1, z1)) = (pair(0), pair(row));
+                let (low, high) = (low.add(axis * self.stride), high.add(axis * self.stride));
+                let ((sum0, x0, z0), (sum1, x1, z1)) = (pair::<L>(low, high, 0), pair::<L>(low, high, row));
                 edges[0][axis] = x0 + x1;
                 edges[1][axis] = sum1 - sum0;
                 edges[2][axis] = z0 + z1;
                 let mut mean = of_p * (sum0 + sum1);
                 if DAMPED {
-                    let pair = |offset: usize| {
-                        let ((a, b), (c, d)) = (both(VELOCITY + axis, offset), both(VELOCITY + axis, offset + 1));
-                        (a + b) + (c + d)
-                    };
-                    mean = of_v.mul_add(pair(0) + pair(row), mean);
+                    let (low, high) = (low.add(VELOCITY * self.stride), high.add(VELOCITY * self.stride));
+                    let (sum0, sum1) = (pair::<L>(low, high, 0).0, pair::<L>(low, high, row).0);
+                    mean = of_v.mul_add(sum0 + sum1, mean);
                 }
                 mean.store(work.add((9 + axis) * CHUNK));
             });
@@ -718,14 +707,15 @@ impl Sweep<'_> {
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
-            let get = |part: usize| L::load(self.slabs.add(self.slab.rows + part * (self.ring + MOST) + before));
+            let from = self.slabs.add(self.slab.rows + before / MOST * MOST);
+            let distance = L::distance(before % MOST);
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
             thrice!(axis => {
-                let sum = get(axis) + (mean[axis] - v[axis]);
-                let along = get(3 + axis) + u[axis];
+                let sum = L::load_beyond(from.add((axis) * (self.ring + MOST)), distance) + (mean[axis] - v[axis]);
+                let along = L::load_beyond(from.add((3 + axis) * (self.ring + MOST)), distance) + u[axis];
                 pull[axis] = (sum + along, sum - along);
-                rise[axis] = get(6 + axis) + t[axis];
+                rise[axis] = L::load_beyond(from.add((6 + axis) * (self.ring + MOST)), distance) + t[axis];
             });
             (pull, rise)
         }
@@ -781,6 +771,31 @@ impl Sweep<'_> {
         }
         None
     }
+}
+
+/// Two nodes along z, two along x: their sum, and their differences along x and along z.
+///
+/// # Safety
+/// All four are readable in whole vectors, and two more.
+#[inline(always)]
+unsafe fn pair<L: Lanes>(low: *const f64, high: *const f64, offset: usize) -> (L, L, L) {
+    // SAFETY: the caller's.
+    unsafe {
+        let (a, b) = (beyond::<L>(low, offset), beyond::<L>(high, offset));
+        let (c, d) = (beyond::<L>(low, offset + 1), beyond::<L>(high, offset + 1));
+        let (left, right) = (a + b, c + d);
+        (left + right, right - left, (b - a) + (d - c))
+    }
+}
+
+/// What lies so far beyond an address that is aligned as planes are.
+///
+/// # Safety
+/// It is readable, in whole vectors and one more.
+#[inline(always)]
+unsafe fn beyond<L: Lanes>(from: *const f64, offset: usize) -> L {
+    // SAFETY: the caller's.
+    unsafe { L::load_beyond(from.add(offset / MOST * MOST), L::distance(offset % MOST)) }
 }
 
 /// Lets those nodes whose bits are set meet what is around.
