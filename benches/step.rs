@@ -6,7 +6,7 @@
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
 use localshape::sim::floor::multiply_adds;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -24,21 +24,22 @@ struct Case {
     /// Elements of the body.
     count: u64,
     steps: u64,
-    pool: usize,
     /// Nanoseconds per element and step.
     times: Vec<f64>,
 }
 
 impl Case {
-    fn new(name: &'static str, scene: &Scene, run: usize, pool: usize) -> Self {
+    fn new(name: &'static str, scene: &Scene, run: usize, threads: usize) -> Self {
         let count = scene.body.elements.len() as u64;
-        Self { name, world: scene.world(run), count, steps: (WORK / count).max(1), pool, times: Vec::new() }
+        let mut world = scene.world(run);
+        world.set_threads(threads);
+        Self { name, world, count, steps: (WORK / count).max(1), times: Vec::new() }
     }
 
-    fn sample(&mut self, pools: &[ThreadPool]) {
+    fn sample(&mut self) {
         let Self { world, steps, .. } = self;
         let start = Instant::now();
-        pools[self.pool].install(|| world.advance(*steps));
+        world.advance(*steps);
         self.times.push(start.elapsed().as_secs_f64() * 1e9 / (self.steps * self.count) as f64);
     }
 
@@ -92,11 +93,11 @@ fn bandwidth() -> f64 {
 }
 
 /// Times all cases and the floor in turns.
-fn measure(cases: &mut [Case], pools: &[ThreadPool], samples: usize) -> f64 {
+fn measure(cases: &mut [Case], samples: usize) -> f64 {
     let mut least = f64::INFINITY;
     for _ in 0..samples {
         least = least.min(floor());
-        cases.iter_mut().for_each(|case| case.sample(pools));
+        cases.iter_mut().for_each(|case| case.sample());
     }
     least
 }
@@ -114,8 +115,8 @@ fn find<'a>(cases: &'a [Case], name: &str) -> &'a Case {
 
 fn main() {
     let asked: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    let pool = |threads: usize| ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let pools = [pool(1), pool(2)];
+    // What is not vectorised works on one thread, too.
+    ThreadPoolBuilder::new().num_threads(1).build_global().expect("a thread");
     println!("floor: {FLOOR} multiply-adds a cube; memory {:.1} GB/s", bandwidth());
     println!("ns per element and step: best, median, best over floor\n");
     let mut results = Vec::new();
@@ -152,12 +153,12 @@ fn main() {
             "plain shape, Eq. (15) twice",
             "plain springs, all",
         ];
-        let mut cases: Vec<_> = (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 0)).collect();
-        cases.push(Case::new("shape, 2 threads", &scene_of_lattice, 0, 1));
-        cases.push(Case::new("springs, all, 2 threads", &scene_of_lattice, 2, 1));
+        let mut cases: Vec<_> = (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 1)).collect();
+        cases.push(Case::new("shape, 2 threads", &scene_of_lattice, 0, 2));
+        cases.push(Case::new("springs, all, 2 threads", &scene_of_lattice, 2, 2));
         let one = [("kind = 'shape-based'", "")];
         let other =
-            |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 0);
+            |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 1);
         if cells <= 40 {
             let cube = format!("cells = [{cells}, {cells}, {cells}], side = 0.1");
             cases.push(other(format!("lattice = {{ {cube}, irregular = 0.2 }}"), ", 0", "irregular hexahedra"));
@@ -180,7 +181,7 @@ fn main() {
             41..=80 => 12,
             _ => 5,
         };
-        let floor = measure(&mut cases, &pools, samples);
+        let floor = measure(&mut cases, samples);
         println!("{cells}³ cubes, floor {floor:.2}");
         print(&cases, floor);
         println!();

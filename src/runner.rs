@@ -35,12 +35,14 @@ impl<'a> Runner<'a> {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &'a Scene, runs: &[usize]) -> Self {
-        let running = |&run: &usize| Running {
-            run,
-            world: scene.world(run),
-            step: scene.runs[run].step,
-            notes: Vec::new(),
-            course: Course::new(run),
+        /// Elements that pay for a thread more within a run. Several runs share the threads first.
+        const LEAST: usize = 2000;
+        let threads = rayon::current_num_threads() / runs.len().max(1);
+        let threads = threads.min(scene.body.elements.len() / LEAST).max(1);
+        let running = |&run: &usize| {
+            let mut world = scene.world(run);
+            world.set_threads(threads);
+            Running { run, world, step: scene.runs[run].step, notes: Vec::new(), course: Course::new(run) }
         };
         Self { scene, runs: runs.iter().map(running).collect() }
     }

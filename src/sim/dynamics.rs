@@ -19,6 +19,9 @@ pub(super) trait Dynamics: Send + Sync {
 
     /// The state was replaced by another one.
     fn restart(&mut self) {}
+
+    /// Works with so many threads from now on, if it has threads of its own.
+    fn set_threads(&mut self, _threads: usize) {}
 }
 
 /// A node whose new velocity is no number or beyond all reason: the step is not taken.

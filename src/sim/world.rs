@@ -146,7 +146,8 @@ impl World {
         let Stepping { integrator, step, kernel } = stepping;
         let fast = match bodies {
             [(body, model)] if kernel == Kernel::Fast => {
-                model.known().and_then(|model| ByKernel::new(body, model, integrator, gravity, step))
+                let has_grips = !system.grips.is_empty();
+                model.known().and_then(|model| ByKernel::new(body, model, integrator, has_grips, gravity, step))
             }
             _ => None,
         };
@@ -155,6 +156,11 @@ impl World {
             None => Box::new(ByForces::new(integrator, &state)),
         };
         Self { system, dynamics, limit: limit.unwrap_or_default(), field: None, state }
+    }
+
+    /// Steps with so many threads from now on, as far as there is work for them. They change no bit.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.dynamics.set_threads(threads);
     }
 
     /// Makes snapshots show a field from now on, or none.

@@ -228,11 +228,16 @@ impl Lattice {
             let edge = |at: usize, cells: usize| if at == 0 || at == cells { 1.0 } else { 2.0 };
             pattern.valence[at] = edge(at % row, row - 1) * edge(at / row, rows);
         }
-        let crew = Crew::new(threads.clamp(1, planes));
-        let slabs = Array::zeros(crew.len() * Slab::new(&grid).end);
-        let signals = (0..crew.len()).map(|_| Signal::default()).collect();
+        let (crew, slabs, signals) = by(threads, &grid);
         let before = (nodes.clone(), turns.clone());
         Some(Self { set, grid, parameters, nodes, turns, before, pattern, crew, slabs, signals })
+    }
+
+    /// Works with so many threads from now on, but not with more than there are planes of boxes along z.
+    pub(super) fn set_threads(&mut self, threads: usize) {
+        if threads != self.crew.len() {
+            (self.crew, self.slabs, self.signals) = by(threads, &self.grid);
+        }
     }
 
     /// Where the numbers of a node stand in `nodes`: the first of them; the others follow a stride apart.
@@ -398,6 +403,14 @@ impl Drop for StopOnPanic<'_> {
             self.0.store(true, Ordering::Relaxed);
         }
     }
+}
+
+/// What so many threads work with, or fewer.
+fn by(threads: usize, grid: &Grid) -> (Crew, Array, Box<[Signal]>) {
+    let crew = Crew::new(threads.clamp(1, grid.cells[2]));
+    let slabs = Array::zeros(crew.len() * Slab::new(grid).end);
+    let signals = (0..crew.len()).map(|_| Signal::default()).collect();
+    (crew, slabs, signals)
 }
 
 /// Everything a sweep reads and writes. See the fields of the same name.
@@ -842,7 +855,7 @@ mod tests {
     use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
     use crate::sim::rotation::{davenport1968, moment};
     use crate::sim::state::State;
-    use crate::sim::world::{Stepping, Surroundings, World};
+    use crate::sim::world::{Kernel, Stepping, Surroundings, World};
     use glam::DQuat;
     use std::sync::Arc;
 
@@ -961,8 +974,8 @@ mod tests {
             damping_of: DampingReading::RelativeMotion,
         };
         let surroundings = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
-        let stepping = Stepping::new(Integrator::SemiImplicitEuler, STEP);
-        let mut world = World::new(body, state.clone(), &model, surroundings, stepping);
+        let plain = Stepping { kernel: Kernel::Reference, ..Stepping::new(Integrator::SemiImplicitEuler, STEP) };
+        let mut world = World::new(body, state.clone(), &model, surroundings, plain);
         world.advance(steps);
         assert_eq!(world.steps(), steps);
         world.state().clone()

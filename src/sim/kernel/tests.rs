@@ -4,13 +4,14 @@ use super::general::{Constants, General};
 use super::motion::{Kernel, Scheme, advance};
 use super::springs::Stencil;
 use super::{Around, Bound, Rotation, Set};
-use crate::sim::body::{Body, Dimension, IndexLists, Solids, State};
+use crate::sim::body::{Body, Dimension, IndexLists, Solids};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use crate::sim::rotation::{best, davenport1968, moment, planar};
+use crate::sim::state::State;
 use crate::sim::topology::Springs;
 use crate::sim::world::{Stepping, Surroundings, World};
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -99,7 +100,7 @@ fn start(body: &Body, seed: u64) -> State {
     });
     let position = position.collect();
     let velocity = body.rest.iter().map(|_| random.vector(body.dimension) * 0.1).collect();
-    State { position, velocity }
+    State::new(position, velocity)
 }
 
 /// The rotations of the elements at a state: from where the reference starts, too.
@@ -164,7 +165,13 @@ fn reference(
         Scheme::VelocityVerlet => Integrator::VelocityVerlet,
     };
     let surroundings = Surroundings { gravity: GRAVITY, obstacles, grips: Vec::new() };
-    World::new(body, start.clone(), model, surroundings, Stepping { integrator, step: STEP })
+    World::new(
+        body,
+        start.clone(),
+        model,
+        surroundings,
+        Stepping { integrator, step: STEP, kernel: crate::sim::world::Kernel::Reference },
+    )
 }
 
 /// The largest distance between two states, in units of their extent and of the speed at which a node swings through

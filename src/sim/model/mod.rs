@@ -139,6 +139,16 @@ pub enum Known<'a> {
     MassSpring(&'a mass_spring::MassSpring),
 }
 
+impl Known<'_> {
+    /// Whether forces depend on velocities.
+    pub(super) fn is_damped(self) -> bool {
+        match self {
+            Self::ShapeBased(model) => model.damping > 0.0,
+            Self::MassSpring(model) => model.damping > 0.0,
+        }
+    }
+}
+
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the same
 /// next memory. So trial evaluations and steps that are given up leave nothing behind.
 ///
