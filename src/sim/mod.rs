@@ -10,6 +10,7 @@ pub mod field;
 pub mod grip;
 pub mod hull;
 pub mod integrate;
+#[cfg_attr(not(test), expect(dead_code, unused_imports, reason = "no simulation steps by it yet"))]
 mod kernel;
 pub mod lists;
 pub mod model;

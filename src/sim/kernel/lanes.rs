@@ -9,9 +9,21 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// An array of three or four values, each by an expression of its index. Not `array::map`: its closures are functions of
+/// An array of two, three, four or eight values, each by an expression of its index. Not `array::map`: its closures are functions of
 /// their own, compiled without the vector set, and not always made part of the kernel.
 macro_rules! each {
+    (2, $at:ident => $value:expr) => {
+        [
+            {
+                let $at = 0usize;
+                $value
+            },
+            {
+                let $at = 1usize;
+                $value
+            },
+        ]
+    };
     (3, $at:ident => $value:expr) => {
         [
             {
@@ -48,6 +60,14 @@ macro_rules! each {
             },
         ]
     };
+    (8, $at:ident => $value:expr) => {{
+        let [a, b, c, d] = each!(4, $at => $value);
+        let [e, f, g, h] = each!(4, low => {
+            let $at = low + 4;
+            $value
+        });
+        [a, b, c, d, e, f, g, h]
+    }};
 }
 pub(super) use each;
 
@@ -139,6 +159,60 @@ pub(in crate::sim) trait Lanes:
     fn mask(bits: u32) -> Self::Mask;
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+
+    /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
+    ///
+    /// # Safety
+    /// Each row is readable.
+    #[inline(always)]
+    unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+        let mut columns = [[0.0; MOST]; 8];
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let row = unsafe { *row(lane).cast::<[f64; 8]>() };
+            columns.iter_mut().zip(row).for_each(|(column, value)| column[lane] = value);
+        }
+        columns.map(Self::from_array)
+    }
+    /// The columns of rows of four doubles.
+    ///
+    /// # Safety
+    /// Each row is readable.
+    #[inline(always)]
+    unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+        let mut columns = [[0.0; MOST]; 4];
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let row = unsafe { *row(lane).cast::<[f64; 4]>() };
+            columns.iter_mut().zip(row).for_each(|(column, value)| column[lane] = value);
+        }
+        columns.map(Self::from_array)
+    }
+    /// Writes columns as rows of eight doubles, the first lane's first.
+    ///
+    /// # Safety
+    /// Each row is writable, by nobody else.
+    #[inline(always)]
+    unsafe fn put_rows(columns: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+        let columns = columns.map(Self::to_array);
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            unsafe { *row(lane).cast::<[f64; 8]>() = columns.map(|column| column[lane]) };
+        }
+    }
+    /// Adds columns to rows of four doubles, one row after the other: two may be the same.
+    ///
+    /// # Safety
+    /// Each row is writable, by nobody else.
+    #[inline(always)]
+    unsafe fn add_rows(columns: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+        let columns = columns.map(Self::to_array);
+        for lane in 0..Self::WIDTH {
+            // SAFETY: the caller's.
+            let sum = unsafe { &mut *row(lane).cast::<[f64; 4]>() };
+            sum.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += column[lane]);
+        }
+    }
 
     /// All lanes as an array; those beyond [`Self::WIDTH`] are 0.
     #[inline(always)]
@@ -414,6 +488,57 @@ mod x86 {
         -a unsafe { _mm512_castsi512_pd(_mm512_xor_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(i64::MIN))) }
     }
 
+    /// Four rows as columns.
+    #[inline(always)]
+    fn transposed(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [Avx2; 4] {
+        unsafe {
+            let (even_low, odd_low) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (even_high, odd_high) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            [
+                Avx2(_mm256_permute2f128_pd::<0x20>(even_low, even_high)),
+                Avx2(_mm256_permute2f128_pd::<0x20>(odd_low, odd_high)),
+                Avx2(_mm256_permute2f128_pd::<0x31>(even_low, even_high)),
+                Avx2(_mm256_permute2f128_pd::<0x31>(odd_low, odd_high)),
+            ]
+        }
+    }
+
+    /// What stands in each quarter of four vectors.
+    #[inline(always)]
+    fn quarters(a: __m512d, b: __m512d, c: __m512d, d: __m512d) -> [Avx512; 4] {
+        unsafe {
+            let (low, high) = (_mm512_shuffle_f64x2::<0x88>(a, b), _mm512_shuffle_f64x2::<0x88>(c, d));
+            let (low_odd, high_odd) = (_mm512_shuffle_f64x2::<0xdd>(a, b), _mm512_shuffle_f64x2::<0xdd>(c, d));
+            [
+                Avx512(_mm512_shuffle_f64x2::<0x88>(low, high)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(low_odd, high_odd)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(low, high)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(low_odd, high_odd)),
+            ]
+        }
+    }
+
+    /// Eight rows as columns.
+    #[inline(always)]
+    fn transposed_8(r: [__m512d; 8]) -> [Avx512; 8] {
+        unsafe {
+            // Pairs of rows, the even columns and the odd ones; then what stands in the same place of all pairs.
+            let [c0, c2, c4, c6] = quarters(
+                _mm512_unpacklo_pd(r[0], r[1]),
+                _mm512_unpacklo_pd(r[2], r[3]),
+                _mm512_unpacklo_pd(r[4], r[5]),
+                _mm512_unpacklo_pd(r[6], r[7]),
+            );
+            let [c1, c3, c5, c7] = quarters(
+                _mm512_unpackhi_pd(r[0], r[1]),
+                _mm512_unpackhi_pd(r[2], r[3]),
+                _mm512_unpackhi_pd(r[4], r[5]),
+                _mm512_unpackhi_pd(r[6], r[7]),
+            );
+            [c0, c1, c2, c3, c4, c5, c6, c7]
+        }
+    }
+
     impl Lanes for Avx2 {
         type Mask = __m256d;
         type Distance = usize;
@@ -507,6 +632,38 @@ mod x86 {
         #[inline(always)]
         fn both(a: __m256d, b: __m256d) -> __m256d {
             unsafe { _mm256_and_pd(a, b) }
+        }
+        #[inline(always)]
+        unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+            let [a, b, c, d] = each!(4, lane => row(lane));
+            unsafe {
+                let low = each!(4, lane => _mm256_loadu_pd([a, b, c, d][lane]));
+                let high = each!(4, lane => _mm256_loadu_pd([a, b, c, d][lane].add(4)));
+                let [c0, c1, c2, c3] = transposed(low[0], low[1], low[2], low[3]);
+                let [c4, c5, c6, c7] = transposed(high[0], high[1], high[2], high[3]);
+                [c0, c1, c2, c3, c4, c5, c6, c7]
+            }
+        }
+        #[inline(always)]
+        unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+            let rows = each!(4, lane => unsafe { _mm256_loadu_pd(row(lane)) });
+            transposed(rows[0], rows[1], rows[2], rows[3])
+        }
+        #[inline(always)]
+        unsafe fn put_rows(c: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+            let low = transposed(c[0].0, c[1].0, c[2].0, c[3].0);
+            let high = transposed(c[4].0, c[5].0, c[6].0, c[7].0);
+            each!(4, lane => unsafe {
+                _mm256_storeu_pd(row(lane), low[lane].0);
+                _mm256_storeu_pd(row(lane).add(4), high[lane].0);
+            });
+        }
+        #[inline(always)]
+        unsafe fn add_rows(c: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+            let rows = transposed(c[0].0, c[1].0, c[2].0, c[3].0);
+            each!(4, lane => unsafe {
+                _mm256_storeu_pd(row(lane), _mm256_add_pd(_mm256_loadu_pd(row(lane)), rows[lane].0));
+            });
         }
     }
 
@@ -603,6 +760,51 @@ mod x86 {
         #[inline(always)]
         fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
             a & b
+        }
+        #[inline(always)]
+        unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
+            transposed_8(each!(8, lane => unsafe { _mm512_loadu_pd(row(lane)) }))
+        }
+        #[inline(always)]
+        unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
+            // Rows n and n + 2 side by side, so that what is unpacked has pairs of neighbours in its quarters.
+            let [a, b, _, _, c, d, _, _] = each!(8, lane => unsafe {
+                let low = _mm512_castpd256_pd512(_mm256_loadu_pd(row(lane)));
+                _mm512_insertf64x4::<1>(low, _mm256_loadu_pd(row((lane + 2) % MOST)))
+            });
+            unsafe {
+                let (even_low, even_high) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+                let (odd_low, odd_high) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+                [
+                    Self(_mm512_shuffle_f64x2::<0x88>(even_low, even_high)),
+                    Self(_mm512_shuffle_f64x2::<0x88>(odd_low, odd_high)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(even_low, even_high)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(odd_low, odd_high)),
+                ]
+            }
+        }
+        #[inline(always)]
+        unsafe fn put_rows(c: [Self; 8], row: impl Fn(usize) -> *mut f64) {
+            let rows = transposed_8(each!(8, column => c[column].0));
+            each!(8, lane => unsafe { _mm512_storeu_pd(row(lane), rows[lane].0) });
+        }
+        #[inline(always)]
+        unsafe fn add_rows(c: [Self; 4], row: impl Fn(usize) -> *mut f64) {
+            unsafe {
+                let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+                let last = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+                let (xy, zw) = (_mm512_unpacklo_pd(c[0].0, c[1].0), _mm512_unpacklo_pd(c[2].0, c[3].0));
+                let even = [_mm512_permutex2var_pd(xy, first, zw), _mm512_permutex2var_pd(xy, last, zw)];
+                let (xy, zw) = (_mm512_unpackhi_pd(c[0].0, c[1].0), _mm512_unpackhi_pd(c[2].0, c[3].0));
+                let odd = [_mm512_permutex2var_pd(xy, first, zw), _mm512_permutex2var_pd(xy, last, zw)];
+                // Rows 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+                let pairs = [even[0], odd[0], even[1], odd[1]];
+                each!(8, lane => {
+                    let two = pairs[lane / 4 * 2 + lane % 2];
+                    let own = if lane & 2 == 0 { _mm512_castpd512_pd256(two) } else { _mm512_extractf64x4_pd::<1>(two) };
+                    _mm256_storeu_pd(row(lane), _mm256_add_pd(_mm256_loadu_pd(row(lane)), own));
+                });
+            }
         }
     }
 }

@@ -3,11 +3,20 @@
 //! A kernel owns positions, velocities and rotations in arrays of its own, takes any number of steps, and hands them out
 //! when somebody looks. Its results have the same bits for every vector set and every number of threads.
 
+#![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 mod array;
 mod crew;
+pub(in crate::sim) mod general;
 mod lanes;
 pub(in crate::sim) mod lattice;
+mod memory;
+pub(in crate::sim) mod motion;
 mod rotation;
+pub(in crate::sim) mod springs;
+
+#[cfg(test)]
+mod tests;
 
 pub(in crate::sim) use lanes::Set;
 

@@ -20,6 +20,15 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
     /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
     /// it in round-off only.
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4];
+
+    /// The same twice at once. Each is a long chain of operations; two keep the processor busy.
+    fn follow_two<L: Lanes>(
+        self,
+        a: [&Matrix<L>; 2],
+        scale: [L; 2],
+        last: [[L; 4]; 2],
+        live: [L::Mask; 2],
+    ) -> [[L; 4]; 2];
 }
 
 /// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
@@ -58,6 +67,30 @@ impl Solver for Arctangent {
         }
         q
     }
+
+    #[inline(always)]
+    fn follow_two<L: Lanes>(
+        self,
+        a: [&Matrix<L>; 2],
+        scale: [L; 2],
+        last: [[L; 4]; 2],
+        live: [L::Mask; 2],
+    ) -> [[L; 4]; 2] {
+        let mut q = last;
+        let mut open = [L::bits(live[0]), L::bits(live[1])];
+        for _ in 0..self.passes {
+            let b = each!(2, at => turned_back(a[at], &matrix(q[at], scale[at])));
+            let passes = each!(2, at => arctangent_pass(&b[at], q[at]));
+            let sound = each!(2, at => L::bits(L::both(is_well_posed(&b[at]), passes[at].1)));
+            let failed = [open[0] & !sound[0], open[1] & !sound[1]];
+            open = [open[0] & sound[0], open[1] & sound[1]];
+            q = each!(2, at => choose(L::mask(open[at]), passes[at].0, q[at]));
+            if failed[0] | failed[1] != 0 {
+                q = each!(2, at => if failed[at] == 0 { q[at] } else { global(a[at], q[at], failed[at]) });
+            }
+        }
+        q
+    }
 }
 
 impl Solver for Optimum {
@@ -81,6 +114,35 @@ impl Solver for Optimum {
         }
         if failed | open != 0 {
             q = global(a, q, failed | open);
+        }
+        q
+    }
+
+    #[inline(always)]
+    fn follow_two<L: Lanes>(
+        self,
+        a: [&Matrix<L>; 2],
+        scale: [L; 2],
+        last: [[L; 4]; 2],
+        live: [L::Mask; 2],
+    ) -> [[L; 4]; 2] {
+        let mut q = last;
+        let mut open = [L::bits(live[0]), L::bits(live[1])];
+        let mut failed = [0; 2];
+        for _ in 0..MOST_PASSES {
+            let passes = each!(2, at => optimum_pass(&turned_back(a[at], &matrix(q[at], scale[at])), q[at]));
+            let sound = each!(2, at => L::bits(passes[at].1));
+            failed = [failed[0] | open[0] & !sound[0], failed[1] | open[1] & !sound[1]];
+            open = [open[0] & sound[0], open[1] & sound[1]];
+            q = each!(2, at => choose(L::mask(open[at]), passes[at].0, q[at]));
+            open = each!(2, at => open[at] & !L::bits(passes[at].2));
+            if open[0] | open[1] == 0 {
+                break;
+            }
+        }
+        let failed = [failed[0] | open[0], failed[1] | open[1]];
+        if failed[0] | failed[1] != 0 {
+            q = each!(2, at => if failed[at] == 0 { q[at] } else { global(a[at], q[at], failed[at]) });
         }
         q
     }

@@ -1,0 +1,886 @@
+//! Eq. (4) in lanes, for any elements in space and in the plane, and Eq. (1) for springs in no order.
+//!
+//! Lanes are elements with the same number of corners, in blocks of eight whatever the width. With `w = k P + D V` the
+//! force of an element on a corner is `−w + w̄ + k M R0`: elements sum up the last two terms, and the first one is the
+//! node's own, as often as it has elements. As `Σ R0 = 0` the moments need no centroid.
+//!
+//! Elements are sorted along a curve that fills space and cut in parts, always the same for a body. A part has records of
+//! its own of all its nodes and sums of its own; nodes that it has for itself move as soon as its elements are done, those
+//! that it shares move after all parts, by the sums of all, in the order of the parts. A sum runs block by block, corner
+//! by corner, lane by lane: it is the same for every width and number of threads.
+
+#![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
+#![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
+
+use super::crew::Crew;
+use super::lanes::{Lanes, MOST, Set, Work, each};
+use super::memory::Aligned;
+use super::motion::{Kernel, Motion, Nodes, Stage};
+use super::rotation::{self, Solver};
+use super::{Around, Rotation};
+use crate::sim::body::{Body, Dimension, IndexLists, bounds};
+use glam::DVec3;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Doubles in the record of a node, a cache line: px, py, vx, vy, pz, vz, 1/m, and the number of its elements. What the
+/// plane needs comes first.
+const RECORD: usize = 8;
+const INVERSE_MASS: usize = 6;
+const VALENCE: usize = 7;
+/// Doubles in the sum of a node: the force in x, y, z, and nothing.
+const SUM: usize = 4;
+
+/// What an element does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law {
+    /// Eq. (4) in the plane, with the rotation of Eq. (9).
+    Plane,
+    /// Eq. (4) in space.
+    Space(Rotation),
+    /// Eq. (1): the elements are pairs of nodes.
+    Spring,
+}
+
+/// The constants of Eq. (4) or Eq. (1).
+#[derive(Clone, Copy, Debug)]
+pub(in crate::sim) struct Constants {
+    /// `k` (N/m).
+    pub(in crate::sim) stiffness: f64,
+    /// `D` (N s/m), on the motion relative to the mean of an element.
+    pub(in crate::sim) damping: f64,
+    /// Acceleration of gravity (m/s²).
+    pub(in crate::sim) gravity: DVec3,
+    /// ΔT (s).
+    pub(in crate::sim) step: f64,
+}
+
+/// A body of any elements at work.
+pub(in crate::sim) struct General {
+    set: Set,
+    law: Law,
+    constants: Constants,
+    parts: Vec<Part>,
+    shared: Shared,
+    /// Where the first record of each node is.
+    places: Vec<Place>,
+    /// Always there between passes.
+    crew: Option<Crew>,
+    /// Whether the accelerations belong to the positions.
+    is_known: bool,
+}
+
+/// A record: the part, and its number there.
+#[derive(Clone, Copy)]
+struct Place {
+    part: u32,
+    record: u32,
+}
+
+/// Elements that one thread works on.
+struct Part {
+    /// Whole blocks of nodes that the part has for itself.
+    own: usize,
+    /// The index in the body of each record; of those that stand for nothing, 0.
+    index: Vec<u32>,
+    records: Aligned,
+    sums: Aligned,
+    /// Of the nodes that the part has for itself, block by block, coordinate by coordinate.
+    accelerations: Aligned,
+    kept: [Aligned; 2],
+    classes: Vec<Class>,
+}
+
+/// Elements with the same number of corners.
+struct Class {
+    corners: usize,
+    /// The index in the body of each.
+    elements: Vec<u32>,
+    /// Where the records of their corners begin: block by block, corner by corner.
+    nodes: Vec<u32>,
+    /// `R0` (m): block by block, corner by corner, coordinate by coordinate; or `k L` (N) of springs.
+    rest: Aligned,
+    /// `1 / Σ |R0|²` of each (1/m²).
+    scale: Aligned,
+    /// Rotations: block by block, a quaternion or (cos, sin).
+    turns: Aligned,
+    kept: Aligned,
+}
+
+/// Nodes that several parts have.
+struct Shared {
+    /// The index in the body of each, in whole blocks; of those that stand for nothing, 0.
+    index: Vec<u32>,
+    /// Where the places of each begin.
+    starts: Vec<u32>,
+    places: Vec<Place>,
+    accelerations: Aligned,
+    kept: Aligned,
+}
+
+impl General {
+    /// The elements of a body at work by Eq. (4). In the plane there is no choice of rotations.
+    pub(in crate::sim) fn new(body: &Body, rotation: Rotation, constants: Constants, set: Set) -> Self {
+        let law = match body.dimension {
+            Dimension::Plane => Law::Plane,
+            Dimension::Space => Law::Space(rotation),
+        };
+        Self::with(&body.elements, &body.rest, &body.mass, law, constants, set)
+    }
+
+    /// Springs at work.
+    pub(in crate::sim) fn springs(body: &Body, springs: &[[u32; 2]], constants: Constants, set: Set) -> Self {
+        let pairs: IndexLists = springs.iter().map(|ends| &ends[..]).collect();
+        Self::with(&pairs, &body.rest, &body.mass, Law::Spring, constants, set)
+    }
+
+    fn with(elements: &IndexLists, rest: &[DVec3], mass: &[f64], law: Law, constants: Constants, set: Set) -> Self {
+        let parts = cut(elements, along_curve(elements, rest));
+        // The parts that have each node, as far as one and many are concerned.
+        const NONE: u32 = u32::MAX;
+        let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
+        let mut valence = vec![0u32; rest.len()];
+        for (part, own) in (0..).zip(&parts) {
+            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
+                let node = node as usize;
+                is_shared[node] |= first[node] != NONE && first[node] != part;
+                first[node] = first[node].min(part);
+                valence[node] += u32::from(law != Law::Spring);
+            }
+        }
+        let mut places = vec![Place { part: 0, record: 0 }; rest.len()];
+        let mut shared_places: Vec<(u32, Place)> = Vec::new();
+        let mut made = Vec::with_capacity(parts.len());
+        for (part, own) in (0u32..).zip(&parts) {
+            // Nodes in the order in which elements need them.
+            let mut record = vec![NONE; rest.len()];
+            let (mut index, mut of_others) = (Vec::new(), Vec::new());
+            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
+                let seen = &mut record[node as usize];
+                if *seen == NONE {
+                    *seen = 0;
+                    if is_shared[node as usize] { &mut of_others } else { &mut index }.push(node);
+                }
+            }
+            if part == 0 {
+                index.extend((0..rest.len() as u32).filter(|&node| first[node as usize] == NONE));
+            }
+            let alone = index.len();
+            index.resize(alone.next_multiple_of(MOST), 0);
+            let whole = index.len();
+            for (at, &node) in (0..).zip(&index[..alone]) {
+                places[node as usize] = Place { part, record: at };
+                record[node as usize] = at;
+            }
+            for (at, &node) in (whole as u32..).zip(&of_others) {
+                record[node as usize] = at;
+                shared_places.push((node, Place { part, record: at }));
+                if first[node as usize] == part {
+                    places[node as usize] = Place { part, record: at };
+                }
+            }
+            index.extend(&of_others);
+            let mut records = Aligned::zeros((index.len() + 1) * RECORD);
+            let is_node = |at: usize| at < alone || at >= whole;
+            for (at, &node) in index.iter().enumerate().filter(|(at, _)| is_node(*at)) {
+                let record = &mut records.as_mut_slice()[at * RECORD..][..RECORD];
+                record[INVERSE_MASS] = 1.0 / mass[node as usize];
+                record[VALENCE] = f64::from(valence[node as usize]);
+            }
+            // Lanes without an element find their corners here.
+            let nothing = index.len() as u32;
+            let mut counts: Vec<usize> = own.iter().map(|&element| elements[element as usize].len()).collect();
+            counts.sort_unstable();
+            counts.dedup();
+            let class = |corners: usize| {
+                let of_class: Vec<u32> =
+                    own.iter().copied().filter(|&element| elements[element as usize].len() == corners).collect();
+                Class::new(corners, of_class, elements, &record, nothing, rest, law, constants)
+            };
+            made.push(Part {
+                own: whole / MOST,
+                records,
+                sums: Aligned::zeros((index.len() + 1) * SUM),
+                accelerations: Aligned::zeros(whole * 3),
+                kept: [Aligned::zeros((index.len() + 1) * RECORD), Aligned::zeros(whole * 3)],
+                classes: counts.into_iter().map(class).collect(),
+                index,
+            });
+        }
+        shared_places.sort_by_key(|&(node, place)| (node, place.part));
+        let mut shared = Shared {
+            index: Vec::new(),
+            starts: Vec::new(),
+            places: Vec::new(),
+            accelerations: Aligned::zeros(0),
+            kept: Aligned::zeros(0),
+        };
+        for of_node in shared_places.chunk_by(|a, b| a.0 == b.0) {
+            shared.index.push(of_node[0].0);
+            shared.starts.push(shared.places.len() as u32);
+            shared.places.extend(of_node.iter().map(|(_, place)| place));
+        }
+        let whole = shared.index.len().next_multiple_of(MOST);
+        shared.index.resize(whole, 0);
+        shared.starts.resize(whole + 1, shared.places.len() as u32);
+        shared.accelerations = Aligned::zeros(whole * 3);
+        shared.kept = Aligned::zeros(whole * 3);
+        Self { set, law, constants, parts: made, shared, places, crew: Some(Crew::new(1)), is_known: false }
+    }
+
+    /// Works with so many threads from now on, as far as there are parts for them.
+    pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
+        self.crew = Some(Crew::new(threads.clamp(1, self.parts.len())));
+    }
+
+    /// Takes a state over: positions, velocities, and the rotation of each element: a quaternion, or (cos, sin).
+    pub(in crate::sim) fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
+        self.is_known = false;
+        for node in 0..self.places.len() {
+            self.set_node(node, position[node], velocity[node]);
+        }
+        let width = self.law.memory();
+        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
+            for (at, &element) in class.elements.iter().enumerate() {
+                for entry in 0..width {
+                    class.turns.as_mut_slice()[(at / MOST * width + entry) * MOST + at % MOST] =
+                        memory[element as usize * width + entry];
+                }
+            }
+        }
+    }
+
+    /// Writes the state down.
+    pub(in crate::sim) fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
+        for node in 0..self.places.len() {
+            (position[node], velocity[node]) = self.node(node);
+        }
+        let width = self.law.memory();
+        for class in self.parts.iter().flat_map(|part| &part.classes) {
+            for (at, &element) in class.elements.iter().enumerate() {
+                for entry in 0..width {
+                    memory[element as usize * width + entry] =
+                        class.turns.get((at / MOST * width + entry) * MOST + at % MOST);
+                }
+            }
+        }
+    }
+
+    /// Puts one node elsewhere.
+    pub(in crate::sim) fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+        let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
+        let Self { parts, shared, places, .. } = self;
+        let mut put = |place: Place| {
+            let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
+            record[..values.len()].copy_from_slice(&values);
+        };
+        match shared.of(node) {
+            Some(copies) => copies.iter().for_each(|&place| put(place)),
+            None => put(places[node]),
+        }
+    }
+}
+
+impl Law {
+    /// Doubles that each element remembers.
+    fn memory(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            Self::Space(_) => 4,
+            Self::Spring => 0,
+        }
+    }
+
+    /// Coordinates of each corner at rest.
+    fn axes(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            Self::Space(_) => 3,
+            Self::Spring => 0,
+        }
+    }
+}
+
+impl Shared {
+    /// All places of a node, if it has several.
+    fn of(&self, node: usize) -> Option<&[Place]> {
+        let count = self.starts.partition_point(|&start| (start as usize) < self.places.len());
+        let at = self.index[..count].binary_search(&(node as u32)).ok()?;
+        Some(&self.places[self.starts[at] as usize..self.starts[at + 1] as usize])
+    }
+}
+
+/// The elements in the order of their middles at rest on Morton's curve, which goes from octant to octant.
+fn along_curve(elements: &IndexLists, rest: &[DVec3]) -> Vec<u32> {
+    let (low, high) = bounds(rest);
+    let cells = f64::from(1u32 << 20) / (high - low).max_element().max(f64::MIN_POSITIVE);
+    let spread = |value: f64| (0..21).fold(0u64, |all, bit| all | (value as u64 >> bit & 1) << (3 * bit));
+    let key = |nodes: &[u32]| {
+        let middle = nodes.iter().map(|&node| rest[node as usize] - low).sum::<DVec3>() / nodes.len() as f64;
+        let [x, y, z] = (middle * cells).to_array().map(spread);
+        x | y << 1 | z << 2
+    };
+    let mut keyed: Vec<(u64, u32)> = elements.iter().map(key).zip(0..).collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, element)| element).collect()
+}
+
+/// Cuts elements into parts of about the same work.
+fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
+    /// Corners in a part: their nodes stay in the second cache.
+    const CORNERS: usize = 32768;
+    let all = elements.indices().len();
+    let parts = all.div_ceil(CORNERS).max(1);
+    let mut cut = vec![Vec::new(); parts];
+    let mut before = 0;
+    for element in order {
+        cut[before * parts / all].push(element);
+        before += elements[element as usize].len();
+    }
+    cut
+}
+
+impl Class {
+    #[expect(clippy::too_many_arguments, reason = "called once")]
+    fn new(
+        corners: usize,
+        elements: Vec<u32>,
+        lists: &IndexLists,
+        record: &[u32],
+        nothing: u32,
+        rest: &[DVec3],
+        law: Law,
+        constants: Constants,
+    ) -> Self {
+        let blocks = elements.len().div_ceil(MOST);
+        let (axes, memory) = (law.axes(), law.memory());
+        let mut nodes = vec![nothing * RECORD as u32; blocks * corners * MOST];
+        let per_block = if law == Law::Spring { 1 } else { corners * axes };
+        let mut shapes = Aligned::zeros(blocks * per_block * MOST);
+        let mut scale = Aligned::zeros(blocks * MOST);
+        let mut turns = Aligned::zeros(blocks * memory * MOST);
+        for (at, &element) in elements.iter().enumerate() {
+            let (block, lane) = (at / MOST, at % MOST);
+            let own = &lists[element as usize];
+            let at_rest = |node: u32| rest[node as usize];
+            let middle = own.iter().map(|&node| at_rest(node)).sum::<DVec3>() / corners as f64;
+            for (corner, &node) in own.iter().enumerate() {
+                nodes[(block * corners + corner) * MOST + lane] = record[node as usize] * RECORD as u32;
+                for axis in 0..axes {
+                    shapes.as_mut_slice()[((block * corners + corner) * axes + axis) * MOST + lane] =
+                        (at_rest(node) - middle)[axis];
+                }
+            }
+            if law == Law::Spring {
+                shapes.as_mut_slice()[at] = constants.stiffness * (at_rest(own[0]) - at_rest(own[1])).length();
+            }
+            let squares: f64 = own.iter().map(|&node| (at_rest(node) - middle).length_squared()).sum();
+            scale.as_mut_slice()[at] = if squares > 0.0 { 1.0 / squares } else { 1.0 };
+        }
+        for lane in 0..blocks * MOST {
+            // No rotation: the real part of a quaternion comes last, the cosine first.
+            let entry = if memory == 4 { 3 } else { 0 };
+            if memory > 0 {
+                turns.as_mut_slice()[(lane / MOST * memory + entry) * MOST + lane % MOST] = 1.0;
+            }
+        }
+        let kept = Aligned::zeros(blocks * memory * MOST);
+        Self { corners, elements, nodes, rest: shapes, scale, turns, kept }
+    }
+}
+
+impl Kernel for General {
+    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool {
+        // Taken out for the time, so that threads may share the rest.
+        let Some(mut crew) = self.crew.take() else { return false };
+        let (body, threads, lost) = (&*self, crew.len(), AtomicU32::new(0));
+        let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
+        let one_part = |part| body.set.run(OnePart { body, part, stage, commit, number, around });
+        crew.run(&|me| {
+            let found = share(body.parts.len(), me).fold(0, |lost, part| lost | one_part(part));
+            lost.fetch_or(found, Ordering::Relaxed);
+        });
+        let shared = body.shared.index.len() / MOST;
+        if shared > 0 {
+            crew.run(&|me| {
+                let blocks = share(shared, me);
+                lost.fetch_or(body.set.run(SharedNodes { body, blocks, stage, number, around }), Ordering::Relaxed);
+            });
+        }
+        let lost = lost.into_inner();
+        self.crew = Some(crew);
+        lost == 0
+    }
+
+    fn is_damped(&self) -> bool {
+        self.constants.damping > 0.0
+    }
+
+    fn is_known(&mut self) -> &mut bool {
+        &mut self.is_known
+    }
+
+    fn keep(&mut self) {
+        for part in &mut self.parts {
+            let [records, accelerations] = &mut part.kept;
+            records.copy_from(&mut part.records);
+            accelerations.copy_from(&mut part.accelerations);
+            part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.turns));
+        }
+        self.shared.kept.copy_from(&mut self.shared.accelerations);
+    }
+
+    fn restore(&mut self) {
+        for part in &mut self.parts {
+            let [records, accelerations] = &mut part.kept;
+            part.records.copy_from(records);
+            part.accelerations.copy_from(accelerations);
+            part.classes.iter_mut().for_each(|class| class.turns.copy_from(&mut class.kept));
+        }
+        self.shared.accelerations.copy_from(&mut self.shared.kept);
+    }
+
+    fn node(&self, node: usize) -> (DVec3, DVec3) {
+        let Place { part, record } = self.places[node];
+        let at = |entry: usize| self.parts[part as usize].records.get(record as usize * RECORD + entry);
+        (DVec3::new(at(0), at(1), at(4)), DVec3::new(at(2), at(3), at(5)))
+    }
+
+    fn len(&self) -> usize {
+        self.places.len()
+    }
+}
+
+/// The elements of a part, and the motion of the nodes that it has for itself.
+struct OnePart<'a> {
+    body: &'a General,
+    part: usize,
+    stage: Stage,
+    commit: bool,
+    number: u64,
+    around: Around<'a>,
+}
+
+impl Work for OnePart<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let part = &self.body.parts[self.part];
+        if self.stage != Stage::Coast {
+            for class in &part.classes {
+                let elements = Elements { part, class, constants: &self.body.constants, commit: self.commit };
+                match (self.body.law, self.body.constants.damping > 0.0) {
+                    (Law::Plane, true) => elements.plane::<L, true>(),
+                    (Law::Plane, false) => elements.plane::<L, false>(),
+                    (Law::Space(Rotation::Arctangent { passes }), true) => {
+                        elements.space::<L, true>(rotation::Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Arctangent { passes }), false) => {
+                        elements.space::<L, false>(rotation::Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Optimum), true) => elements.space::<L, true>(rotation::Optimum),
+                    (Law::Space(Rotation::Optimum), false) => elements.space::<L, false>(rotation::Optimum),
+                    (Law::Spring, true) => elements.springs::<L, true>(),
+                    (Law::Spring, false) => elements.springs::<L, false>(),
+                }
+            }
+        }
+        let Constants { step, gravity, .. } = self.body.constants;
+        let motion = Motion::<L>::new(self.stage, step, gravity, self.number, self.around);
+        let own = Own { motion, stage: self.stage, constants: &self.body.constants };
+        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let mut lost = 0;
+        for first in (0..part.own * MOST).step_by(L::WIDTH) {
+            // SAFETY: these are records of the part, which is this thread's.
+            unsafe {
+                let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
+                lost |= own.advance(
+                    |lane| records.add((first + lane) * RECORD),
+                    [x, y, z],
+                    accelerations,
+                    |lane| part.index[first + lane] as usize,
+                );
+            }
+        }
+        lost
+    }
+}
+
+/// The columns of sums, which become zero.
+///
+/// # Safety
+/// The rows are this thread's alone.
+#[inline(always)]
+unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let sums = L::columns_4(|lane| row(lane).cast_const());
+        for lane in 0..L::WIDTH {
+            *row(lane).cast::<[f64; SUM]>() = [0.0; SUM];
+        }
+        sums
+    }
+}
+
+/// The motion of nodes by their records.
+struct Own<'a, L> {
+    motion: Motion<'a, L>,
+    stage: Stage,
+    constants: &'a Constants,
+}
+
+impl<L: Lanes> Own<'_, L> {
+    /// Moves a vector of nodes by the forces of their elements, to which their own is added.
+    ///
+    /// # Safety
+    /// Records and accelerations are this thread's alone.
+    #[inline(always)]
+    unsafe fn advance(
+        &self,
+        record: impl Fn(usize) -> *mut f64,
+        sum: [L; 3],
+        accelerations: *mut f64,
+        index: impl Fn(usize) -> usize,
+    ) -> u32 {
+        // SAFETY: the caller's.
+        unsafe {
+            let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
+            let (k, d) = (L::splat(self.constants.stiffness), L::splat(self.constants.damping));
+            let (k, d) = (k * valence, d * valence);
+            let (position, velocity) = ([px, py, pz], [vx, vy, vz]);
+            let force: [L; 3] =
+                each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
+            let mut acceleration = [L::splat(0.0); 3];
+            if self.stage.is_verlet() {
+                acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
+            }
+            let mut nodes = Nodes { position, velocity, acceleration };
+            let lost = self.motion.advance(&mut nodes, force, inverse_mass, index);
+            if self.stage.is_verlet() {
+                each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
+            }
+            let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);
+            L::put_rows([px, py, vx, vy, pz, vz, inverse_mass, valence], record);
+            lost
+        }
+    }
+}
+
+/// The motion of nodes that several parts have.
+struct SharedNodes<'a> {
+    body: &'a General,
+    blocks: std::ops::Range<usize>,
+    stage: Stage,
+    number: u64,
+    around: Around<'a>,
+}
+
+impl Work for SharedNodes<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Self { body: General { shared, parts, constants, .. }, blocks, stage, number, around } = self;
+        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
+        let own = Own { motion, stage, constants };
+        let mut lost = 0;
+        for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
+            let places = |lane: usize| {
+                &shared.places[shared.starts[first + lane] as usize..shared.starts[first + lane + 1] as usize]
+            };
+            let mut records = [[0.0; RECORD]; MOST];
+            let mut sums = [[0.0; SUM]; MOST];
+            // SAFETY: all parts are done, and these nodes are this thread's, wherever their records are.
+            unsafe {
+                let record = |place: &Place| {
+                    parts[place.part as usize]
+                        .records
+                        .pointer()
+                        .add(place.record as usize * RECORD)
+                        .cast::<[f64; RECORD]>()
+                };
+                for lane in 0..L::WIDTH {
+                    let places = places(lane);
+                    if let Some(place) = places.first() {
+                        records[lane] = *record(place);
+                    }
+                    for place in places {
+                        let part = &parts[place.part as usize];
+                        let row = &mut *part.sums.pointer().add(place.record as usize * SUM).cast::<[f64; SUM]>();
+                        sums[lane].iter_mut().zip(&*row).for_each(|(sum, value)| *sum += value);
+                        *row = [0.0; SUM];
+                    }
+                }
+                let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
+                let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let rows = records.as_mut_ptr();
+                lost |= own.advance(
+                    |lane| rows.add(lane).cast(),
+                    [x, y, z],
+                    accelerations,
+                    |lane| shared.index[first + lane] as usize,
+                );
+                for (lane, moved) in records.iter().enumerate().take(L::WIDTH) {
+                    places(lane).iter().for_each(|place| *record(place) = *moved);
+                }
+            }
+        }
+        lost
+    }
+}
+
+/// The elements of one class of a part.
+struct Elements<'a> {
+    part: &'a Part,
+    class: &'a Class,
+    constants: &'a Constants,
+    commit: bool,
+}
+
+/// Blocks of which first all moments are summed up, then all rotations found, then all forces summed up: the processor
+/// finds the rotations of several blocks at the same time, each a long chain.
+const BATCH: usize = 4;
+
+/// Where the sum of a node begins, by where its record does: sums are half as long, and so are these numbers half as
+/// long as doubles. That saves the processor a shift for each corner.
+///
+/// # Safety
+/// There is such a sum.
+#[inline(always)]
+unsafe fn sum_of(sums: *mut f64, record: u32) -> *mut f64 {
+    const { assert!(2 * SUM == RECORD) };
+    // SAFETY: the caller's.
+    unsafe { sums.cast::<f32>().add(record as usize).cast() }
+}
+
+/// What the elements of a block do to all their corners: `w̄` and `k M`, lane by lane.
+#[repr(C, align(64))]
+struct Block([[f64; MOST]; 12]);
+
+impl Elements<'_> {
+    /// Eq. (4) in space.
+    #[inline(always)]
+    fn space<L: Lanes, const DAMPED: bool>(&self, solver: impl Solver) {
+        let &Self { part, class, constants, commit } = self;
+        let corners = class.corners;
+        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let k = L::splat(constants.stiffness);
+        let k_mean = L::splat(constants.stiffness / corners as f64);
+        let d_mean = L::splat(constants.damping / corners as f64);
+        let zero = L::splat(0.0);
+        let blocks = class.elements.len().div_ceil(MOST);
+        let mut batch = [const { Block([[0.0; MOST]; 12]) }; BATCH];
+        for begin in (0..blocks).step_by(BATCH) {
+            let batch = &mut batch[..BATCH.min(blocks - begin)];
+            // SAFETY: the arrays have an entry for each block, corner, coordinate and lane; the records named are the
+            // part's, which is this thread's.
+            unsafe {
+                for (block, sums) in (begin..).zip(&mut *batch) {
+                    let nodes = class.nodes.as_ptr().add(block * corners * MOST);
+                    let rest = class.rest.pointer().add(block * corners * 3 * MOST);
+                    for lanes in (0..MOST).step_by(L::WIDTH) {
+                        let (mut position, mut velocity, mut a) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
+                        let mut first = [zero; 3];
+                        for corner in 0..corners {
+                            let node = nodes.add(corner * MOST + lanes);
+                            let [px, py, vx, vy, pz, vz, ..] =
+                                L::columns(|lane| records.add(*node.add(lane) as usize).cast_const());
+                            let v = [vx, vy, vz];
+                            if corner == 0 {
+                                first = [px, py, pz];
+                            }
+                            // Relative to the first corner: of an element at a point nothing remains.
+                            let p = [px - first[0], py - first[1], pz - first[2]];
+                            for axis in 0..3 {
+                                position[axis] = position[axis] + p[axis];
+                                if DAMPED {
+                                    velocity[axis] = velocity[axis] + v[axis];
+                                }
+                                let rest = L::load(rest.add((corner * 3 + axis) * MOST + lanes));
+                                a[axis] = each!(3, row => p[row].mul_add(rest, a[axis][row]));
+                            }
+                        }
+                        for axis in 0..3 {
+                            let mut mean = position[axis].mul_add(k_mean, first[axis] * k);
+                            if DAMPED {
+                                mean = velocity[axis].mul_add(d_mean, mean);
+                            }
+                            mean.store(sums.0[axis].as_mut_ptr().add(lanes));
+                            each!(3, row => a[axis][row].store(sums.0[3 + 3 * axis + row].as_mut_ptr().add(lanes)));
+                        }
+                    }
+                }
+                // Two vectors at a time; an odd last block goes with itself.
+                for first in (0..batch.len()).step_by(2) {
+                    let two = [first, (first + 1).min(batch.len() - 1)];
+                    let blocks = [begin + two[0], begin + two[1]];
+                    for lanes in (0..MOST).step_by(L::WIDTH) {
+                        let out = each!(2, at => batch[two[at]].0.as_mut_ptr().cast::<f64>().add(lanes));
+                        let turns = each!(2, at => class.turns.pointer().add(blocks[at] * 4 * MOST + lanes));
+                        let a = each!(2, at =>
+                            each!(3, axis => each!(3, row => L::load(out[at].add((3 + 3 * axis + row) * MOST)))));
+                        let last = each!(2, at => each!(4, entry => L::load(turns[at].add(entry * MOST))));
+                        let live = each!(2, at => {
+                            let left = class.elements.len().saturating_sub(blocks[at] * MOST + lanes);
+                            L::mask((1 << left.min(L::WIDTH)) - 1)
+                        });
+                        let scale = each!(2, at => L::load(class.scale.pointer().add(blocks[at] * MOST + lanes)));
+                        let turn = solver.follow_two([&a[0], &a[1]], scale, last, live);
+                        each!(2, at => {
+                            if commit {
+                                each!(4, entry => turn[at][entry].store(turns[at].add(entry * MOST)));
+                            }
+                            let matrix = rotation::matrix(turn[at], k);
+                            each!(3, axis => each!(3, row =>
+                                matrix[axis][row].store(out[at].add((3 + 3 * axis + row) * MOST))));
+                        });
+                    }
+                }
+                for (block, out) in (begin..).zip(&*batch) {
+                    let nodes = class.nodes.as_ptr().add(block * corners * MOST);
+                    let rest = class.rest.pointer().add(block * corners * 3 * MOST);
+                    if L::WIDTH == MOST {
+                        let out = out.0.as_ptr().cast::<f64>();
+                        let w = each!(3, axis => L::load(out.add(axis * MOST)));
+                        let m = each!(3, axis => each!(3, row => L::load(out.add((3 + 3 * axis + row) * MOST))));
+                        for corner in 0..corners {
+                            let node = nodes.add(corner * MOST);
+                            let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST)));
+                            let [fx, fy, fz] = each!(3, axis =>
+                                z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], w[axis]))));
+                            L::add_rows([fx, fy, fz, zero], |lane| sum_of(sums, *node.add(lane)));
+                        }
+                        continue;
+                    }
+                    for corner in 0..corners {
+                        for lanes in (0..MOST).step_by(L::WIDTH) {
+                            let node = nodes.add(corner * MOST + lanes);
+                            let out = out.0.as_ptr().cast::<f64>().add(lanes);
+                            let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST + lanes)));
+                            let [fx, fy, fz] = each!(3, axis => {
+                                let [mx, my, mz] = each!(3, column => L::load(out.add((3 + 3 * column + axis) * MOST)));
+                                let w = L::load(out.add(axis * MOST));
+                                z.mul_add(mz, y.mul_add(my, x.mul_add(mx, w)))
+                            });
+                            L::add_rows([fx, fy, fz, zero], |lane| sum_of(sums, *node.add(lane)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Eq. (4) in the plane, with the rotation of Eq. (9).
+    #[inline(always)]
+    fn plane<L: Lanes, const DAMPED: bool>(&self) {
+        let &Self { part, class, constants, commit } = self;
+        let corners = class.corners;
+        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let k = L::splat(constants.stiffness);
+        let k_mean = L::splat(constants.stiffness / corners as f64);
+        let d_mean = L::splat(constants.damping / corners as f64);
+        let (zero, one, most) = (L::splat(0.0), L::splat(1.0), L::splat(f64::MAX));
+        for block in 0..class.elements.len().div_ceil(MOST) {
+            let mut out = Block([[0.0; MOST]; 12]);
+            // SAFETY: as in space.
+            unsafe {
+                let nodes = class.nodes.as_ptr().add(block * corners * MOST);
+                let rest = class.rest.pointer().add(block * corners * 2 * MOST);
+                let turns = class.turns.pointer().add(block * 2 * MOST);
+                for lanes in (0..MOST).step_by(L::WIDTH) {
+                    let (mut position, mut velocity, mut turn) = ([zero; 2], [zero; 2], [zero; 2]);
+                    let mut first = [zero; 2];
+                    for corner in 0..corners {
+                        let node = nodes.add(corner * MOST + lanes);
+                        let [px, py, vx, vy] = L::columns_4(|lane| records.add(*node.add(lane) as usize).cast_const());
+                        let [x, y] = each!(2, axis => L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
+                        if corner == 0 {
+                            first = [px, py];
+                        }
+                        let (px, py) = (px - first[0], py - first[1]);
+                        position = [position[0] + px, position[1] + py];
+                        if DAMPED {
+                            velocity = [velocity[0] + vx, velocity[1] + vy];
+                        }
+                        turn[0] = y.mul_add(py, x.mul_add(px, turn[0]));
+                        turn[1] = y.neg_mul_add(px, x.mul_add(py, turn[1]));
+                    }
+                    // Where no angle is better than another, the last one is kept.
+                    let last = each!(2, entry => L::load(turns.add(entry * MOST + lanes)));
+                    let inverse = one.div(turn[1].mul_add(turn[1], turn[0] * turn[0]).sqrt());
+                    let is_sound = L::both(zero.lt(inverse), inverse.le(most));
+                    let turn = each!(2, entry => (turn[entry] * inverse).select(is_sound, last[entry]));
+                    if commit {
+                        each!(2, entry => turn[entry].store(turns.add(entry * MOST + lanes)));
+                    }
+                    for axis in 0..2 {
+                        let mut mean = position[axis].mul_add(k_mean, first[axis] * k);
+                        if DAMPED {
+                            mean = velocity[axis].mul_add(d_mean, mean);
+                        }
+                        mean.store(out.0[axis].as_mut_ptr().add(lanes));
+                        (turn[axis] * k).store(out.0[2 + axis].as_mut_ptr().add(lanes));
+                    }
+                }
+                for corner in 0..corners {
+                    for lanes in (0..MOST).step_by(L::WIDTH) {
+                        let node = nodes.add(corner * MOST + lanes);
+                        let out = out.0.as_ptr().cast::<f64>().add(lanes);
+                        let [x, y] = each!(2, axis => L::load(rest.add((corner * 2 + axis) * MOST + lanes)));
+                        let [wx, wy, cosine, sine] = each!(4, entry => L::load(out.add(entry * MOST)));
+                        let fx = y.neg_mul_add(sine, x.mul_add(cosine, wx));
+                        let fy = y.mul_add(cosine, x.mul_add(sine, wy));
+                        L::add_rows([fx, fy, zero, zero], |lane| sum_of(sums, *node.add(lane)));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Eq. (1).
+    #[inline(always)]
+    fn springs<L: Lanes, const DAMPED: bool>(&self) {
+        let &Self { part, class, constants, .. } = self;
+        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let (k, d) = (L::splat(constants.stiffness), L::splat(constants.damping));
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        for block in 0..class.elements.len().div_ceil(MOST) {
+            let mut out = Block([[0.0; MOST]; 12]);
+            // SAFETY: as in space.
+            unsafe {
+                let nodes = class.nodes.as_ptr().add(block * 2 * MOST);
+                let tension = class.rest.pointer().add(block * MOST);
+                for lanes in (0..MOST).step_by(L::WIDTH) {
+                    let [near, far] = each!(2, corner => {
+                        let node = nodes.add(corner * MOST + lanes);
+                        L::columns(|lane| records.add(*node.add(lane) as usize).cast_const())
+                    });
+                    let [px, py, vx, vy, pz, vz, ..] = each!(8, entry => far[entry] - near[entry]);
+                    let squared = pz.mul_add(pz, py.mul_add(py, px * px));
+                    let inverse = one.div(squared.sqrt());
+                    let tension = L::load(tension.add(lanes));
+                    let along = if DAMPED {
+                        (vz.mul_add(pz, vy.mul_add(py, vx * px)) * d).mul_sub(inverse, tension)
+                    } else {
+                        -tension
+                    };
+                    // Coincident nodes have no direction.
+                    let pull = along.mul_add(inverse, k).select(zero.lt(squared), zero);
+                    let p = [px, py, pz];
+                    each!(3, axis => (pull * p[axis]).store(out.0[axis].as_mut_ptr().add(lanes)));
+                }
+                for corner in 0..2 {
+                    for lanes in (0..MOST).step_by(L::WIDTH) {
+                        let node = nodes.add(corner * MOST + lanes);
+                        let [x, y, z] = each!(3, axis => {
+                            let force = L::load(out.0[axis].as_ptr().add(lanes));
+                            if corner == 0 { force } else { -force }
+                        });
+                        L::add_rows([x, y, z, zero], |lane| sum_of(sums, *node.add(lane)));
+                    }
+                }
+            }
+        }
+    }
+}

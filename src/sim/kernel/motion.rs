@@ -1,0 +1,296 @@
+//! What happens to nodes once their forces are known, in lanes: Eqs. (2) and (3) and their rivals, the test for runaways,
+//! and collisions.
+
+use super::lanes::{Lanes, MOST, each};
+use super::{Around, Bound, Resolve, Runaway};
+use glam::DVec3;
+use std::ops::Range;
+
+/// What is done with the forces of one evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) enum Stage {
+    /// Eq. (2), then Eq. (3) with the new velocity.
+    SemiImplicitEuler,
+    /// Eq. (3) with the old velocity.
+    ExplicitEuler,
+    /// The first half of velocity Verlet: the way, and the velocity at its end if the acceleration stays.
+    Drift,
+    /// Its second half, with the acceleration at the new place.
+    Finish,
+    /// The second half of one step and the first of the next, where the forces do not depend on velocities.
+    FinishDrift,
+    /// The first half with accelerations that are known: no force is evaluated.
+    Coast,
+}
+
+impl Stage {
+    /// Whether accelerations are kept from one stage to the next.
+    pub(in crate::sim) fn is_verlet(self) -> bool {
+        !matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
+    }
+}
+
+/// How positions and velocities move from one step to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::sim) enum Scheme {
+    /// Eq. (2), then Eq. (3) with the new velocity.
+    SemiImplicitEuler,
+    /// Eq. (3) with the old velocity.
+    ExplicitEuler,
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+/// Forces and motion of a body in lanes.
+pub(in crate::sim) trait Kernel {
+    /// Evaluates the forces once, unless they are known, and moves all nodes; tells whether all are within the speed limit.
+    /// With `commit` what the evaluation finds becomes the memory of the next one. `number` is that of the step in this
+    /// call.
+    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool;
+    /// Whether forces depend on velocities.
+    fn is_damped(&self) -> bool;
+    /// Whether accelerations belong to the present positions.
+    fn is_known(&mut self) -> &mut bool;
+    /// Copies the state.
+    fn keep(&mut self);
+    /// Puts the copy in the state's place.
+    fn restore(&mut self);
+    /// Position (m) and velocity (m/s) of one node.
+    fn node(&self, node: usize) -> (DVec3, DVec3);
+    /// The number of nodes.
+    fn len(&self) -> usize;
+}
+
+/// Takes steps.
+///
+/// # Errors
+/// When a node would become faster than the limit; the state is then that before the step.
+pub(in crate::sim) fn advance(
+    kernel: &mut (impl Kernel + ?Sized),
+    scheme: Scheme,
+    steps: u64,
+    around: Around<'_>,
+) -> Result<(), Runaway> {
+    /// The steps after which the state is kept anew. A copy costs a small part of them.
+    const KEPT: u64 = 32;
+    let mut done = 0;
+    while done < steps {
+        let now = KEPT.min(steps - done);
+        let was_known = *kernel.is_known();
+        kernel.keep();
+        if !several(kernel, scheme, done..done + now, around) {
+            // Somewhere in these steps: one by one, and back to the state before the last.
+            kernel.restore();
+            *kernel.is_known() = was_known;
+            let is_good = |kernel: &mut _, at| several::<_>(kernel, scheme, at..at + 1, around);
+            let taken = (done..done + now).take_while(|&at| is_good(&mut *kernel, at)).last().map_or(done, |at| at + 1);
+            let limit = (around.speed_limit)(taken);
+            let is_lost = |&node: &usize| {
+                let squared = kernel.node(node).1.length_squared();
+                squared.is_nan() || squared > limit * limit
+            };
+            let node = (0..kernel.len()).find(is_lost).unwrap_or(0);
+            kernel.restore();
+            *kernel.is_known() = was_known;
+            for at in done..taken {
+                several(kernel, scheme, at..at + 1, around);
+            }
+            return Err(Runaway { taken, node });
+        }
+        done += now;
+    }
+    Ok(())
+}
+
+/// Takes steps of these numbers; tells whether all nodes stayed within the limit.
+fn several<K: Kernel + ?Sized>(kernel: &mut K, scheme: Scheme, steps: Range<u64>, around: Around<'_>) -> bool {
+    let (first, last) = (steps.start, steps.end - 1);
+    match scheme {
+        Scheme::SemiImplicitEuler => {
+            steps.into_iter().all(|at| kernel.pass(Stage::SemiImplicitEuler, true, at, around))
+        }
+        Scheme::ExplicitEuler => steps.into_iter().all(|at| kernel.pass(Stage::ExplicitEuler, true, at, around)),
+        Scheme::VelocityVerlet if kernel.is_damped() => steps
+            .into_iter()
+            .all(|at| kernel.pass(Stage::Drift, true, at, around) && kernel.pass(Stage::Finish, false, at, around)),
+        Scheme::VelocityVerlet => {
+            let begin = if *kernel.is_known() { Stage::Coast } else { Stage::Drift };
+            *kernel.is_known() = true;
+            kernel.pass(begin, true, first, around)
+                && (first + 1..=last).all(|at| kernel.pass(Stage::FinishDrift, true, at, around))
+                && kernel.pass(Stage::Finish, true, last, around)
+        }
+    }
+}
+
+/// The motion of nodes in one pass.
+#[derive(Clone, Copy)]
+pub(in crate::sim) struct Motion<'a, L> {
+    stage: Stage,
+    step: L,
+    half: L,
+    gravity: [L; 3],
+    /// The squares of the speed limits before a new step begins and in it.
+    limits: [L; 2],
+    around: Around<'a>,
+}
+
+/// A vector of nodes.
+#[derive(Clone, Copy)]
+pub(in crate::sim) struct Nodes<L> {
+    pub(in crate::sim) position: [L; 3],
+    pub(in crate::sim) velocity: [L; 3],
+    pub(in crate::sim) acceleration: [L; 3],
+}
+
+impl<'a, L: Lanes> Motion<'a, L> {
+    #[inline(always)]
+    pub(in crate::sim) fn new(stage: Stage, step: f64, gravity: DVec3, number: u64, around: Around<'a>) -> Self {
+        let limits = match stage {
+            Stage::FinishDrift => [number - 1, number],
+            _ => [number; 2],
+        };
+        Self {
+            stage,
+            step: L::splat(step),
+            half: L::splat(0.5 * step),
+            gravity: each!(3, axis => L::splat(gravity[axis])),
+            limits: each!(2, at => {
+                let limit = (around.speed_limit)(limits[at]);
+                L::splat(limit * limit)
+            }),
+            around,
+        }
+    }
+
+    /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node. `index` tells the
+    /// node in a lane. Returns one bit for each lane whose speed is out of bounds.
+    #[inline(always)]
+    pub(in crate::sim) fn advance(
+        &self,
+        nodes: &mut Nodes<L>,
+        force: [L; 3],
+        inverse_mass: L,
+        index: impl Fn(usize) -> usize,
+    ) -> u32 {
+        let zero = L::splat(0.0);
+        let alive = zero.lt(inverse_mass);
+        // The acceleration (m/s²).
+        let now = each!(3, axis => force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
+        let mut lost = 0;
+        let mut rests = [zero; 3];
+        match self.stage {
+            Stage::SemiImplicitEuler => {
+                for axis in 0..3 {
+                    nodes.velocity[axis] = now[axis].mul_add(self.step, nodes.velocity[axis]);
+                    nodes.position[axis] = nodes.velocity[axis].mul_add(self.step, nodes.position[axis]);
+                }
+            }
+            Stage::ExplicitEuler => {
+                for axis in 0..3 {
+                    nodes.position[axis] = nodes.velocity[axis].mul_add(self.step, nodes.position[axis]);
+                    nodes.velocity[axis] = now[axis].mul_add(self.step, nodes.velocity[axis]);
+                }
+            }
+            Stage::Drift => {
+                nodes.acceleration = now;
+                self.drift(nodes);
+                rests = now;
+            }
+            Stage::Coast => {
+                rests = nodes.acceleration;
+                self.drift(nodes);
+            }
+            Stage::Finish | Stage::FinishDrift => {
+                for axis in 0..3 {
+                    let gain = now[axis] - nodes.acceleration[axis];
+                    nodes.velocity[axis] = gain.mul_add(self.half, nodes.velocity[axis]);
+                }
+                nodes.acceleration = now;
+                if self.stage == Stage::Finish {
+                    return self.lost(nodes, 0);
+                }
+                lost = self.lost(nodes, 0);
+                self.drift(nodes);
+                rests = now;
+            }
+        }
+        lost |= self.lost(nodes, 1);
+        let mut inside = 0;
+        for bound in self.around.bounds {
+            inside |= L::bits(reaches(bound, nodes.position));
+        }
+        inside &= L::bits(alive);
+        if inside != 0 {
+            let mut position = each!(3, axis => nodes.position[axis].to_array());
+            let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
+            let rests = each!(3, axis => rests[axis].to_array());
+            touch(
+                self.around.resolve,
+                inside,
+                each!(8, lane => if lane < L::WIDTH { index(lane) } else { 0 }),
+                &mut position,
+                &mut velocity,
+                &rests,
+            );
+            nodes.position = each!(3, axis => L::from_array(position[axis]));
+            nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
+        }
+        lost
+    }
+
+    /// The way of velocity Verlet, and the velocity at its end if the acceleration stays.
+    #[inline(always)]
+    fn drift(&self, nodes: &mut Nodes<L>) {
+        for axis in 0..3 {
+            let predicted = nodes.acceleration[axis].mul_add(self.step, nodes.velocity[axis]);
+            nodes.position[axis] = (nodes.velocity[axis] + predicted).mul_add(self.half, nodes.position[axis]);
+            nodes.velocity[axis] = predicted;
+        }
+    }
+
+    /// The lanes whose speed is out of bounds; what is no number is within none.
+    #[inline(always)]
+    fn lost(&self, nodes: &Nodes<L>, at: usize) -> u32 {
+        let [x, y, z] = nodes.velocity;
+        let squared = z.mul_add(z, y.mul_add(y, x * x));
+        !L::bits(squared.le(self.limits[at])) & L::ALL
+    }
+}
+
+/// The contact of the lanes `inside` a bound. All nodes of a body that lies on a floor may come here, or none.
+#[inline(never)]
+fn touch(
+    resolve: &Resolve<'_>,
+    inside: u32,
+    index: [usize; MOST],
+    position: &mut [[f64; MOST]; 3],
+    velocity: &mut [[f64; MOST]; 3],
+    acceleration: &[[f64; MOST]; 3],
+) {
+    for lane in (0..MOST).filter(|lane| inside >> lane & 1 == 1) {
+        let of = |all: &[[f64; MOST]; 3]| DVec3::from_array(all.map(|axis| axis[lane]));
+        let (mut p, mut v) = (of(position), of(velocity));
+        resolve(index[lane], &mut p, &mut v, of(acceleration));
+        for axis in 0..3 {
+            (position[axis][lane], velocity[axis][lane]) = (p[axis], v[axis]);
+        }
+    }
+}
+
+/// The lanes inside a bound.
+#[inline(always)]
+fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
+    match bound {
+        Bound::HalfSpace { normal, height } => {
+            let [nx, ny, nz] = each!(3, axis => L::splat(normal[axis]));
+            nz.mul_add(z, ny.mul_add(y, nx * x)).lt(L::splat(*height))
+        }
+        Bound::Box { low, high } => {
+            let [lx, ly, lz] = each!(3, axis => L::splat(low[axis]));
+            let [hx, hy, hz] = each!(3, axis => L::splat(high[axis]));
+            let inside = L::both(L::both(lx.lt(x), x.lt(hx)), L::both(ly.lt(y), y.lt(hy)));
+            L::both(inside, L::both(lz.lt(z), z.lt(hz)))
+        }
+    }
+}

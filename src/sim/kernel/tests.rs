@@ -1,0 +1,466 @@
+//! Any elements and springs in lanes against the reference, and against each other.
+
+use super::general::{Constants, General};
+use super::motion::{Kernel, Scheme, advance};
+use super::springs::Stencil;
+use super::{Around, Bound, Rotation, Set};
+use crate::sim::body::{Body, Dimension, IndexLists, Solids, State};
+use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::integrate::Integrator;
+use crate::sim::model::ElasticModel;
+use crate::sim::model::mass_spring::MassSpring;
+use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use crate::sim::rotation::{best, davenport1968, moment, planar};
+use crate::sim::topology::Springs;
+use crate::sim::world::{Stepping, Surroundings, World};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::sync::Arc;
+
+const STIFFNESS: f64 = 1e4;
+const STEP: f64 = 2e-4;
+const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.0);
+/// Steps in which a run departs from the reference by round-off alone.
+const STEPS: u64 = 1000;
+
+/// Numbers from −1 to 1 that look random.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        ((0.5 * self.next() + 0.5) * count as f64) as usize
+    }
+
+    fn vector(&mut self, dimension: Dimension) -> DVec3 {
+        let [x, y, z] = [self.next(), self.next(), self.next()];
+        DVec3::new(x, y, if dimension == Dimension::Plane { 0.0 } else { z })
+    }
+}
+
+/// The nodes of a block of cells of a tenth of a metre, each moved by up to a part of that, and the corners of each
+/// cell: in bit order, or counter-clockwise.
+fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Vec<DVec3>, Vec<Vec<u32>>) {
+    let [nx, ny, nz] = cells;
+    let dimension = if nz == 0 { Dimension::Plane } else { Dimension::Space };
+    let at = |x: u32, y: u32, z: u32| x + (nx + 1) * (y + (ny + 1) * z);
+    let places = (0..=nz).flat_map(|z| (0..=ny).flat_map(move |y| (0..=nx).map(move |x| [x, y, z])));
+    let rest = places
+        .map(|place| (DVec3::from_array(place.map(f64::from)) + random.vector(dimension) * irregular) * 0.1)
+        .collect();
+    let places = (0..nz.max(1)).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let corners = places.map(|[x, y, z]| match dimension {
+        Dimension::Plane => vec![at(x, y, 0), at(x + 1, y, 0), at(x + 1, y + 1, 0), at(x, y + 1, 0)],
+        Dimension::Space => (0..8).map(|bits| at(x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2))).collect(),
+    });
+    (dimension, rest, corners.collect())
+}
+
+/// A body with unequal masses.
+fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &mut Random) -> Arc<Body> {
+    let mass = rest.iter().map(|_| 1.0 + 0.5 * random.next()).collect();
+    Arc::new(Body::new(dimension, rest, mass, elements, Solids::Convex, None))
+}
+
+/// The cells of a block whole.
+fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
+    let random = &mut Random(seed);
+    let (dimension, rest, corners) = block(cells, irregular, random);
+    body(dimension, rest, corners.iter().map(|corners| &corners[..]).collect(), random)
+}
+
+/// As many elements as a block has cells, each with some of the corners of a cell; some nodes may have none.
+fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
+    let random = &mut Random(seed);
+    let (dimension, rest, corners) = block(cells, 0.2, random);
+    let mut elements = IndexLists::default();
+    for mut corners in corners {
+        let count = counts[random.below(counts.len())];
+        while corners.len() > count {
+            corners.remove(random.below(corners.len()));
+        }
+        elements.push(&corners);
+    }
+    body(dimension, rest, elements, random)
+}
+
+/// Turned, stretched and in motion.
+fn start(body: &Body, seed: u64) -> State {
+    let random = &mut Random(seed);
+    let turn = match body.dimension {
+        Dimension::Plane => DMat3::from_cols_array(&[0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0]),
+        Dimension::Space => DMat3::from_quat(DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize()),
+    };
+    let position = body.rest.iter().map(|&rest| {
+        turn * (rest * DVec3::new(1.1, 0.95, 1.05)) + random.vector(body.dimension) * 0.005 + DVec3::new(0.1, 0.5, 0.0)
+    });
+    let position = position.collect();
+    let velocity = body.rest.iter().map(|_| random.vector(body.dimension) * 0.1).collect();
+    State { position, velocity }
+}
+
+/// The rotations of the elements at a state: from where the reference starts, too.
+fn rotations(body: &Body, state: &State) -> Vec<f64> {
+    let mut memory = Vec::new();
+    for nodes in body.elements.iter() {
+        let relative = |places: &[DVec3]| -> Vec<DVec3> {
+            let mean = nodes.iter().map(|&node| places[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+            nodes.iter().map(|&node| places[node as usize] - mean).collect()
+        };
+        let a = moment(&relative(&body.rest), relative(&state.position));
+        match body.dimension {
+            Dimension::Plane => memory.extend(planar::solve(a, DVec2::X).to_array()),
+            Dimension::Space => memory.extend(davenport1968::optimum(a, DQuat::IDENTITY).to_array()),
+        }
+    }
+    memory
+}
+
+fn nothing(_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3) {}
+
+/// No obstacle and no limit.
+const FREE: Around<'_> = Around { bounds: &[], resolve: &nothing, speed_limit: &|_| f64::MAX };
+
+fn constants(damping: f64) -> Constants {
+    Constants { stiffness: STIFFNESS, damping, gravity: GRAVITY, step: STEP }
+}
+
+/// A state with the rotations.
+type Whole = (State, Vec<f64>);
+
+fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, set: Set) -> General {
+    let mut kernel = General::new(body, rotation, constants(damping), set);
+    kernel.load(&start.0.position, &start.0.velocity, &start.1);
+    kernel
+}
+
+fn stored(kernel: &General, like: &Whole) -> Whole {
+    let (mut state, mut memory) = like.clone();
+    kernel.store(&mut state.position, &mut state.velocity, &mut memory);
+    (state, memory)
+}
+
+fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
+    let (rotation, passes) = match rotation {
+        Rotation::Arctangent { passes } => (RotationReading::Arctangent, passes),
+        Rotation::Optimum => (RotationReading::Exact, 1),
+    };
+    ShapeBased { stiffness: STIFFNESS, damping, passes, rotation, damping_of: DampingReading::RelativeMotion }
+}
+
+fn reference(
+    body: &Arc<Body>,
+    start: &State,
+    model: &dyn ElasticModel,
+    scheme: Scheme,
+    obstacles: Vec<Obstacle>,
+) -> World {
+    let integrator = match scheme {
+        Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
+        Scheme::ExplicitEuler => Integrator::ExplicitEuler,
+        Scheme::VelocityVerlet => Integrator::VelocityVerlet,
+    };
+    let surroundings = Surroundings { gravity: GRAVITY, obstacles, grips: Vec::new() };
+    World::new(body, start.clone(), model, surroundings, Stepping { integrator, step: STEP })
+}
+
+/// The largest distance between two states, in units of their extent and of the speed at which a node swings through
+/// that.
+fn distance(a: &State, b: &State) -> f64 {
+    let extent = b.position.iter().fold(0.0, |far: f64, p| far.max(p.length()));
+    let frequency = STIFFNESS.sqrt();
+    let largest = |a: &[DVec3], b: &[DVec3]| {
+        a.iter().zip(b).fold(0.0, |far: f64, (a, b)| if a == b { far } else { far.max(a.distance(*b)) })
+    };
+    let distance = largest(&a.position, &b.position).max(largest(&a.velocity, &b.velocity) / frequency);
+    assert!(distance.is_finite());
+    distance / extent
+}
+
+/// Steps a body in lanes of every set, which must agree bit for bit, and by the reference.
+fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
+    let memory = rotations(body, &start);
+    let start = (start, memory);
+    let mut found: Option<Whole> = None;
+    for set in Set::all() {
+        let mut kernel = general(body, &start, rotation, damping, set);
+        // Calls of any length do the same.
+        for steps in [1, 7, 100, STEPS - 108] {
+            assert_eq!(advance(&mut kernel, scheme, steps, FREE), Ok(()), "{name}");
+        }
+        let here = stored(&kernel, &start);
+        assert!(found.as_ref().is_none_or(|found| *found == here), "{name}: {set:?} has other bits");
+        found = Some(here);
+    }
+    let model = shape_based(rotation, damping);
+    let mut world = reference(body, &start.0, &model, scheme, Vec::new());
+    world.advance(STEPS);
+    let far = distance(&found.expect("some set").0, world.state());
+    assert!(far <= 1e-12, "{name}, {rotation:?}, D = {damping}, {scheme:?}: {far:e}");
+}
+
+const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
+
+#[test]
+fn any_elements_step_like_the_reference() {
+    for (name, body) in [
+        ("one hexahedron", whole([1, 1, 1], 0.2, 1)),
+        ("a bar", whole([9, 1, 1], 0.2, 2)),
+        ("a block", whole([3, 4, 2], 0.2, 3)),
+        ("tetrahedra", pieces([3, 3, 3], &[4], 4)),
+        ("one tetrahedron", pieces([1, 1, 1], &[4], 5)),
+        ("anything", pieces([4, 3, 5], &[4, 5, 6, 7, 8], 6)),
+        ("anything flat", pieces([4, 5, 0], &[3, 4], 7)),
+        ("one triangle", pieces([1, 1, 0], &[3], 8)),
+        ("squares", whole([9, 1, 0], 0.1, 9)),
+    ] {
+        for rotation in [TWICE, Rotation::Optimum] {
+            for damping in [0.0, 10.0] {
+                compare(name, &body, start(&body, 1), rotation, damping, Scheme::SemiImplicitEuler);
+            }
+        }
+    }
+}
+
+#[test]
+fn any_scheme_steps_like_the_reference() {
+    for (name, body) in [("anything", pieces([3, 2, 3], &[4, 5, 6, 8], 6)), ("flat", pieces([4, 3, 0], &[3, 4], 7))] {
+        for scheme in [Scheme::ExplicitEuler, Scheme::VelocityVerlet] {
+            for damping in [0.0, 10.0] {
+                compare(name, &body, start(&body, 2), TWICE, damping, scheme);
+            }
+        }
+    }
+}
+
+/// Several parts, with nodes that they share, and blocks that are not full.
+#[test]
+fn a_body_of_several_parts_steps_like_the_reference() {
+    let body = pieces([23, 17, 19], &[4, 6, 8], 11);
+    let start = start(&body, 3);
+    let start = (start.clone(), rotations(&body, &start));
+    let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
+    world.advance(50);
+    let mut found: Option<Whole> = None;
+    for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+        let mut kernel = general(&body, &start, TWICE, 10.0, set);
+        kernel.set_threads(threads);
+        assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 50, FREE), Ok(()));
+        let here = stored(&kernel, &start);
+        assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
+        found = Some(here);
+    }
+    let far = distance(&found.expect("some set").0, world.state());
+    assert!(far <= 1e-12, "{far:e}");
+}
+
+/// Elements turned inside out, flattened or crushed to a point, in single lanes among others.
+#[test]
+fn elements_without_a_guide_step_like_the_reference() {
+    let body = whole([3, 2, 2], 0.1, 12);
+    for (name, element, crush) in [
+        ("inside out", 5, DVec3::new(1.0, 1.0, -1.0)),
+        ("flat", 7, DVec3::new(1.0, 1.0, 0.0)),
+        ("a line", 2, DVec3::new(0.0, 1.0, 0.0)),
+        ("a point", 11, DVec3::ZERO),
+    ] {
+        let mut start = State::at_rest(body.rest.clone());
+        let middle = body.elements[element].iter().map(|&node| body.rest[node as usize]).sum::<DVec3>() / 8.0;
+        for &node in &body.elements[element] {
+            let place = &mut start.position[node as usize];
+            *place = middle + (*place - middle) * crush;
+        }
+        let memory = rotations(&body, &start);
+        let start = (start, memory);
+        let model = shape_based(Rotation::Optimum, 10.0);
+        let mut world = reference(&body, &start.0, &model, Scheme::SemiImplicitEuler, Vec::new());
+        world.advance(20);
+        for set in Set::all() {
+            let mut kernel = general(&body, &start, Rotation::Optimum, 10.0, set);
+            assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 20, FREE), Ok(()), "{name}");
+            let far = distance(&stored(&kernel, &start).0, world.state());
+            assert!(far <= 1e-12, "{name}: {far:e}");
+        }
+    }
+    // In the plane all angles are as good for a triangle at a point: the last one stays.
+    let body = pieces([1, 1, 0], &[3], 13);
+    let start = (State::at_rest(vec![DVec3::ZERO; body.len()]), vec![0.6, 0.8]);
+    for set in Set::all() {
+        let mut kernel = general(&body, &start, TWICE, 0.0, set);
+        assert!(kernel.pass(super::motion::Stage::SemiImplicitEuler, true, 0, FREE));
+        assert_eq!(stored(&kernel, &start).1, [0.6, 0.8]);
+    }
+    assert_eq!(best(Dimension::Plane, DMat3::ZERO), DMat3::IDENTITY);
+}
+
+#[test]
+fn nodes_rebound_as_in_the_reference() {
+    let body = pieces([4, 3, 4], &[4, 8], 14);
+    let mut start = start(&body, 4);
+    start.velocity.iter_mut().for_each(|velocity| velocity.y -= 3.0);
+    let start = (start.clone(), rotations(&body, &start));
+    let floor = Obstacle {
+        shape: Shape::Floor { normal: DVec3::Y, height: 0.45 },
+        motion: Motion::Still,
+        pivot: DVec3::ZERO,
+        restitution: 0.5,
+        friction: 0.3,
+    };
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+        let model = shape_based(TWICE, 10.0);
+        let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
+        world.advance(300);
+        let resolve = |_: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
+            floor.at(STEP, STEP).rebound(position, velocity, acceleration);
+        };
+        for bound in [
+            Bound::HalfSpace { normal: DVec3::Y, height: 0.46 },
+            Bound::Box { low: DVec3::splat(-9.0), high: DVec3::new(9.0, 0.47, 9.0) },
+        ] {
+            for set in Set::all() {
+                let mut kernel = general(&body, &start, TWICE, 10.0, set);
+                let around = Around { bounds: &[bound], resolve: &resolve, ..FREE };
+                assert_eq!(advance(&mut kernel, scheme, 300, around), Ok(()));
+                let far = distance(&stored(&kernel, &start).0, world.state());
+                assert!(far <= 1e-12, "{scheme:?}: {far:e}");
+            }
+        }
+    }
+}
+
+/// The step in which a node becomes too fast is not taken, and those before are, whatever the call.
+#[test]
+fn a_runaway_leaves_the_state_before_its_step() {
+    let body = pieces([4, 3, 4], &[4, 8], 15);
+    let start = start(&body, 5);
+    let start = (start.clone(), rotations(&body, &start));
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+        for damping in [0.0, 10.0] {
+            let make = || general(&body, &start, TWICE, damping, Set::best());
+            let mut one_by_one = make();
+            // Falling, it becomes too fast some time.
+            let limit = 8.0;
+            let around = Around { speed_limit: &|_| limit, ..FREE };
+            let taken = (0..10_000).take_while(|_| advance(&mut one_by_one, scheme, 1, around).is_ok()).count() as u64;
+            assert!(taken > 40 && taken < 9_999, "{taken}");
+            let mut at_once = make();
+            let runaway = advance(&mut at_once, scheme, 10_000, around).expect_err("it falls");
+            assert_eq!(runaway.taken, taken);
+            assert_eq!(stored(&at_once, &start), stored(&one_by_one, &start));
+            // Without a limit that node is the first to be beyond it.
+            let mut free = make();
+            assert_eq!(advance(&mut free, scheme, taken + 1, FREE), Ok(()));
+            let speeds = stored(&free, &start).0.velocity;
+            assert_eq!(
+                speeds.iter().position(|speed| speed.length() > limit),
+                Some(runaway.node),
+                "{scheme:?} {damping}"
+            );
+        }
+    }
+    let mut kernel = general(&body, &start, TWICE, 0.0, Set::best());
+    kernel.set_node(7, DVec3::NAN, DVec3::ZERO);
+    assert!(advance(&mut kernel, Scheme::SemiImplicitEuler, 5, FREE).is_err_and(|runaway| runaway.taken == 0));
+}
+
+/// Springs in lanes by families, if they come in such, and without.
+fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
+    let start = start(body, 6);
+    let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.to_vec() };
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet] {
+        let mut world = reference(body, &start, &model, scheme, Vec::new());
+        world.advance(STEPS);
+        let (mut by_families, mut gathered): (Option<State>, Option<State>) = (None, None);
+        for set in Set::all() {
+            let same = |found: &mut Option<State>, here: State| {
+                assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} has other bits");
+                let far = distance(&here, world.state());
+                assert!(far <= 1e-12, "{} springs, {scheme:?}, {set:?}: {far:e}", springs.len());
+                *found = Some(here);
+            };
+            let stencil = Stencil::new(springs, &body.rest, &body.mass, constants(damping), set);
+            assert_eq!(stencil.is_some(), families, "{} springs", springs.len());
+            let mut here = start.clone();
+            if let Some(mut stencil) = stencil {
+                stencil.load(&start.position, &start.velocity);
+                assert_eq!(advance(&mut stencil, scheme, STEPS, FREE), Ok(()));
+                stencil.store(&mut here.position, &mut here.velocity);
+                same(&mut by_families, here.clone());
+            }
+            let mut kernel = General::springs(body, springs, constants(damping), set);
+            kernel.load(&start.position, &start.velocity, &[]);
+            assert_eq!(advance(&mut kernel, scheme, STEPS, FREE), Ok(()));
+            kernel.store(&mut here.position, &mut here.velocity, &mut []);
+            same(&mut gathered, here);
+        }
+    }
+}
+
+#[test]
+fn springs_step_like_the_reference() {
+    for damping in [0.0, 10.0] {
+        for cells in [[3, 4, 2], [1, 1, 1], [7, 1, 3], [9, 5, 0]] {
+            let body = whole(cells, 0.1, 16);
+            for named in [Springs::Edges, Springs::EdgesOneDiagonal, Springs::All] {
+                assert_springs_step_like_the_reference(&body, &body.topology().springs(named), damping, true);
+            }
+        }
+        // All lengths equal; and one spring twice.
+        let body = whole([4, 4, 4], 0.0, 17);
+        let mut springs = body.topology().springs(Springs::EdgesFaceDiagonals);
+        springs.push([springs[0][1], springs[0][0]]);
+        assert_springs_step_like_the_reference(&body, &springs, damping, true);
+        assert_springs_step_like_the_reference(&body, &[[9, 4]], damping, true);
+        let random = &mut Random(18);
+        let springs: Vec<[u32; 2]> = (0..90).map(|_| [random.below(62) as u32, 62 + random.below(62) as u32]).collect();
+        assert_springs_step_like_the_reference(&body, &springs, damping, false);
+    }
+}
+
+#[test]
+fn a_spring_between_coincident_nodes_does_nothing() {
+    let body = whole([4, 1, 1], 0.0, 19);
+    let springs = body.topology().springs(Springs::Edges);
+    let start = State::at_rest(vec![DVec3::ONE; body.len()]);
+    for set in Set::all() {
+        let free = Constants { gravity: DVec3::ZERO, ..constants(10.0) };
+        let mut end = start.clone();
+        let mut stencil = Stencil::new(&springs, &body.rest, &body.mass, free, set).expect("a lattice");
+        stencil.load(&start.position, &start.velocity);
+        assert_eq!(advance(&mut stencil, Scheme::SemiImplicitEuler, 9, FREE), Ok(()));
+        stencil.store(&mut end.position, &mut end.velocity);
+        assert_eq!(end, start);
+        let mut kernel = General::springs(&body, &springs, free, set);
+        kernel.load(&start.position, &start.velocity, &[]);
+        assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 9, FREE), Ok(()));
+        kernel.store(&mut end.position, &mut end.velocity, &mut []);
+        assert_eq!(end, start);
+    }
+}
+
+/// Slabs, each with nodes that move after all others.
+#[test]
+fn springs_in_several_slabs_step_like_the_reference() {
+    let body = whole([19, 19, 23], 0.1, 20);
+    let springs = body.topology().springs(Springs::EdgesOneDiagonal);
+    let start = start(&body, 7);
+    let model = MassSpring { stiffness: STIFFNESS, damping: 10.0, springs: springs.clone() };
+    let mut world = reference(&body, &start, &model, Scheme::SemiImplicitEuler, Vec::new());
+    world.advance(50);
+    let mut found: Option<State> = None;
+    for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+        let mut stencil = Stencil::new(&springs, &body.rest, &body.mass, constants(10.0), set).expect("a lattice");
+        stencil.set_threads(threads);
+        stencil.load(&start.position, &start.velocity);
+        assert_eq!(advance(&mut stencil, Scheme::SemiImplicitEuler, 50, FREE), Ok(()));
+        let mut end = start.clone();
+        stencil.store(&mut end.position, &mut end.velocity);
+        assert!(found.as_ref().is_none_or(|found| *found == end), "{set:?} on {threads} threads has other bits");
+        found = Some(end);
+    }
+    let far = distance(&found.expect("some set"), world.state());
+    assert!(far <= 1e-12, "{far:e}");
+}
