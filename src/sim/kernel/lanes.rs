@@ -112,6 +112,16 @@ pub(in crate::sim) trait Lanes:
     /// # Safety
     /// They are readable.
     unsafe fn load(from: *const f64) -> Self;
+    /// What [`Self::load_beyond`] needs to know of a distance.
+    type Distance: Copy;
+    /// The distance of so many values, less than [`MOST`].
+    fn distance(values: usize) -> Self::Distance;
+    /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where lanes fill a cache
+    /// line it reads two of them whole: to load across lines, or across what was just stored, takes much longer.
+    ///
+    /// # Safety
+    /// Twice [`MOST`] values are readable from there.
+    unsafe fn load_beyond(from: *const f64, distance: Self::Distance) -> Self;
     /// Writes [`Self::WIDTH`] values to memory, of any alignment.
     ///
     /// # Safety
@@ -346,6 +356,16 @@ mod portable {
 
     impl Lanes for Vector {
         type Mask = [bool; N];
+        type Distance = usize;
+        #[inline(always)]
+        fn distance(values: usize) -> usize {
+            values
+        }
+        #[inline(always)]
+        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+            // SAFETY: the caller's.
+            unsafe { Self::load(from.add(distance)) }
+        }
         const WIDTH: usize = N;
         #[inline(always)]
         fn splat(value: f64) -> Self {
@@ -524,6 +544,16 @@ mod x86 {
 
     impl Lanes for Avx2 {
         type Mask = __m256d;
+        type Distance = usize;
+        #[inline(always)]
+        fn distance(values: usize) -> usize {
+            values
+        }
+        #[inline(always)]
+        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+            // SAFETY: the caller's.
+            unsafe { Self::load(from.add(distance)) }
+        }
         const WIDTH: usize = 4;
         #[inline(always)]
         fn splat(value: f64) -> Self {
@@ -646,6 +676,15 @@ mod x86 {
 
     impl Lanes for Avx512 {
         type Mask = __mmask8;
+        type Distance = __m512i;
+        #[inline(always)]
+        fn distance(values: usize) -> __m512i {
+            unsafe { _mm512_add_epi64(_mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0), _mm512_set1_epi64(values as i64)) }
+        }
+        #[inline(always)]
+        unsafe fn load_beyond(from: *const f64, distance: __m512i) -> Self {
+            Self(unsafe { _mm512_permutex2var_pd(_mm512_load_pd(from), distance, _mm512_load_pd(from.add(8))) })
+        }
         const WIDTH: usize = 8;
         #[inline(always)]
         fn splat(value: f64) -> Self {
@@ -799,6 +838,16 @@ mod neon {
 
     impl Lanes for Vector {
         type Mask = uint64x2_t;
+        type Distance = usize;
+        #[inline(always)]
+        fn distance(values: usize) -> usize {
+            values
+        }
+        #[inline(always)]
+        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+            // SAFETY: the caller's.
+            unsafe { Self::load(from.add(distance)) }
+        }
         const WIDTH: usize = 2;
         #[inline(always)]
         fn splat(value: f64) -> Self {
