@@ -10,7 +10,6 @@
 //! by corner, lane by lane: it is the same for every width and number of threads.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
-#![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 
 use super::crew::Crew;
 use super::lanes::{Lanes, MOST, Set, Work, each};
