@@ -61,8 +61,8 @@ impl Grid {
         if body.dimension != Dimension::Space
             || row < 2
             || layer < 2 * row
-            || layer % row != 0
-            || body.len() % layer != 0
+            || !layer.is_multiple_of(row)
+            || !body.len().is_multiple_of(layer)
         {
             return None;
         }
@@ -116,7 +116,7 @@ impl Grid {
     fn stride(&self) -> usize {
         let stride = (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST);
         // Coordinates that lie a multiple of a page apart would compete for the same places of the cache.
-        if stride % 512 == 0 { stride + MOST } else { stride }
+        if stride.is_multiple_of(512) { stride + MOST } else { stride }
     }
 
     /// How many successive numbers a [`Ring`] holds.
@@ -668,6 +668,10 @@ impl Sweep<'_> {
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
                 let mut at = chunk;
+                while S::IN_TWOS && at + 2 * L::WIDTH <= boxes {
+                    self.two_boxes::<L, S, DAMPED>(plane, [at, at + L::WIDTH], solver, commit);
+                    at += 2 * L::WIDTH;
+                }
                 while at < boxes {
                     self.boxes::<L, S, DAMPED>(plane, at, solver, commit);
                     at += L::WIDTH;
@@ -753,14 +757,71 @@ impl Sweep<'_> {
     /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
     #[inline(always)]
     unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S, commit: bool) {
+        // SAFETY: `live` holds all boxes of a plane in whole vectors.
+        unsafe {
+            let live = L::load(self.live.add(at));
+            let edges = self.edges::<L, DAMPED>(plane, at, live);
+            let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
+            self.shape(plane, at, live, q, commit);
+        }
+    }
+
+    /// The same for two vectors of them.
+    #[inline(always)]
+    unsafe fn two_boxes<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        at: [usize; 2],
+        solver: S,
+        commit: bool,
+    ) {
+        // SAFETY: as above.
+        unsafe {
+            let live = each!(2, of => L::load(self.live.add(at[of])));
+            let edges = each!(2, of => self.edges::<L, DAMPED>(plane, at[of], live[of]));
+            let last = each!(2, of => self.last::<L>(plane, at[of]));
+            let is_live = each!(2, of => L::splat(0.0).lt(live[of]));
+            let q = solver.follow_two([&edges[0], &edges[1]], [L::splat(self.scale); 2], last, is_live);
+            self.shape(plane, at[0], live[0], q[0], commit);
+            self.shape(plane, at[1], live[1], q[1], commit);
+        }
+    }
+
+    /// The last rotations of boxes.
+    #[inline(always)]
+    unsafe fn last<L: Lanes>(&self, plane: usize, at: usize) -> [L; 4] {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors.
+        each!(4, part => unsafe { L::load(self.turns.add((plane * 4 + part) * self.box_stride + at)) })
+    }
+
+    /// Writes `u`, `v` and `t` of boxes, and their new rotations if they are kept.
+    #[inline(always)]
+    unsafe fn shape<L: Lanes>(&self, plane: usize, at: usize, live: L, q: [L; 4], commit: bool) {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written to it.
+        unsafe {
+            if commit {
+                for (part, number) in q.into_iter().enumerate() {
+                    number.store(self.turns.add((plane * 4 + part) * self.box_stride + at));
+                }
+            }
+            let mut shape = matrix(q, L::splat(self.half) * live);
+            if !self.is_cube {
+                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            }
+            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+        }
+    }
+
+    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`.
+    #[inline(always)]
+    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, live: L) -> [[L; 3]; 3] {
         let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and a node more; `live` and the turns hold all boxes of
-        // a plane in whole vectors, and a chunk of `work` what is written to it.
+        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more.
         unsafe {
             let low = self.nodes.add(plane * self.parts * self.stride + at);
             let high = low.add(self.parts * self.stride);
             let work = self.slabs.add(self.slab.work + at % CHUNK);
-            let live = L::load(self.live.add(at));
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
@@ -780,19 +841,7 @@ impl Sweep<'_> {
             if !self.is_cube {
                 edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
             }
-            let turns = self.turns.add(plane * 4 * self.box_stride + at);
-            let last = each!(4, part => L::load(turns.add(part * self.box_stride)));
-            let q = solver.follow(&edges, L::splat(self.scale), last, L::splat(0.0).lt(live));
-            if commit {
-                for (part, number) in q.into_iter().enumerate() {
-                    number.store(turns.add(part * self.box_stride));
-                }
-            }
-            let mut shape = matrix(q, L::splat(self.half) * live);
-            if !self.is_cube {
-                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
-            }
-            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+            edges
         }
     }
 
@@ -987,7 +1036,7 @@ mod tests {
     }
 
     fn run(body: &Body, state: &State, parameters: Parameters, set: Set, calls: u64, steps: u64) -> (State, Vec<f64>) {
-        run_by(1, Scheme::SemiImplicitEuler, body, state, parameters, set, calls, steps)
+        run_by(1, Scheme::SemiImplicitEuler, body, state, parameters, set, [calls, steps])
     }
 
     fn run_by(
@@ -997,8 +1046,7 @@ mod tests {
         state: &State,
         parameters: Parameters,
         set: Set,
-        calls: u64,
-        steps: u64,
+        [calls, steps]: [u64; 2],
     ) -> (State, Vec<f64>) {
         let mut lattice = Lattice::new(body, parameters, scheme, set, threads).expect("a lattice");
         let mut memory = turns(body, state);
@@ -1068,7 +1116,7 @@ mod tests {
                         if scheme == Scheme::VelocityVerlet {
                             state.velocity.iter_mut().for_each(|velocity| velocity.y += 9.0);
                         }
-                        let (found, _) = run_by(1, scheme, &body, &state, parameters, Set::best(), 10, 100);
+                        let (found, _) = run_by(1, scheme, &body, &state, parameters, Set::best(), [10, 100]);
                         let distance = distance(&reference(scheme, &body, &state, parameters, 1000), &found);
                         assert!(distance < 1e-12, "{cells:?} {sides} {scheme:?} {parameters:?}: {distance}");
                     }
@@ -1083,7 +1131,7 @@ mod tests {
         let state = start(&body, 0.05);
         for damping in [0.0, 0.7] {
             let parameters = parameters(damping, Rotation::Optimum);
-            let (found, _) = run_by(1, Scheme::VelocityVerlet, &body, &state, parameters, Set::best(), 8, 50);
+            let (found, _) = run_by(1, Scheme::VelocityVerlet, &body, &state, parameters, Set::best(), [8, 50]);
             let reference = reference(Scheme::VelocityVerlet, &body, &state, parameters, 400);
             assert!(reference.velocity.iter().any(|velocity| velocity.y > 1.0), "some have rebounded");
             assert!(distance(&reference, &found) < 1e-11, "{}", distance(&reference, &found));
@@ -1111,9 +1159,9 @@ mod tests {
             let state = start(&body, 0.3);
             let parameters = parameters(0.3, Rotation::Optimum);
             for (scheme, threads) in SCHEMES.into_iter().flat_map(|scheme| [2, 3, 7].map(|threads| (scheme, threads))) {
-                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), 3, 100);
+                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [3, 100]);
                 assert_eq!(
-                    run_by(threads, scheme, &body, &state, parameters, Set::best(), 3, 100),
+                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [3, 100]),
                     one,
                     "{cells:?} {threads}"
                 );
