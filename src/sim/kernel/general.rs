@@ -10,7 +10,6 @@
 //! by corner, lane by lane: it is the same for every width and number of threads.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
-#![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 
 use super::crew::Crew;
 use super::lanes::{Lanes, MOST, Set, Work, each};
@@ -740,12 +739,21 @@ impl Elements<'_> {
                 for (block, out) in (begin..).zip(&*batch) {
                     let nodes = class.nodes.as_ptr().add(block * corners * MOST);
                     let rest = class.rest.pointer().add(block * corners * 3 * MOST);
+                    // What the next batch reads: of a large body more than stays in the second cache.
+                    let turns = class.turns.pointer().wrapping_add((block + BATCH) * 4 * MOST);
+                    each!(4, entry => L::expect(turns.wrapping_add(entry * MOST)));
+                    let expect_corner = |corner: usize| {
+                        let corner = BATCH * corners + corner;
+                        each!(3, axis => L::expect(rest.wrapping_add((corner * 3 + axis) * MOST)));
+                        L::expect(nodes.wrapping_add(corner * MOST).cast());
+                    };
                     if L::WIDTH == MOST {
                         let out = out.0.as_ptr().cast::<f64>();
                         let w = each!(3, axis => L::load(out.add(axis * MOST)));
                         let m = each!(3, axis => each!(3, row => L::load(out.add((3 + 3 * axis + row) * MOST))));
                         for corner in 0..corners {
                             let node = nodes.add(corner * MOST);
+                            expect_corner(corner);
                             let [x, y, z] = each!(3, axis => L::load(rest.add((corner * 3 + axis) * MOST)));
                             let [fx, fy, fz] = each!(3, axis =>
                                 z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], w[axis]))));
@@ -754,6 +762,7 @@ impl Elements<'_> {
                         continue;
                     }
                     for corner in 0..corners {
+                        expect_corner(corner);
                         for lanes in (0..MOST).step_by(L::WIDTH) {
                             let node = nodes.add(corner * MOST + lanes);
                             let out = out.0.as_ptr().cast::<f64>().add(lanes);

@@ -160,6 +160,9 @@ pub(in crate::sim) trait Lanes:
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
+    /// Asks for a cache line that will be read soon. It may be anywhere.
+    #[inline(always)]
+    fn expect(_: *const f64) {}
     /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
     ///
     /// # Safety
@@ -634,6 +637,10 @@ mod x86 {
             unsafe { _mm256_and_pd(a, b) }
         }
         #[inline(always)]
+        fn expect(line: *const f64) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) }
+        }
+        #[inline(always)]
         unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {
             let [a, b, c, d] = each!(4, lane => row(lane));
             unsafe {
@@ -760,6 +767,10 @@ mod x86 {
         #[inline(always)]
         fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
             a & b
+        }
+        #[inline(always)]
+        fn expect(line: *const f64) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) }
         }
         #[inline(always)]
         unsafe fn columns(row: impl Fn(usize) -> *const f64) -> [Self; 8] {

@@ -19,8 +19,9 @@
 use super::array::Array;
 use super::crew::{Crew, wait_until};
 use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
+use super::motion::{Motion, Nodes, Scheme, Stage};
 use super::rotation::{Arctangent, Optimum, Solver, matrix};
-use super::{Around, Bound, Resolve, Rotation, Runaway};
+use super::{Around, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -60,8 +61,8 @@ impl Grid {
         if body.dimension != Dimension::Space
             || row < 2
             || layer < 2 * row
-            || layer % row != 0
-            || body.len() % layer != 0
+            || !layer.is_multiple_of(row)
+            || !body.len().is_multiple_of(layer)
         {
             return None;
         }
@@ -115,7 +116,7 @@ impl Grid {
     fn stride(&self) -> usize {
         let stride = (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST);
         // Coordinates that lie a multiple of a page apart would compete for the same places of the cache.
-        if stride % 512 == 0 { stride + MOST } else { stride }
+        if stride.is_multiple_of(512) { stride + MOST } else { stride }
     }
 
     /// How many successive numbers a [`Ring`] holds.
@@ -129,10 +130,10 @@ impl Grid {
     }
 }
 
-/// For each node in a plane of them: position, velocity, `ΔT/m`.
-const NODE: usize = 7;
+/// For each node in a plane of them: position, velocity, `1/m`, and with velocity Verlet the acceleration.
 const VELOCITY: usize = 3;
-const PUSH: usize = 6;
+const INVERSE_MASS: usize = 6;
+const ACCELERATION: usize = 7;
 
 /// Boxes that are gathered, then rotated, then stepped: so many that a processor finds independent work in each of these
 /// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
@@ -143,7 +144,12 @@ pub(in crate::sim) struct Lattice {
     set: Set,
     grid: Grid,
     parameters: Parameters,
-    /// Plane after plane: each of the [`NODE`] numbers of all its nodes.
+    scheme: Scheme,
+    /// How many numbers a node has.
+    parts: usize,
+    /// Whether accelerations belong to the present positions.
+    is_known: bool,
+    /// Plane after plane: each number of all its nodes.
     nodes: Array,
     /// Plane after plane: x, y, z and w of the rotations of all its boxes.
     turns: Array,
@@ -210,14 +216,21 @@ impl Lattice {
     ///
     /// Steps are taken by so many threads, but not more than there are planes of boxes along z. The number, like `set`,
     /// changes no bit.
-    pub(in crate::sim) fn new(body: &Body, parameters: Parameters, set: Set, threads: usize) -> Option<Self> {
+    pub(in crate::sim) fn new(
+        body: &Body,
+        parameters: Parameters,
+        scheme: Scheme,
+        set: Set,
+        threads: usize,
+    ) -> Option<Self> {
         let grid = Grid::of(body)?;
         let (stride, row) = (grid.stride(), grid.row());
         let [_, rows, planes] = grid.cells;
-        let mut nodes = Array::zeros((planes + 1) * NODE * stride);
+        let parts = if scheme == Scheme::VelocityVerlet { 10 } else { 7 };
+        let mut nodes = Array::zeros((planes + 1) * parts * stride);
         for (node, &mass) in body.mass.iter().enumerate() {
             let (plane, at) = (node / grid.layer(), node % grid.layer());
-            nodes[(plane * NODE + PUSH) * stride + at] = parameters.step / mass;
+            nodes[(plane * parts + INVERSE_MASS) * stride + at] = mass.recip();
         }
         let turns = Array::zeros(planes * 4 * grid.box_stride());
         let mut pattern = Pattern { live: Array::zeros(grid.box_stride()), valence: Array::zeros(stride) };
@@ -230,7 +243,21 @@ impl Lattice {
         }
         let (crew, slabs, signals) = by(threads, &grid);
         let before = (nodes.clone(), turns.clone());
-        Some(Self { set, grid, parameters, nodes, turns, before, pattern, crew, slabs, signals })
+        Some(Self {
+            set,
+            grid,
+            parameters,
+            scheme,
+            parts,
+            is_known: false,
+            nodes,
+            turns,
+            before,
+            pattern,
+            crew,
+            slabs,
+            signals,
+        })
     }
 
     /// Works with so many threads from now on, but not with more than there are planes of boxes along z.
@@ -242,7 +269,7 @@ impl Lattice {
 
     /// Where the numbers of a node stand in `nodes`: the first of them; the others follow a stride apart.
     fn index(&self, node: usize) -> usize {
-        node / self.grid.layer() * NODE * self.grid.stride() + node % self.grid.layer()
+        node / self.grid.layer() * self.parts * self.grid.stride() + node % self.grid.layer()
     }
 
     /// Takes over a state: positions (m), velocities (m/s), and the rotation of each element as (x, y, z, w).
@@ -250,6 +277,7 @@ impl Lattice {
         for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
             self.set_node(node, position, velocity);
         }
+        self.is_known = false;
         let stride = self.grid.box_stride();
         // The ends of rows have a rotation, too, of which nothing comes.
         for (at, turn) in self.turns.iter_mut().enumerate() {
@@ -294,35 +322,39 @@ impl Lattice {
         }
     }
 
-    /// Takes steps of semi-implicit Euler.
+    /// Takes steps.
     ///
     /// # Errors
     /// When a node would become faster than the limit. The state is then that before the step.
     pub(in crate::sim) fn step(&mut self, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
         self.before.0.copy_from_slice(&self.nodes);
         self.before.1.copy_from_slice(&self.turns);
-        if self.sweep(steps, around, true).is_none() {
-            return Ok(());
-        }
+        let was_known = self.is_known;
+        let Some(mut found) = self.sweep(steps, around, true) else { return Ok(()) };
         // Threads are not always in the same step; one thread finds the first.
-        self.restore();
-        let found = self.sweep(steps, around, false);
-        self.restore();
-        if let Some(Runaway { taken, .. }) = found {
-            self.sweep(taken, around, false);
+        let mut number = steps;
+        loop {
+            self.nodes.copy_from_slice(&self.before.0);
+            self.turns.copy_from_slice(&self.before.1);
+            self.is_known = was_known;
+            match self.sweep(number, around, false) {
+                Some(earlier) => (found, number) = (earlier, earlier.taken),
+                None => return Err(found),
+            }
         }
-        found.map_or(Ok(()), Err)
     }
 
-    fn restore(&mut self) {
-        self.nodes.copy_from_slice(&self.before.0);
-        self.turns.copy_from_slice(&self.before.1);
-    }
-
-    /// Takes steps until a node becomes too fast; that step is left unfinished. By one thread it is the first such step and
-    /// its first such node.
+    /// Takes steps until a node becomes too fast; that step is left unfinished. Where steps overlap an earlier one may have
+    /// been lost, too, which shows when only those before are taken.
     pub(super) fn sweep(&mut self, steps: u64, around: &Around<'_>, together: bool) -> Option<Runaway> {
-        let Self { set, grid, parameters, nodes, turns, pattern, crew, slabs, signals, .. } = self;
+        let Self {
+            set, grid, parameters, scheme, parts, is_known, nodes, turns, pattern, crew, slabs, signals, ..
+        } = self;
+        if steps == 0 {
+            return None;
+        }
+        let keeps = *scheme == Scheme::VelocityVerlet && parameters.damping == 0.0;
+        let was_known = std::mem::replace(is_known, keeps);
         let Parameters { stiffness, damping, rotation, gravity, step } = *parameters;
         let side = grid.sides.element_sum() / 3.0;
         let ratio = (grid.sides / side).to_array();
@@ -349,11 +381,11 @@ impl Lattice {
             // The columns of A at rest are 2 side², and half a side is left out of them.
             scale: 1.0 / (4.0 * side),
             half: 0.5 * side * stiffness,
-            gain: (gravity * step).to_array(),
+            gravity,
             step,
-            limit: 0.0,
+            parts: *parts,
             around,
-            steps,
+            passes: Passes { scheme: *scheme, is_damped: damping != 0.0, is_known: was_known, steps },
             member: 0,
             members,
             signals,
@@ -438,13 +470,11 @@ struct Sweep<'a> {
     scale: f64,
     /// Half the mean side, times the stiffness (N).
     half: f64,
-    /// What gravity adds to the velocity (m/s).
-    gain: [f64; 3],
+    gravity: DVec3,
     step: f64,
-    /// The square of the speed limit.
-    limit: f64,
+    parts: usize,
     around: &'a Around<'a>,
-    steps: u64,
+    passes: Passes,
     /// Which of the threads this is.
     member: usize,
     members: usize,
@@ -464,17 +494,61 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self(&sweep, solver, found) = self;
-        for step in 0..sweep.steps {
-            let limit = (sweep.around.speed_limit)(step);
+        for pass in 0..sweep.passes.len() {
+            let (stage, number, commit) = sweep.passes.get(pass);
+            let motion = Motion::<L>::new(stage, sweep.step, sweep.gravity, number, *sweep.around);
             // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
-            let bad = unsafe { Sweep { limit: limit * limit, ..sweep }.step::<L, S, DAMPED>(step, solver) };
+            let bad = unsafe {
+                if stage == Stage::Coast {
+                    sweep.coast::<L>(pass, &motion)
+                } else {
+                    sweep.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
+                }
+            };
             if let Some(node) = bad {
-                *found = Some(Runaway { taken: step, node });
+                *found = Some(Runaway { taken: number, node });
                 sweep.stop.store(true, Ordering::Relaxed);
             }
             if sweep.stop.load(Ordering::Relaxed) {
                 return;
             }
+        }
+    }
+}
+
+/// The passes over all planes that steps take.
+#[derive(Clone, Copy)]
+struct Passes {
+    scheme: Scheme,
+    is_damped: bool,
+    /// Whether accelerations are known at the start.
+    is_known: bool,
+    steps: u64,
+}
+
+impl Passes {
+    /// How many there are.
+    #[inline(always)]
+    fn len(&self) -> u64 {
+        match self.scheme {
+            Scheme::VelocityVerlet if self.is_damped => 2 * self.steps,
+            Scheme::VelocityVerlet => self.steps + 1,
+            _ => self.steps,
+        }
+    }
+
+    /// What a pass does, in which step, and whether rotations that it finds are kept.
+    #[inline(always)]
+    fn get(&self, pass: u64) -> (Stage, u64, bool) {
+        match self.scheme {
+            Scheme::SemiImplicitEuler => (Stage::SemiImplicitEuler, pass, true),
+            Scheme::ExplicitEuler => (Stage::ExplicitEuler, pass, true),
+            Scheme::VelocityVerlet if self.is_damped && pass.is_multiple_of(2) => (Stage::Drift, pass / 2, true),
+            Scheme::VelocityVerlet if self.is_damped => (Stage::Finish, pass / 2, false),
+            Scheme::VelocityVerlet if pass == 0 && self.is_known => (Stage::Coast, 0, true),
+            Scheme::VelocityVerlet if pass == 0 => (Stage::Drift, 0, true),
+            Scheme::VelocityVerlet if pass == self.steps => (Stage::Finish, pass - 1, true),
+            Scheme::VelocityVerlet => (Stage::FinishDrift, pass, true),
         }
     }
 }
@@ -485,9 +559,33 @@ impl Sweep<'_> {
         self.slabs
     }
 
-    /// Takes a step with the planes of this thread.
+    /// Moves the nodes of this thread without any force, in a pass of this number.
     #[inline(always)]
-    unsafe fn step<L: Lanes, S: Solver, const DAMPED: bool>(&self, step: u64, solver: S) -> Option<usize> {
+    unsafe fn coast<L: Lanes>(&self, pass: u64, motion: &Motion<'_, L>) -> Option<usize> {
+        let planes = self.grid.cells[2];
+        let first = planes * self.member / self.members;
+        let end = planes * (self.member + 1) / self.members + usize::from(self.member + 1 == self.members);
+        for plane in first..end {
+            // SAFETY: planes from `first` on are this thread's, which are moved before the others may read them.
+            let bad = unsafe { self.nodes_between::<L, false>(plane, motion, |_| (L::splat(0.0), L::splat(0.0))) };
+            if bad.is_some() {
+                return bad;
+            }
+        }
+        self.signals[self.member].pulled.store(pass + 1, Ordering::Release);
+        self.signals[self.member].shared.store(pass + 1, Ordering::Release);
+        None
+    }
+
+    /// Evaluates the forces at the planes of this thread and moves their nodes, in a pass of this number.
+    #[inline(always)]
+    unsafe fn pass<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        pass: u64,
+        motion: &Motion<'_, L>,
+        solver: S,
+        commit: bool,
+    ) -> Option<usize> {
         let planes = self.grid.cells[2];
         let first = planes * self.member / self.members;
         let end = planes * (self.member + 1) / self.members;
@@ -501,36 +599,36 @@ impl Sweep<'_> {
             }
             for plane in first..end {
                 let is_end = plane + 1 == end && !is_last;
-                if is_end && !self.wait(|| self.signals[self.member + 1].shared.load(Ordering::Acquire) >= step) {
+                if is_end && !self.wait(|| self.signals[self.member + 1].shared.load(Ordering::Acquire) >= pass) {
                     return None;
                 }
                 let above = memory(if is_end { self.slab.highest } else { self.slab.below });
                 let is_shared = plane == first && self.member > 0;
-                if let Some(node) = self.plane::<L, S, DAMPED>(plane, solver, above, is_shared) {
+                if let Some(node) = self.plane::<L, S, DAMPED>(plane, motion, solver, commit, above, is_shared) {
                     return Some(node);
                 }
             }
-            self.signals[self.member].pulled.store(step + 1, Ordering::Release);
+            self.signals[self.member].pulled.store(pass + 1, Ordering::Release);
             if is_last {
                 let below = memory(self.slab.below);
-                let bad = self.nodes_between::<L, DAMPED>(planes, |at| (L::load(below.add(at)), L::splat(0.0)));
+                let bad = self.nodes_between::<L, DAMPED>(planes, motion, |at| (L::load(below.add(at)), L::splat(0.0)));
                 if bad.is_some() {
                     return bad;
                 }
             }
             if self.member > 0 {
                 let before = self.member - 1;
-                if !self.wait(|| self.signals[before].pulled.load(Ordering::Acquire) > step) {
+                if !self.wait(|| self.signals[before].pulled.load(Ordering::Acquire) > pass) {
                     return None;
                 }
                 let below = memory(self.slab.highest).sub(self.slab.end);
                 let lowest = memory(self.slab.lowest);
-                let bad =
-                    self.nodes_between::<L, DAMPED>(first, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
+                let bad = self
+                    .nodes_between::<L, DAMPED>(first, motion, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
                 if bad.is_some() {
                     return bad;
                 }
-                self.signals[self.member].shared.store(step + 1, Ordering::Release);
+                self.signals[self.member].shared.store(pass + 1, Ordering::Release);
             }
         }
         None
@@ -558,7 +656,9 @@ impl Sweep<'_> {
     unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
         plane: usize,
+        motion: &Motion<'_, L>,
         solver: S,
+        commit: bool,
         above: *mut f64,
         is_shared: bool,
     ) -> Option<usize> {
@@ -581,8 +681,12 @@ impl Sweep<'_> {
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
                 let mut at = chunk;
+                while S::IN_TWOS && at + 2 * L::WIDTH <= boxes {
+                    self.two_boxes::<L, S, DAMPED>(plane, [at, at + L::WIDTH], solver, commit);
+                    at += 2 * L::WIDTH;
+                }
                 while at < boxes {
-                    self.boxes::<L, S, DAMPED>(plane, at, solver);
+                    self.boxes::<L, S, DAMPED>(plane, at, solver, commit);
                     at += L::WIDTH;
                 }
                 let mut at = chunk;
@@ -604,7 +708,7 @@ impl Sweep<'_> {
                         }
                         (here + up).store(above.add(place));
                     });
-                    if !is_shared && let Some(node) = self.update::<L, DAMPED>(plane, at, force) {
+                    if !is_shared && let Some(node) = self.update::<L, DAMPED>(plane, at, motion, force) {
                         return Some(node);
                     }
                     at += L::WIDTH;
@@ -619,6 +723,7 @@ impl Sweep<'_> {
     unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
         &self,
         plane: usize,
+        motion: &Motion<'_, L>,
         pulls: impl Fn(usize) -> (L, L),
     ) -> Option<usize> {
         let mut at = 0;
@@ -628,7 +733,7 @@ impl Sweep<'_> {
                 below + above
             });
             // SAFETY: `at` is a multiple of a width below `layer`.
-            if let Some(node) = unsafe { self.update::<L, DAMPED>(plane, at, force) } {
+            if let Some(node) = unsafe { self.update::<L, DAMPED>(plane, at, motion, force) } {
                 return Some(node);
             }
             at += L::WIDTH;
@@ -664,15 +769,72 @@ impl Sweep<'_> {
 
     /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S) {
-        let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and a node more; `live` and the turns hold all boxes of
-        // a plane in whole vectors, and a chunk of `work` what is written to it.
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S, commit: bool) {
+        // SAFETY: `live` holds all boxes of a plane in whole vectors.
         unsafe {
-            let low = self.nodes.add(plane * NODE * self.stride + at);
-            let high = low.add(NODE * self.stride);
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
             let live = L::load(self.live.add(at));
+            let edges = self.edges::<L, DAMPED>(plane, at, live);
+            let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
+            self.shape(plane, at, live, q, commit);
+        }
+    }
+
+    /// The same for two vectors of them.
+    #[inline(always)]
+    unsafe fn two_boxes<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        at: [usize; 2],
+        solver: S,
+        commit: bool,
+    ) {
+        // SAFETY: as above.
+        unsafe {
+            let live = each!(2, of => L::load(self.live.add(at[of])));
+            let edges = each!(2, of => self.edges::<L, DAMPED>(plane, at[of], live[of]));
+            let last = each!(2, of => self.last::<L>(plane, at[of]));
+            let is_live = each!(2, of => L::splat(0.0).lt(live[of]));
+            let q = solver.follow_two([&edges[0], &edges[1]], [L::splat(self.scale); 2], last, is_live);
+            self.shape(plane, at[0], live[0], q[0], commit);
+            self.shape(plane, at[1], live[1], q[1], commit);
+        }
+    }
+
+    /// The last rotations of boxes.
+    #[inline(always)]
+    unsafe fn last<L: Lanes>(&self, plane: usize, at: usize) -> [L; 4] {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors.
+        each!(4, part => unsafe { L::load(self.turns.add((plane * 4 + part) * self.box_stride + at)) })
+    }
+
+    /// Writes `u`, `v` and `t` of boxes, and their new rotations if they are kept.
+    #[inline(always)]
+    unsafe fn shape<L: Lanes>(&self, plane: usize, at: usize, live: L, q: [L; 4], commit: bool) {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written to it.
+        unsafe {
+            if commit {
+                for (part, number) in q.into_iter().enumerate() {
+                    number.store(self.turns.add((plane * 4 + part) * self.box_stride + at));
+                }
+            }
+            let mut shape = matrix(q, L::splat(self.half) * live);
+            if !self.is_cube {
+                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            }
+            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+        }
+    }
+
+    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`.
+    #[inline(always)]
+    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, live: L) -> [[L; 3]; 3] {
+        let row = self.grid.row();
+        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more.
+        unsafe {
+            let low = self.nodes.add(plane * self.parts * self.stride + at);
+            let high = low.add(self.parts * self.stride);
+            let work = self.slabs.add(self.slab.work + at % CHUNK);
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
@@ -692,17 +854,7 @@ impl Sweep<'_> {
             if !self.is_cube {
                 edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
             }
-            let turns = self.turns.add(plane * 4 * self.box_stride + at);
-            let last = each!(4, part => L::load(turns.add(part * self.box_stride)));
-            let q = solver.follow(&edges, L::splat(self.scale), last, L::splat(0.0).lt(live));
-            for part in 0..4 {
-                q[part].store(turns.add(part * self.box_stride));
-            }
-            let mut shape = matrix(q, L::splat(self.half) * live);
-            if !self.is_cube {
-                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
-            }
-            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+            edges
         }
     }
 
@@ -737,50 +889,47 @@ impl Sweep<'_> {
     /// Eqs. (2) and (3) for nodes on which elements act with a force (N) besides `−w`, and what they meet. The first that
     /// becomes too fast, if there is one.
     #[inline(always)]
-    unsafe fn update<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, force: [L; 3]) -> Option<usize> {
-        let layer = self.grid.layer();
+    unsafe fn update<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        at: usize,
+        motion: &Motion<'_, L>,
+        force: [L; 3],
+    ) -> Option<usize> {
+        let first = plane * self.grid.layer() + at;
         // SAFETY: a stride holds all nodes of a plane in whole vectors.
         unsafe {
-            let node = self.nodes.add(plane * NODE * self.stride + at);
-            let place = |of: usize| node.add(of * self.stride);
+            let place = self.nodes.add(plane * self.parts * self.stride + at);
             let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
             let valence = L::load(self.valence.add(at)) * L::splat(planes);
-            let push = L::load(place(PUSH));
             let (stiffness, damping) = (L::splat(self.stiffness) * valence, L::splat(self.damping) * valence);
-            let mut gain = each!(3, axis => L::splat(self.gain[axis]));
-            if at + L::WIDTH > layer {
-                // What fills the last vector stays where it is.
-                let nodes = L::mask((1 << (layer - at)) - 1);
-                gain = each!(3, axis => gain[axis].select(nodes, L::splat(0.0)));
-            }
-            let (mut p, mut v) = ([push; 3], [push; 3]);
+            let inverse_mass = L::load(place.add(INVERSE_MASS * self.stride));
+            let zero = L::splat(0.0);
+            let mut nodes = Nodes { position: [zero; 3], velocity: [zero; 3], acceleration: [zero; 3] };
+            let mut total = [zero; 3];
             thrice!(axis => {
-                (p[axis], v[axis]) = (L::load(place(axis)), L::load(place(VELOCITY + axis)));
-                let mut force = p[axis].neg_mul_add(stiffness, force[axis]);
+                nodes.position[axis] = L::load(place.add(axis * self.stride));
+                nodes.velocity[axis] = L::load(place.add((VELOCITY + axis) * self.stride));
+                total[axis] = nodes.position[axis].neg_mul_add(stiffness, force[axis]);
                 if DAMPED {
-                    force = v[axis].neg_mul_add(damping, force);
+                    total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
                 }
-                v[axis] = force.mul_add(push, v[axis] + gain[axis]);
-                p[axis] = v[axis].mul_add(L::splat(self.step), p[axis]);
             });
-            let square = v[2].mul_add(v[2], v[1].mul_add(v[1], v[0] * v[0]));
-            let kept = L::bits(square.le(L::splat(self.limit)));
-            if kept != L::ALL {
-                let node = plane * layer + at + (!kept).trailing_zeros() as usize;
-                return Some(node);
+            let is_verlet = motion.stage().is_verlet();
+            if is_verlet {
+                nodes.acceleration = each!(3, axis => L::load(place.add((ACCELERATION + axis) * self.stride)));
             }
-            let mut near = 0;
-            for bound in self.around.bounds {
-                near |= L::bits(within(bound, &p));
-            }
-            if near != 0 {
-                let left = layer - at;
-                (p, v) = meet(self.around.resolve, plane * layer + at, near & ((1 << left.min(MOST)) - 1), p, v);
+            let lost = motion.advance(&mut nodes, total, inverse_mass, |lane| first + lane);
+            if lost != 0 {
+                return Some(first + lost.trailing_zeros() as usize);
             }
             thrice!(axis => {
-                p[axis].store(place(axis));
-                v[axis].store(place(VELOCITY + axis));
+                nodes.position[axis].store(place.add(axis * self.stride));
+                nodes.velocity[axis].store(place.add((VELOCITY + axis) * self.stride));
             });
+            if is_verlet {
+                thrice!(axis => nodes.acceleration[axis].store(place.add((ACCELERATION + axis) * self.stride)));
+            }
         }
         None
     }
@@ -811,47 +960,13 @@ unsafe fn beyond<L: Lanes>(from: *const f64, offset: usize) -> L {
     unsafe { L::load_beyond(from.add(offset / MOST * MOST), L::distance(offset % MOST)) }
 }
 
-/// Lets those nodes whose bits are set meet what is around.
-#[inline(always)]
-fn meet<L: Lanes>(resolve: &Resolve<'_>, first: usize, near: u32, p: [L; 3], v: [L; 3]) -> ([L; 3], [L; 3]) {
-    let (mut p, mut v) = (each!(3, axis => p[axis].to_array()), each!(3, axis => v[axis].to_array()));
-    meet_one_by_one(resolve, first, near, &mut p, &mut v);
-    (each!(3, axis => L::from_array(p[axis])), each!(3, axis => L::from_array(v[axis])))
-}
-
-#[inline(never)]
-fn meet_one_by_one(resolve: &Resolve<'_>, first: usize, near: u32, p: &mut [[f64; MOST]; 3], v: &mut [[f64; MOST]; 3]) {
-    for lane in (0..MOST).filter(|lane| near >> lane & 1 == 1) {
-        let vector = |of: &[[f64; MOST]; 3]| DVec3::from_array([0, 1, 2].map(|axis| of[axis][lane]));
-        let (mut position, mut velocity) = (vector(p), vector(v));
-        resolve(first + lane, &mut position, &mut velocity, DVec3::ZERO);
-        for axis in 0..3 {
-            (p[axis][lane], v[axis][lane]) = (position[axis], velocity[axis]);
-        }
-    }
-}
-
-/// Which points lie within a bound.
-#[inline(always)]
-fn within<L: Lanes>(bound: &Bound, p: &[L; 3]) -> L::Mask {
-    match *bound {
-        Bound::HalfSpace { normal, height } => {
-            let along = p[2].mul_add(L::splat(normal.z), p[1].mul_add(L::splat(normal.y), p[0] * L::splat(normal.x)));
-            along.lt(L::splat(height))
-        }
-        Bound::Box { low, high } => {
-            let between = |axis: usize| L::both(L::splat(low[axis]).lt(p[axis]), p[axis].lt(L::splat(high[axis])));
-            L::both(between(0), L::both(between(1), between(2)))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sim::body::{IndexLists, Solids};
-    use crate::sim::contact::{Motion, Obstacle, Shape};
+    use crate::sim::contact::{self, Obstacle, Shape};
     use crate::sim::integrate::Integrator;
+    use crate::sim::kernel::Bound;
     use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
     use crate::sim::rotation::{davenport1968, moment};
     use crate::sim::state::State;
@@ -926,7 +1041,7 @@ mod tests {
     fn floor() -> Obstacle {
         let normal = DVec3::new(0.1, 1.0, 0.0).normalize();
         let shape = Shape::Floor { normal, height: 0.02 };
-        Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution: 0.5, friction: 0.3 }
+        Obstacle { shape, motion: contact::Motion::Still, pivot: DVec3::ZERO, restitution: 0.5, friction: 0.3 }
     }
 
     fn bound(floor: &Obstacle) -> Bound {
@@ -935,19 +1050,19 @@ mod tests {
     }
 
     fn run(body: &Body, state: &State, parameters: Parameters, set: Set, calls: u64, steps: u64) -> (State, Vec<f64>) {
-        run_by(1, body, state, parameters, set, calls, steps)
+        run_by(1, Scheme::SemiImplicitEuler, body, state, parameters, set, [calls, steps])
     }
 
     fn run_by(
         threads: usize,
+        scheme: Scheme,
         body: &Body,
         state: &State,
         parameters: Parameters,
         set: Set,
-        calls: u64,
-        steps: u64,
+        [calls, steps]: [u64; 2],
     ) -> (State, Vec<f64>) {
-        let mut lattice = Lattice::new(body, parameters, set, threads).expect("a lattice");
+        let mut lattice = Lattice::new(body, parameters, scheme, set, threads).expect("a lattice");
         let mut memory = turns(body, state);
         lattice.load(&state.position, &state.velocity, &memory);
         let floor = floor();
@@ -961,7 +1076,7 @@ mod tests {
         (state, memory)
     }
 
-    fn reference(body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
+    fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
         let (passes, rotation) = match parameters.rotation {
             Rotation::Arctangent { passes } => (passes, RotationReading::Arctangent),
             Rotation::Optimum => (1, RotationReading::Exact),
@@ -974,7 +1089,12 @@ mod tests {
             damping_of: DampingReading::RelativeMotion,
         };
         let surroundings = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
-        let plain = Stepping { kernel: Kernel::Reference, ..Stepping::new(Integrator::SemiImplicitEuler, STEP) };
+        let integrator = match scheme {
+            Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
+            Scheme::ExplicitEuler => Integrator::ExplicitEuler,
+            Scheme::VelocityVerlet => Integrator::VelocityVerlet,
+        };
+        let plain = Stepping { integrator, step: STEP, kernel: Kernel::Reference };
         let mut world = World::new(body, state.clone(), &model, surroundings, plain);
         world.advance(steps);
         assert_eq!(world.steps(), steps);
@@ -989,6 +1109,8 @@ mod tests {
         of(&a.position, &b.position).max(of(&a.velocity, &b.velocity))
     }
 
+    const SCHEMES: [Scheme; 3] = [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet];
+
     const EXTENTS: [[usize; 3]; 9] =
         [[1, 1, 1], [1, 1, 5], [1, 4, 1], [7, 1, 3], [3, 3, 3], [9, 2, 2], [8, 3, 2], [17, 2, 1], [2, 13, 3]];
 
@@ -1002,11 +1124,31 @@ mod tests {
                     [(0.0, Rotation::Optimum), (0.7, Rotation::Optimum), (0.7, Rotation::Arctangent { passes: 2 })]
                 {
                     let parameters = parameters(damping, rotation);
-                    let (found, _) = run(&body, &state, parameters, Set::best(), 10, 100);
-                    let distance = distance(&reference(&body, &state, parameters, 1000), &found);
-                    assert!(distance < 1e-12, "{cells:?} {sides} {parameters:?}: {distance}");
+                    for scheme in SCHEMES {
+                        // A rebound in velocity Verlet takes the root of a difference, and so half of the digits.
+                        let mut state = state.clone();
+                        if scheme == Scheme::VelocityVerlet {
+                            state.velocity.iter_mut().for_each(|velocity| velocity.y += 9.0);
+                        }
+                        let (found, _) = run_by(1, scheme, &body, &state, parameters, Set::best(), [10, 100]);
+                        let distance = distance(&reference(scheme, &body, &state, parameters, 1000), &found);
+                        assert!(distance < 1e-12, "{cells:?} {sides} {scheme:?} {parameters:?}: {distance}");
+                    }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn rebounds_in_velocity_verlet_are_those_of_the_reference() {
+        let body = lattice([3, 2, 4], DVec3::splat(0.5));
+        let state = start(&body, 0.05);
+        for damping in [0.0, 0.7] {
+            let parameters = parameters(damping, Rotation::Optimum);
+            let (found, _) = run_by(1, Scheme::VelocityVerlet, &body, &state, parameters, Set::best(), [8, 50]);
+            let reference = reference(Scheme::VelocityVerlet, &body, &state, parameters, 400);
+            assert!(reference.velocity.iter().any(|velocity| velocity.y > 1.0), "some have rebounded");
+            assert!(distance(&reference, &found) < 1e-11, "{}", distance(&reference, &found));
         }
     }
 
@@ -1030,9 +1172,13 @@ mod tests {
             let body = lattice(cells, DVec3::splat(0.5));
             let state = start(&body, 0.3);
             let parameters = parameters(0.3, Rotation::Optimum);
-            let one = run(&body, &state, parameters, Set::best(), 3, 100);
-            for threads in [2, 3, 4, 7] {
-                assert_eq!(run_by(threads, &body, &state, parameters, Set::best(), 3, 100), one, "{cells:?} {threads}");
+            for (scheme, threads) in SCHEMES.into_iter().flat_map(|scheme| [2, 3, 7].map(|threads| (scheme, threads))) {
+                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [3, 100]);
+                assert_eq!(
+                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [3, 100]),
+                    one,
+                    "{cells:?} {threads}"
+                );
             }
         }
     }
@@ -1047,7 +1193,8 @@ mod tests {
         let around = Around { bounds: &[], resolve: &resolve, speed_limit: &|step| 1e6 + step as f64 };
         let memory = turns(&body, &state);
         let make = |threads| {
-            let mut lattice = Lattice::new(&body, parameters, Set::best(), threads).expect("a lattice");
+            let mut lattice =
+                Lattice::new(&body, parameters, Scheme::SemiImplicitEuler, Set::best(), threads).expect("a lattice");
             lattice.load(&state.position, &state.velocity, &memory);
             lattice
         };
@@ -1076,7 +1223,9 @@ mod tests {
     fn what_is_no_number_is_lost_at_once() {
         let body = lattice([3, 2, 2], DVec3::splat(0.5));
         let state = start(&body, 0.0);
-        let mut lattice = Lattice::new(&body, parameters(0.1, Rotation::Optimum), Set::best(), 1).expect("a lattice");
+        let mut lattice =
+            Lattice::new(&body, parameters(0.1, Rotation::Optimum), Scheme::SemiImplicitEuler, Set::best(), 1)
+                .expect("a lattice");
         lattice.load(&state.position, &state.velocity, &turns(&body, &state));
         lattice.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
         let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};

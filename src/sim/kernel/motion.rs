@@ -163,6 +163,12 @@ impl<'a, L: Lanes> Motion<'a, L> {
         }
     }
 
+    /// What is done.
+    #[inline(always)]
+    pub(in crate::sim) fn stage(&self) -> Stage {
+        self.stage
+    }
+
     /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node. `index` tells the
     /// node in a lane. Returns one bit for each lane whose speed is out of bounds.
     #[inline(always)]

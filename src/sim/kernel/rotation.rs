@@ -15,6 +15,9 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// How rotations are found in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
+    /// Whether [`Self::follow_two`] takes less time on a lattice: where the registers do not suffice for two it does not.
+    const IN_TWOS: bool;
+
     /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
     ///
     /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
@@ -49,6 +52,8 @@ pub(super) struct Arctangent {
 pub(super) struct Optimum;
 
 impl Solver for Arctangent {
+    const IN_TWOS: bool = true;
+
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
         let mut q = last;
@@ -94,6 +99,8 @@ impl Solver for Arctangent {
 }
 
 impl Solver for Optimum {
+    const IN_TWOS: bool = false;
+
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
         let mut q = last;
