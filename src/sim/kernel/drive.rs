@@ -86,9 +86,7 @@ fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, 
         RotationReading::VectorLength | RotationReading::LinearUpdate | RotationReading::Symmetric => return None,
     };
     let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-    if scheme == Scheme::SemiImplicitEuler
-        && let Some(lattice) = Lattice::new(body, parameters, Set::best(), 1)
-    {
+    if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best(), 1) {
         return Some(Box::new(lattice));
     }
     Some(Box::new(General::new(body, rotation, Constants { stiffness, damping, gravity, step }, Set::best())))
@@ -185,7 +183,7 @@ impl Kernel for Lattice {
         self.set_threads(threads);
     }
 
-    /// It knows semi-implicit Euler alone.
+    /// It was made for its scheme.
     fn step(&mut self, _scheme: Scheme, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
         self.step(steps, around)
     }
