@@ -1159,9 +1159,9 @@ mod tests {
             let state = start(&body, 0.3);
             let parameters = parameters(0.3, Rotation::Optimum);
             for (scheme, threads) in SCHEMES.into_iter().flat_map(|scheme| [2, 3, 7].map(|threads| (scheme, threads))) {
-                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [3, 100]);
+                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [2, 40]);
                 assert_eq!(
-                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [3, 100]),
+                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [2, 40]),
                     one,
                     "{cells:?} {threads}"
                 );
