@@ -119,7 +119,7 @@ impl Grid {
         if stride.is_multiple_of(512) { stride + MOST } else { stride }
     }
 
-    /// How many successive numbers a [`Ring`] holds.
+    /// How many successive boxes the ring of rows holds: a chunk, and more than a row.
     fn ring(&self) -> usize {
         CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
