@@ -119,7 +119,7 @@ impl Grid {
         if stride.is_multiple_of(512) { stride + MOST } else { stride }
     }
 
-    /// How many successive numbers a [`Ring`] holds.
+    /// How many successive boxes the ring of rows holds: a chunk, and more than a row.
     fn ring(&self) -> usize {
         CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
@@ -1173,9 +1173,9 @@ mod tests {
             let state = start(&body, 0.3);
             let parameters = parameters(0.3, Rotation::Optimum);
             for (scheme, threads) in SCHEMES.into_iter().flat_map(|scheme| [2, 3, 7].map(|threads| (scheme, threads))) {
-                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [3, 100]);
+                let one = run_by(1, scheme, &body, &state, parameters, Set::best(), [2, 40]);
                 assert_eq!(
-                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [3, 100]),
+                    run_by(threads, scheme, &body, &state, parameters, Set::best(), [2, 40]),
                     one,
                     "{cells:?} {threads}"
                 );
