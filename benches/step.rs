@@ -12,8 +12,8 @@ use std::time::Instant;
 
 /// Multiply-adds of one lane that a box and step needs at least.
 const FLOOR: f64 = 320.0;
-/// Elements times steps in one sample: some milliseconds of a fast step.
-const WORK: u64 = 400_000;
+/// Elements times steps in one sample: so many steps that what happens once a call, as once a frame, is a small part.
+const WORK: u64 = 3_000_000;
 /// Cells along an edge.
 const SIZES: [u64; 6] = [3, 10, 20, 40, 80, 160];
 
@@ -177,9 +177,9 @@ fn main() {
             ));
         }
         let samples = match cells {
-            0..=40 => 40,
-            41..=80 => 12,
-            _ => 5,
+            0..=40 => 15,
+            41..=80 => 7,
+            _ => 4,
         };
         let floor = measure(&mut cases, samples);
         println!("{cells}³ cubes, floor {floor:.2}");

@@ -3,10 +3,11 @@
 mod shape;
 
 pub use super::motion::{Motion, Pose};
+pub(super) use shape::ROUND_OFF;
 pub use shape::{Contact, Shape};
 
 use super::grip::Interval;
-use super::kernel::Bound;
+use super::kernel::{Bound, Floor};
 use super::state::Nodes;
 use super::system::Part;
 use glam::DVec3;
@@ -168,6 +169,17 @@ impl Placed<'_> {
                 let reach = DVec3::splat(self.obstacle.shape.reach() + margin);
                 Bound::Box { low: middle - reach, high: middle + reach }
             }
+        }
+    }
+
+    /// This one as a floor that stays where it is, if that is what it is.
+    pub(super) fn still_floor(&self) -> Option<Floor> {
+        let &Obstacle { ref shape, restitution, friction, .. } = self.obstacle;
+        match *shape {
+            Shape::Floor { normal, height } if self.moving.is_none() => {
+                Some(Floor { normal, height, restitution, friction })
+            }
+            _ => None,
         }
     }
 

@@ -48,6 +48,9 @@ pub enum Shape {
     },
 }
 
+/// Roundings of a depth, and of the place of a node that was put on the surface, with a margin of two.
+pub(in crate::sim) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
 /// How a point lies in an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -90,15 +93,13 @@ impl Shape {
     /// By how much round-off may put a point that lies on the surface to one side of it (m), where the point is no farther
     /// than `farthest` (m) from the origin along an axis.
     pub(super) fn round_off(&self, farthest: f64) -> f64 {
-        /// Roundings of a depth, and of the place of a node that was put on the surface, with a margin of two.
-        const ROUNDINGS: f64 = 16.0;
         let size = match *self {
             Self::Floor { height, .. } => height.abs(),
             _ => {
                 self.middle().abs().max_element() + Some(self.reach()).filter(|reach| reach.is_finite()).unwrap_or(0.0)
             }
         };
-        ROUNDINGS * f64::EPSILON * (size + farthest)
+        ROUND_OFF * (size + farthest)
     }
 
     /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.

@@ -131,7 +131,11 @@ impl Dynamics for ByKernel {
             system.change_grips(&mut constraints, |grip, memory| {
                 grip.reach(interval.end, memory, |node| kernel.node(node as usize).0);
             });
-            let around = Around { bounds: &bounds, resolve: &resolve, speed_limit: &speed_limit };
+            let floor = match &placed[..] {
+                [one] => one.still_floor(),
+                _ => None,
+            };
+            let around = Around { bounds: &bounds, resolve: &resolve, floor, speed_limit: &speed_limit };
             if let Err(Runaway { taken, node }) = kernel.step(self.scheme, steps, &around) {
                 state.steps += taken;
                 return Err(dynamics::Runaway { node });

@@ -1067,7 +1067,7 @@ mod tests {
         lattice.load(&state.position, &state.velocity, &memory);
         let floor = floor();
         let resolve = |_: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-        let around = Around { bounds: &[bound(&floor)], resolve: &resolve, speed_limit: &|_| 1e6 };
+        let around = Around { bounds: &[bound(&floor)], resolve: &resolve, floor: None, speed_limit: &|_| 1e6 };
         for _ in 0..calls {
             lattice.step(steps, &around).expect("no runaway");
         }
@@ -1190,7 +1190,7 @@ mod tests {
         // Far beyond what is stable.
         let parameters = Parameters { step: 0.3, ..parameters(0.0, Rotation::Optimum) };
         let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
-        let around = Around { bounds: &[], resolve: &resolve, speed_limit: &|step| 1e6 + step as f64 };
+        let around = Around { bounds: &[], resolve: &resolve, floor: None, speed_limit: &|step| 1e6 + step as f64 };
         let memory = turns(&body, &state);
         let make = |threads| {
             let mut lattice =
@@ -1229,7 +1229,7 @@ mod tests {
         lattice.load(&state.position, &state.velocity, &turns(&body, &state));
         lattice.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
         let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
-        let around = Around { bounds: &[], resolve: &resolve, speed_limit: &|_| 1e6 };
+        let around = Around { bounds: &[], resolve: &resolve, floor: None, speed_limit: &|_| 1e6 };
         assert!(lattice.step(3, &around).is_err_and(|runaway| runaway.taken == 0));
         assert!(lattice.node(17).0.y.is_nan() && lattice.node(0) == (state.position[0], state.velocity[0]));
     }

@@ -56,6 +56,19 @@ pub(in crate::sim) enum Bound {
     },
 }
 
+/// A half-space that nodes bounce off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::sim) struct Floor {
+    /// Unit vector out of it.
+    pub(in crate::sim) normal: DVec3,
+    /// Distance of the surface from the origin along `normal` (m).
+    pub(in crate::sim) height: f64,
+    /// Restitution coefficient `e`.
+    pub(in crate::sim) restitution: f64,
+    /// Friction coefficient `μ`.
+    pub(in crate::sim) friction: f64,
+}
+
 /// What a node meets at the end of a step: its index, its position (m) and velocity (m/s), and the acceleration with which
 /// it has moved (m/s²), zero where it has moved at constant velocity.
 pub(in crate::sim) type Resolve<'a> = dyn Fn(usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
@@ -67,6 +80,9 @@ pub(in crate::sim) struct Around<'a> {
     pub(in crate::sim) bounds: &'a [Bound],
     /// What happens to a node within one of the bounds.
     pub(in crate::sim) resolve: &'a Resolve<'a>,
+    /// The only obstacle, if it is a floor that stays where it is: what `resolve` does to nodes that have moved at constant
+    /// velocity is then done in lanes, with the same bits.
+    pub(in crate::sim) floor: Option<Floor>,
     /// The speed (m/s) beyond which a node is lost, in the step of this number; the first of a call has number 0.
     pub(in crate::sim) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }

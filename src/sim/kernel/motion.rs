@@ -2,7 +2,8 @@
 //! and collisions.
 
 use super::lanes::{Lanes, MOST, each};
-use super::{Around, Bound, Resolve, Runaway};
+use super::{Around, Bound, Floor, Resolve, Runaway};
+use crate::sim::contact::ROUND_OFF;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -227,7 +228,11 @@ impl<'a, L: Lanes> Motion<'a, L> {
             inside |= L::bits(reaches(bound, nodes.position));
         }
         inside &= L::bits(alive);
-        if inside != 0 {
+        if let (Some(floor), Stage::SemiImplicitEuler | Stage::ExplicitEuler, true) =
+            (&self.around.floor, self.stage, inside != 0)
+        {
+            rebound(floor, nodes, L::mask(inside));
+        } else if inside != 0 {
             let mut position = each!(3, axis => nodes.position[axis].to_array());
             let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
             let rests = each!(3, axis => rests[axis].to_array());
@@ -284,6 +289,35 @@ fn touch(
     }
 }
 
+/// The rebound from a floor of nodes that have moved at constant velocity: the operations of `Obstacle::push_out` in their
+/// order, each rounded as there.
+#[inline(always)]
+fn rebound<L: Lanes>(floor: &Floor, nodes: &mut Nodes<L>, inside: L::Mask) {
+    let Nodes { position, velocity, .. } = nodes;
+    let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (zero, one, e) = (L::splat(0.0), L::splat(1.0), L::splat(floor.restitution));
+    let normal = each!(3, axis => L::splat(floor.normal[axis]));
+    let depth = L::splat(floor.height) - dot(normal, *position);
+    let farthest = position[0].abs().max(position[1].abs().max(position[2].abs()));
+    let round_off = L::splat(ROUND_OFF) * (L::splat(floor.height.abs()) + farthest);
+    let touches = L::both(inside, (-round_off).lt(depth));
+    let approach = -dot(normal, *velocity);
+    let (height, speed) = (e * depth, e * approach);
+    let slip = each!(3, axis => velocity[axis] + normal[axis] * approach);
+    let slip_speed = dot(slip, slip).sqrt();
+    let kept = (one - (L::splat(floor.friction) * (approach + speed)).div(slip_speed)).max(zero);
+    let kept = kept.select(zero.lt(slip_speed), zero);
+    let approaches = L::both(touches, zero.lt(approach));
+    let is_deep = L::both(touches, zero.lt(depth));
+    for axis in 0..3 {
+        let out = position[axis] + normal[axis] * (depth * (one + e));
+        let bounced = position[axis] + normal[axis] * (depth + height);
+        let turned = slip[axis] * kept + normal[axis] * speed + zero;
+        position[axis] = bounced.select(approaches, out.select(is_deep, position[axis]));
+        velocity[axis] = turned.select(approaches, velocity[axis]);
+    }
+}
+
 /// The lanes inside a bound.
 #[inline(always)]
 fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
@@ -297,6 +331,68 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
             let [hx, hy, hz] = each!(3, axis => L::splat(high[axis]));
             let inside = L::both(L::both(lx.lt(x), x.lt(hx)), L::both(ly.lt(y), y.lt(hy)));
             L::both(inside, L::both(lz.lt(z), z.lt(hz)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lanes::{Set, Work};
+    use super::*;
+    use crate::sim::contact::{Motion as Path, Obstacle, Shape};
+
+    struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
+
+    impl Work for Bounce<'_> {
+        type Output = (usize, [[f64; MOST]; 3], [[f64; MOST]; 3]);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let Self(floor, position, velocity) = self;
+            let lanes = |of: [DVec3; MOST]| each!(3, axis => L::from_array(of.map(|vector| vector[axis])));
+            let acceleration = each!(3, _axis => L::splat(0.0));
+            let mut nodes = Nodes { position: lanes(position), velocity: lanes(velocity), acceleration };
+            rebound(floor, &mut nodes, L::mask(L::ALL));
+            let arrays = |of: [L; 3]| each!(3, axis => of[axis].to_array());
+            (L::WIDTH, arrays(nodes.position), arrays(nodes.velocity))
+        }
+    }
+
+    /// On, above and below floors, with and without slip, friction and restitution.
+    #[test]
+    fn the_rebound_in_lanes_has_the_bits_of_the_plain_one() {
+        let mut seed = 9u64;
+        let mut noise = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        for round in 0..400 {
+            let normal = if round % 2 == 0 { DVec3::Y } else { DVec3::new(noise(), 1.0, noise()).normalize() };
+            let pick = |of: [f64; 3]| of[round / 2 % 3];
+            let (height, restitution, friction) = (noise(), pick([0.0, 0.5, 1.0]), pick([0.3, 0.0, 10.0]));
+            let floor = Floor { normal, height, restitution, friction };
+            let shape = Shape::Floor { normal, height };
+            let obstacle = Obstacle { shape, motion: Path::Still, pivot: DVec3::ZERO, restitution, friction };
+            let mut vector = || DVec3::new(noise(), noise(), noise());
+            let position: [DVec3; MOST] = std::array::from_fn(|lane| {
+                let free = vector() * 0.1 + normal * height;
+                if lane % 3 == 0 { free + normal * (height - normal.dot(free)) } else { free }
+            });
+            let velocity: [DVec3; MOST] = std::array::from_fn(|lane| match lane {
+                0 => -normal,
+                1 => DVec3::ZERO,
+                _ => vector(),
+            });
+            for set in Set::all() {
+                let (width, p, v) = set.run(Bounce(&floor, position, velocity));
+                for lane in 0..width {
+                    let (mut at, mut speed) = (position[lane], velocity[lane]);
+                    obstacle.at(1.0, 0.1).rebound(&mut at, &mut speed, DVec3::ZERO);
+                    let bits = |vector: DVec3| vector.to_array().map(f64::to_bits);
+                    let of = |all: &[[f64; MOST]; 3]| all.map(|axis| axis[lane].to_bits());
+                    assert_eq!((of(&p), of(&v)), (bits(at), bits(speed)), "{round} {lane} {floor:?}");
+                }
+            }
         }
     }
 }

@@ -461,7 +461,7 @@ mod tests {
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| L::splat(self.0.col(row)[column])));
                 let q = self.1.to_array().map(L::splat);
                 let (q, sound, last) = optimum_pass(&turned_back(&a, &matrix(q, L::splat(1.0))), q);
-                (DQuat::from_array(q.map(|part| part.to_array()[0])), L::any(sound), L::any(last))
+                (DQuat::from_array(q.map(|part| part.to_array()[0])), L::bits(sound) != 0, L::bits(last) != 0)
             }
         }
         let stretch = DMat3::from_cols_array(&[1.1, 0.05, -0.02, 0.05, 0.9, 0.03, -0.02, 0.03, 0.8]);

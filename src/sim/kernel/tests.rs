@@ -123,7 +123,7 @@ fn rotations(body: &Body, state: &State) -> Vec<f64> {
 fn nothing(_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3) {}
 
 /// No obstacle and no limit.
-const FREE: Around<'_> = Around { bounds: &[], resolve: &nothing, speed_limit: &|_| f64::MAX };
+const FREE: Around<'_> = Around { bounds: &[], resolve: &nothing, floor: None, speed_limit: &|_| f64::MAX };
 
 fn constants(damping: f64) -> Constants {
     Constants { stiffness: STIFFNESS, damping, gravity: GRAVITY, step: STEP }
