@@ -156,7 +156,7 @@ impl Known<'_> {
 /// A whole model: between any two nodes of an element a rod with the energy `k/(8 L²) (|p|² − L²)²`.
 /// ```
 #[doc = include_str!("../../../tests/physics/example_model.rs")]
-/// # use localshape::sim::{Body, State, World, body::{Dimension, IndexLists, Solids}, world::{Stepping, Surroundings}};
+/// # use localshape::sim::{State, World, body::{Dimension, IndexLists, Solids}, world::{Stepping, Surroundings}};
 /// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
 /// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
@@ -165,7 +165,7 @@ impl Known<'_> {
 /// let mut world = World::new(&body, stretched, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
 /// let energy = world.diagnostics().elastic;
 /// world.advance(1000);
-/// assert!(world.diagnostics().energy() < energy * 1.01);
+/// assert!(world.diagnostics().energy < energy * 1.01);
 /// ```
 pub trait ForceModel: Send + Sync {
     /// The memory at the start, with the nodes at `position` (m); its length stays as it is.
