@@ -240,7 +240,7 @@ fn draw_figure(
     let moments = taking.finish();
     let mut states = States::default();
     for (name, (scene, run), snapshot) in moments.runs_and_states(&figure) {
-        states.add(&name, 0, State::of(&snapshot, true));
+        states.add(&name, 0, State::of(snapshot, true));
         states.set_steps([(name.as_str(), Step { step: scene.runs[run].step, cycle: scene.cycle() })]);
     }
     let (mut pictures, mut drawn) = (BTreeMap::new(), Vec::new());

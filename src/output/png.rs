@@ -109,7 +109,7 @@ impl FigureTags {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
         let states = moments.states(figure).into_iter();
-        let states = states.map(|(name, snapshot)| (state_digest(&snapshot), name)).collect();
+        let states = states.map(|(name, snapshot)| (state_digest(snapshot), name)).collect();
         Self { figure: figure.name.clone(), scenes, states, version, adapter: adapter.to_owned() }
     }
 

@@ -8,7 +8,7 @@ use super::field::Field;
 use super::grip::Grip;
 use super::integrate::{ByForces, Integrator};
 use super::kernel::ByKernel;
-use super::model::{ElasticModel, Report};
+use super::model::{ElasticModel, Report, Share};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 use super::system::{Part, System};
@@ -248,7 +248,7 @@ impl World {
         self.report_with(&self.system.parts[part], &mut |_, _, _| {})
     }
 
-    fn report_with(&self, part: &Part, share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+    fn report_with(&self, part: &Part, share: &mut Share<'_>) -> Report {
         part.forces.report(part.nodes_of(self.state.nodes()), &self.state.memory.model[part.memory.clone()], share)
     }
 

@@ -1,5 +1,5 @@
 use glam::DVec3;
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch};
+use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
 use localshape::sim::state::Nodes;
 use localshape::sim::topology::Springs;
 use localshape::sim::{Body, words};
@@ -49,7 +49,7 @@ impl ForceModel for RodForces {
         false
     }
 
-    fn report(&self, at: Nodes<'_>, _: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+    fn report(&self, at: Nodes<'_>, _: &[f64], share: &mut Share<'_>) -> Report {
         let mut whole = 0.0;
         for (rod, (ends, squared)) in self.rods.iter().enumerate() {
             let [i, j] = ends.map(|node| at.position[node as usize]);

@@ -20,7 +20,7 @@ fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [F
 
 /// The picture of a frame by a composer that knows the scene's course.
 fn compose(scene: &Scene, frame: &Frame) -> Picture {
-    let [picture] = pictures(scene, &[frame.clone()]);
+    let [picture] = pictures(scene, std::array::from_ref(frame));
     picture
 }
 

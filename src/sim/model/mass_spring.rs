@@ -5,7 +5,7 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension, ElementKind};
 use crate::sim::census::Census;
 use crate::sim::state::Nodes;
@@ -197,7 +197,7 @@ impl ForceModel for Lattice {
         self.model.damping > 0.0
     }
 
-    fn report(&self, at: Nodes<'_>, _memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+    fn report(&self, at: Nodes<'_>, _memory: &[f64], share: &mut Share<'_>) -> Report {
         let mut whole = 0.0;
         for (spring, (ends, &natural)) in self.model.springs.iter().zip(&self.natural_length).enumerate() {
             let [i, j] = ends.map(|node| at.position[node as usize]);

@@ -180,10 +180,13 @@ pub trait ForceModel: Send + Sync {
     /// Whether the forces depend on velocities.
     fn is_damped(&self) -> bool;
 
-    /// Energy and errors, as an evaluation of the forces with the same nodes and memory finds them. `share` is called for
-    /// each element or spring in order, with its number, its nodes and the part of its energy (J) that is each node's.
-    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report;
+    /// Energy and errors, as an evaluation of the forces with the same nodes and memory finds them. `share` is told of each
+    /// element or spring in order.
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;
 }
+
+/// Is told the number of an element or spring, its nodes, and the part of its energy (J) that is each node's.
+pub type Share<'a> = dyn FnMut(usize, &[u32], &[f64]) + 'a;
 
 /// Room for intermediate results, kept from one evaluation to the next. What it holds in between means nothing.
 #[derive(Debug, Default)]

@@ -9,7 +9,7 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
@@ -341,7 +341,7 @@ impl ForceModel for Elements {
         self.model.damping > 0.0
     }
 
-    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut dyn FnMut(usize, &[u32], &[f64])) -> Report {
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
         let mut shares = vec![0.0; self.rest.len()];
         let mut alphas = vec![0.0; self.body.elements.len()];
         blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
