@@ -3,6 +3,7 @@
 
 use crate::runner::Runner;
 use crate::scene::Scene;
+use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 
@@ -28,7 +29,7 @@ pub struct Course {
     /// The times of steps of this run (s), rising from the start to the scene's last frame. Of a run that diverged, up
     /// to its last finite state.
     pub times: Vec<f64>,
-    /// The state's numbers at each of these times.
+    /// The state's numbers at each of these times: those that were asked for; the others are zero.
     pub diagnostics: Vec<Diagnostics>,
     /// Where the run blew up, if it did.
     pub divergence: Option<Divergence>,
@@ -43,7 +44,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_course();
+        let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.history()
     }
@@ -135,7 +136,7 @@ mod tests {
         let end = scene.moment(scene.last_frame());
         let whole = format!("{:?}", History::new(&scene, &[0, 1]));
         for slice in [1, 3, 1000] {
-            let mut runner = Runner::new(&scene, &[0, 1]).with_course();
+            let mut runner = Runner::new(&scene, &[0, 1]).with_course(Diagnostic::ALL);
             while !runner.advance_towards(end, slice) {
                 assert!(runner.steps() < runner.steps_at(end));
             }
@@ -166,7 +167,8 @@ mod tests {
     fn what_is_looked_at_closely_has_more_moments() {
         let scene = scene("3", "60", "T/70");
         let usual = History::new(&scene, &[0, 1]);
-        let mut runner = Runner::new(&scene, &[0, 1]).with_closer_course(Some([0.0, 0.1]), &[1.2345, 9.0]);
+        let mut runner =
+            Runner::new(&scene, &[0, 1]).with_closer_course(Diagnostic::ALL, Some([0.0, 0.1]), &[1.2345, 9.0]);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         let closer = runner.history();
         for (usual, closer) in usual.courses.iter().zip(&closer.courses) {

@@ -147,7 +147,7 @@ impl<'a> Taking<'a> {
         let closer = sheet.split.map(|split| [sheet.from, split]);
         let parts = parts.into_iter().enumerate().map(|(at, mut part)| {
             if courses.as_ref().is_some_and(|courses| courses.contains(&at)) {
-                part.runner = part.runner.with_closer_course(closer, &times);
+                part.runner = part.runner.with_closer_course(&sheet.strips, closer, &times);
                 let last = scene.moment(scene.last_frame());
                 if part.runner.steps_at(last) > part.runner.steps_at(part.end) {
                     part.end = last;

@@ -3,6 +3,7 @@
 
 use crate::history::{Course, History};
 use crate::scene::Scene;
+use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::state::State;
 use crate::sim::world::{Moment, Stepping, Surroundings, World};
@@ -26,6 +27,8 @@ struct Running {
     step: f64,
     /// Moments to be noted down in the course, rising.
     notes: Vec<Moment>,
+    /// What is noted down of them.
+    wanted: Vec<Diagnostic>,
     course: Course,
 }
 
@@ -42,7 +45,14 @@ impl<'a> Runner<'a> {
         let running = |&run: &usize| {
             let mut world = scene.world(run);
             world.set_threads(threads);
-            Running { run, world, step: scene.runs[run].step, notes: Vec::new(), course: Course::new(run) }
+            Running {
+                run,
+                world,
+                step: scene.runs[run].step,
+                notes: Vec::new(),
+                wanted: Vec::new(),
+                course: Course::new(run),
+            }
         };
         Self { scene, runs: runs.iter().map(running).collect() }
     }
@@ -53,15 +63,16 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// The same noting down the course of all runs on the way.
-    pub fn with_course(self) -> Self {
-        self.with_closer_course(None, &[])
+    /// The same noting down the course of some diagnostics of all runs on the way.
+    pub fn with_course(self, wanted: &[Diagnostic]) -> Self {
+        self.with_closer_course(wanted, None, &[])
     }
 
     /// The same with more moments: as many as usually of the whole scene between two that are looked at `closer` (s), if
     /// there are any, and the steps nearest to each of `shown` (s).
-    pub fn with_closer_course(mut self, closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+    pub fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
         for running in &mut self.runs {
+            running.wanted = wanted.to_vec();
             running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
         }
         self
@@ -145,7 +156,7 @@ impl Running {
     /// Notes down the present state as that after a step.
     fn note(&mut self, step: u64) {
         self.course.times.push(step as f64 * self.step);
-        self.course.diagnostics.push(self.world.diagnostics());
+        self.course.diagnostics.push(self.world.some_diagnostics(&self.wanted));
     }
 }
 
@@ -349,7 +360,7 @@ mod tests {
     fn frames_that_wait_for_the_course_are_the_same() {
         let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
         let take = |whole_course: bool, slice: u64| {
-            let runner = Runner::new(&scene, &[0, 1]).with_course();
+            let runner = Runner::new(&scene, &[0, 1]).with_course(Diagnostic::ALL);
             let mut frames = Frames::new(runner, &[0, 2], whole_course);
             let (mut taken, mut course) = (Vec::new(), None);
             loop {

@@ -14,6 +14,7 @@ use crate::output::{
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
 use crate::sim::body::Body;
+use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
@@ -25,8 +26,8 @@ use std::time::Duration;
 pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
-    /// Whether they show each moment among all others and need to know the scene's course before the first frame.
-    fn need_history(&self) -> bool;
+    /// The diagnostic, if there is one, whose course over the whole scene they need to know before the first frame.
+    fn course(&self) -> Option<Diagnostic>;
     /// Takes note of the scene's course.
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
@@ -205,20 +206,20 @@ impl Recording<'_> {
         mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
-        let needs_course = pictures.as_ref().is_some_and(|pictures| pictures.need_history());
+        let course = pictures.as_ref().and_then(|pictures| pictures.course());
         // In the pool from the beginning, so that no other threads are ever started.
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_field();
             }
-            if needs_course {
-                runner = runner.with_course();
+            if let Some(diagnostic) = course {
+                runner = runner.with_course(&[diagnostic]);
             }
-            Frames::new(runner, &self.frames, needs_course)
+            Frames::new(runner, &self.frames, course.is_some())
         });
         let bar = console::progress(&self.scene.title, frames.steps()[1], quiet);
-        if needs_course {
+        if course.is_some() {
             bar.set_message("simulating ahead for the strips");
         }
         let slice = slice(&self.scene.body);

@@ -13,6 +13,7 @@ use crate::history::History;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
 use crate::render::RenderError;
 use crate::scene::Scene;
+use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
@@ -307,8 +308,8 @@ impl Pictures for Drawing<'_> {
         }
     }
 
-    fn need_history(&self) -> bool {
-        self.scene.view.strip.is_some()
+    fn course(&self) -> Option<Diagnostic> {
+        self.scene.view.strip
     }
 
     fn take_history(&mut self, history: &History) {

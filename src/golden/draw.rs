@@ -174,11 +174,14 @@ fn draw_scene(
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
-    let needs_course = artist.is_some() && scene.view.strip.is_some();
+    let course = scene.view.strip.filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let runner = if needs_course { runner.with_course() } else { runner };
+    let runner = match &course {
+        Some(strip) => runner.with_course(std::slice::from_ref(strip)),
+        None => runner,
+    };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, needs_course);
+    let mut frames = Frames::new(runner, &frames, course.is_some());
     loop {
         if !go_on() {
             return Ok(None);

@@ -1,7 +1,7 @@
 //! What the diagnostics of a state are computed from: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
-use super::diagnostics::{Diagnostics, Facts};
+use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy, Volumes};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -54,23 +54,44 @@ impl Diagnose {
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
     pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
-        let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
-        let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
-        let turned_over: Vec<_> = volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect();
-        let placement = self.placement(state.position);
-        let facts = Facts {
+        let facts = self.facts(state, gravity, || report.clone());
+        let all = Diagnostics::of(&facts, |_| true);
+        (all, facts.volumes.turned_over.clone(), *facts.placement)
+    }
+
+    /// Some diagnostics of a state; the others are zero. What no one of them needs is not computed.
+    pub fn some(
+        &self,
+        state: Nodes<'_>,
+        gravity: DVec3,
+        report: impl FnOnce() -> Report,
+        wanted: &[Diagnostic],
+    ) -> Diagnostics {
+        use Diagnostic::{Elastic, Energy, Gravitational, Kinetic};
+        let is_part = |one| wanted.contains(&Energy) && [Kinetic, Elastic, Gravitational].contains(&one);
+        Diagnostics::of(&self.facts(state, gravity, report), |one| wanted.contains(&one) || is_part(one))
+    }
+
+    fn facts<'a>(&'a self, state: Nodes<'a>, gravity: DVec3, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
+        let volumes = move || {
+            let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
+            let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
+            Volumes {
+                turned_over: volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect(),
+                // In the order of the elements, whoever measured them.
+                sum: volumes.iter().fold(0.0, |sum, (now, _)| sum + now),
+            }
+        };
+        Facts {
             mass: &self.body.mass,
             state,
             gravity,
-            report,
-            turned_over: &turned_over,
-            // Summed in the order of the elements, whoever measured them.
-            volume: volumes.iter().fold(0.0, |sum, (now, _)| sum + now),
+            report: Lazy::new(Box::new(report)),
+            volumes: Lazy::new(Box::new(volumes)),
             volume_at_rest: self.volume_at_rest,
-            placement: &placement,
+            placement: Lazy::new(Box::new(move || self.placement(state.position))),
             centred: &self.centred,
-        };
-        (Diagnostics::of(&facts), turned_over, placement)
+        }
     }
 
     /// Signed volume of an element now and at rest (m³, in the plane m²).

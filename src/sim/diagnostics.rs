@@ -8,7 +8,19 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
+use std::cell::LazyCell;
 use std::fmt;
+
+/// Something that is computed when it is first asked for.
+pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
+
+/// The signed volumes of elements.
+pub(super) struct Volumes {
+    /// Whether each element has changed sign.
+    pub(super) turned_over: Vec<bool>,
+    /// That of the body (m³, in the plane m²).
+    pub(super) sum: f64,
+}
 
 /// What diagnostics are computed from.
 pub(super) struct Facts<'a> {
@@ -18,13 +30,11 @@ pub(super) struct Facts<'a> {
     /// Acceleration of gravity (m/s²).
     pub(super) gravity: DVec3,
     /// What the model says of the state.
-    pub(super) report: &'a Report,
-    /// Whether each element has changed sign.
-    pub(super) turned_over: &'a [bool],
-    /// Signed volume of the body now and at rest (m³, in the plane m²).
-    pub(super) volume: f64,
+    pub(super) report: Lazy<'a, Report>,
+    pub(super) volumes: Lazy<'a, Volumes>,
+    /// Volume at rest (m³, in the plane m²).
     pub(super) volume_at_rest: f64,
-    pub(super) placement: &'a Placement,
+    pub(super) placement: Lazy<'a, Placement>,
     /// Rest positions relative to their mean (m).
     pub(super) centred: &'a [DVec3],
 }
@@ -116,8 +126,9 @@ macro_rules! diagnostics {
         }
 
         impl Diagnostics {
-            pub(super) fn of($facts: &Facts<'_>) -> Self {
-                $(let $key: $type = $value;)+
+            /// Those that are wanted; the others are zero.
+            pub(super) fn of($facts: &Facts<'_>, is_wanted: impl Fn(Diagnostic) -> bool) -> Self {
+                $(let $key: $type = if is_wanted(Diagnostic::$variant) { $value } else { Default::default() };)+
                 Self { $($key),+ }
             }
         }
@@ -202,10 +213,10 @@ diagnostics! { facts:
 
     /// How many elements have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
-        facts.turned_over.iter().filter(|&&turned| turned).count();
+        facts.volumes.turned_over.iter().filter(|&&turned| turned).count();
 
     /// Total signed volume over the rest value; in the plane, area.
-    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volume / facts.volume_at_rest;
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.sum / facts.volume_at_rest;
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();

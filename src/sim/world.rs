@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::contact::Obstacle;
 use super::diagnose::Diagnose;
+use super::diagnostics::Diagnostic;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::grip::Grip;
@@ -256,6 +257,12 @@ impl World {
     pub fn diagnostics(&self) -> Diagnostics {
         let part = &self.system.parts[0];
         part.diagnose.state(part.nodes_of(self.state.nodes()), self.system.gravity, &self.report(0)).0
+    }
+
+    /// Some of them; the others are zero. What none of them needs is not computed.
+    pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
+        let part = &self.system.parts[0];
+        part.diagnose.some(part.nodes_of(self.state.nodes()), self.system.gravity, || self.report(0), wanted)
     }
 
     /// The present moment of the first part with its diagnostics.
