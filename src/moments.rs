@@ -119,7 +119,8 @@ impl<'a> Taking<'a> {
         let mut part = |of: [usize; 2]| match parts.iter().position(|part| part.of == of) {
             Some(known) => known,
             None => {
-                let runner = Runner::new(&sheet.scenes[of[0]], &[of[1]]);
+                // Most sheets show more runs than there are threads.
+                let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]);
                 parts.push(Part { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
             }

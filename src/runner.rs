@@ -10,6 +10,7 @@ use crate::sim::world::{Moment, Stepping, Surroundings, World};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 
 /// Simulates runs of a scene and hands out frames in rising order.
 ///
@@ -38,10 +39,14 @@ impl<'a> Runner<'a> {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &'a Scene, runs: &[usize]) -> Self {
-        /// Elements that pay for a thread more within a run. Several runs share the threads first.
+        Self::among(runs.len(), scene, runs)
+    }
+
+    /// The same where so many runs share the threads in all.
+    pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
+        /// Elements that pay for a thread more within a run.
         const LEAST: usize = 2000;
-        let threads = rayon::current_num_threads() / runs.len().max(1);
-        let threads = threads.min(scene.body.elements.len() / LEAST).max(1);
+        let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
             let mut world = scene.world(run);
             world.set_threads(threads);
@@ -195,8 +200,9 @@ pub enum Next {
 impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With `whole_course`, which it must note down, all is simulated
     /// before the first.
-    pub fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool) -> Self {
-        let waiting = whole_course.then(|| Waiting { states: Store::default(), reached: 0, is_known: false });
+    /// States that do not fit into memory until then are kept in a file without a name in `folder`.
+    pub fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
+        let waiting = whole_course.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
         Self { runner, frames: frames.to_vec(), taken: 0, waiting }
     }
 
@@ -255,8 +261,8 @@ impl<'a> Frames<'a> {
 }
 
 /// Pieces of bytes: the first in memory, those beyond a bound in a file without a name, which goes with it.
-#[derive(Default)]
 struct Store {
+    folder: PathBuf,
     memory: Vec<u8>,
     file: Option<File>,
     /// Where each piece ends in memory, or behind it in the file.
@@ -267,6 +273,10 @@ impl Store {
     /// So much is kept in memory (bytes).
     const MOST_MEMORY: usize = 64 << 20;
 
+    fn new(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), memory: Vec::new(), file: None, ends: Vec::new() }
+    }
+
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         let end = self.ends.last().copied().unwrap_or(0);
         if self.file.is_none() && self.memory.len() + bytes.len() <= Self::MOST_MEMORY {
@@ -274,7 +284,7 @@ impl Store {
         } else {
             let file = match &mut self.file {
                 Some(file) => file,
-                None => self.file.insert(tempfile::tempfile()?),
+                None => self.file.insert(tempfile::tempfile_in(&self.folder)?),
             };
             file.seek(SeekFrom::Start(end - self.memory.len() as u64))?;
             file.write_all(bytes)?;
@@ -361,7 +371,7 @@ mod tests {
         let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
         let take = |whole_course: bool, slice: u64| {
             let runner = Runner::new(&scene, &[0, 1]).with_course(Diagnostic::ALL);
-            let mut frames = Frames::new(runner, &[0, 2], whole_course);
+            let mut frames = Frames::new(runner, &[0, 2], whole_course, &std::env::temp_dir());
             let (mut taken, mut course) = (Vec::new(), None);
             loop {
                 let [done, all] = frames.steps();
@@ -390,7 +400,7 @@ mod tests {
 
     #[test]
     fn pieces_come_back_from_memory_and_from_disk() {
-        let mut store = Store { memory: Vec::with_capacity(Store::MOST_MEMORY), ..Store::default() };
+        let mut store = Store::new(&std::env::temp_dir());
         let piece = |at: usize| vec![at as u8; [30 << 20, 30 << 20, 9 << 20, 0, 1 << 20][at]];
         (0..5).for_each(|at| store.put(&piece(at)).unwrap());
         assert!(store.memory.len() <= Store::MOST_MEMORY && store.file.is_some());

@@ -8,8 +8,8 @@ use super::report;
 use super::scenes::Job;
 use crate::history::History;
 use crate::output::{
-    Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, STATES_FILE, Spent, StatesWriter, Summary,
-    Timings, thread_time,
+    Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE, Spent, StatesWriter,
+    Summary, Timings, thread_time,
 };
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
@@ -207,7 +207,6 @@ impl Recording<'_> {
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
         let course = pictures.as_ref().and_then(|pictures| pictures.course());
-        // In the pool from the beginning, so that no other threads are ever started.
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
@@ -216,7 +215,7 @@ impl Recording<'_> {
             if let Some(diagnostic) = course {
                 runner = runner.with_course(&[diagnostic]);
             }
-            Frames::new(runner, &self.frames, course.is_some())
+            Frames::new(runner, &self.frames, course.is_some(), self.folder)
         });
         let bar = console::progress(&self.scene.title, frames.steps()[1], quiet);
         if course.is_some() {
@@ -228,7 +227,7 @@ impl Recording<'_> {
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
             bar.set_position(frames.steps()[0]);
-            match next.map_err(|error| Failure::files(format!("states cannot be kept on disk: {error}")))? {
+            match next.map_err(OutputError::writing(self.folder))? {
                 Next::Working => {}
                 Next::Course(history) => {
                     pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(&history));

@@ -85,7 +85,7 @@ pub(crate) enum DrawError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// States that wait to be drawn could not be kept.
-    #[error("states cannot be kept on disk: {0}")]
+    #[error("states that wait to be drawn cannot be kept in the folder for temporary files: {0}")]
     Disk(#[from] std::io::Error),
     /// What was asked for is not there.
     #[error("{0}")]
@@ -181,7 +181,7 @@ fn draw_scene(
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, course.is_some());
+    let mut frames = Frames::new(runner, &frames, course.is_some(), &std::env::temp_dir());
     loop {
         if !go_on() {
             return Ok(None);

@@ -8,7 +8,7 @@ use super::world::Surroundings;
 
 /// A way of advancing. It takes its own from the state and may hold the nodes itself while it works.
 pub(super) trait Dynamics: Send + Sync {
-    /// Takes so many steps from where it stands, and counts them in [`State::steps`].
+    /// Takes so many steps from where it stands, and counts them.
     ///
     /// # Errors
     /// When a node would become faster than the limit: it then stands before that step.
@@ -16,6 +16,11 @@ pub(super) trait Dynamics: Send + Sync {
 
     /// Writes into the state what it holds itself.
     fn settle(&mut self, _state: &mut State) {}
+
+    /// Steps taken, of which the state may not know yet.
+    fn steps(&self, state: &State) -> u64 {
+        state.steps
+    }
 
     /// The state was replaced by another one.
     fn restart(&mut self) {}

@@ -82,6 +82,19 @@ impl System {
         }
     }
 
+    /// For how many steps from here on no grip holds or takes anything.
+    pub(super) fn steps_without_grips(&self, steps: u64) -> u64 {
+        let begin = self.interval(steps).begin;
+        let until = |grip: &Grip| {
+            if begin > grip.until {
+                return u64::MAX;
+            }
+            // One less, for round-off of times.
+            ((grip.from - begin) / self.step).floor().max(1.0) as u64 - 1
+        };
+        self.grips.iter().map(until).min().unwrap_or(u64::MAX)
+    }
+
     /// Each grip with its part of the memory.
     pub(super) fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
         let mut rest = memory;

@@ -46,7 +46,7 @@ impl Stepping {
     }
 }
 
-/// How a step is computed. The choice moves states by round-off alone.
+/// How a step is computed. The choice moves states by round-off in each step, which chaotic motion enlarges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
@@ -181,7 +181,7 @@ impl World {
     /// # Panics
     /// If the moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
-        let left = self.steps_at(moment).checked_sub(self.state.steps).expect("moments are taken in rising order");
+        let left = self.steps_at(moment).checked_sub(self.steps()).expect("moments are taken in rising order");
         // What blew up only lets its clock go on.
         let most_steps = if self.state.status == Status::Ok { most_steps } else { u64::MAX };
         self.advance_steps(left.min(most_steps));
@@ -199,20 +199,25 @@ impl World {
 
     fn advance_steps(&mut self, steps: u64) {
         let Self { system, dynamics, limit, state, .. } = self;
-        let last = state.steps + steps;
-        if state.status == Status::Ok
-            && let Err(runaway) = dynamics.advance(system, limit, state, steps)
-        {
+        if state.status == Status::Ok {
+            let last = dynamics.steps(state).saturating_add(steps);
+            let Err(runaway) = dynamics.advance(system, limit, state, steps) else { return };
             dynamics.settle(state);
+            dynamics.restart();
             let (time, step) = (system.interval(state.steps).end, state.steps + 1);
             state.status = Status::Diverged(Divergence { time, step, element: system.element_of(runaway.node) });
+            state.steps = last;
+        } else {
+            state.steps = state.steps.saturating_add(steps);
         }
-        state.steps = last;
     }
 
-    /// Steps taken so far.
+    /// Steps taken so far, also on the way to a moment.
     pub fn steps(&self) -> u64 {
-        self.state.steps
+        match self.state.status {
+            Status::Ok => self.dynamics.steps(&self.state),
+            Status::Diverged(_) => self.state.steps,
+        }
     }
 
     /// The state at the last moment that was reached.
@@ -220,7 +225,8 @@ impl World {
         &self.state
     }
 
-    /// Goes on from another state of the same bodies under the same conditions.
+    /// Goes on from another state of the same bodies under the same conditions. A time step that is another one would shift
+    /// its clock.
     ///
     /// # Panics
     /// If it is a state of something else.
@@ -231,6 +237,10 @@ impl World {
         };
         assert_eq!(lengths(&state), lengths(&self.state), "a state of the same bodies");
         self.state = state;
+        let Memory { model, integrator, .. } = &mut self.state.memory;
+        if integrator.len() != 3 * self.state.position.len() + model.len() {
+            integrator.clear();
+        }
         self.dynamics.restart();
     }
 

@@ -10,7 +10,7 @@ use localshape::sim::motion::{Motion, Place};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
-use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape::sim::world::{Kernel, Moment, Stepping, Surroundings, World};
 use std::path::Path;
 
 const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
@@ -57,24 +57,45 @@ fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
 fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     for body in bodies() {
         let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Place::default()) };
-        let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips: vec![grip] };
-        for case in cases(&body, 7.0) {
-            for integrator in ALL {
-                let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
-                let stepping = Stepping::new(integrator, 1e-3);
-                let begin = || World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
-                let mut whole = begin();
-                whole.advance(20);
-                let mut cut = begin();
-                for step in 1..=20 {
-                    cut.advance(1);
-                    if step % 3 == 1 {
+        let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
+        for (integrator, kernel) in ways {
+            for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 7.0), (vec![], 0.0)] {
+                let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };
+                for case in cases(&body, damping) {
+                    let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
+                    let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
+                    let begin = || World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
+                    let mut whole = begin();
+                    whole.advance(20);
+                    let mut cut = begin();
+                    for steps in [1, 3, 9, 1, 6] {
+                        cut.advance(steps);
                         cut = revived(&cut, begin());
                     }
+                    let case = format!("{:?} {integrator:?} {kernel:?} {}", case.model, around.grips.len());
+                    assert!(cut.state().to_bytes() == whole.state().to_bytes(), "{case}");
                 }
-                assert!(cut.state().to_bytes() == whole.state().to_bytes(), "{:?} {integrator:?}", case.model);
             }
         }
+    }
+}
+
+/// On the way to a moment the state stays that of the last one that was reached.
+#[test]
+fn a_state_is_whole_also_on_the_way() {
+    let body = lattice(2, 0.1);
+    for kernel in [Kernel::Fast, Kernel::Reference] {
+        let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 1e-3) };
+        let start = State::new(body.rest.clone(), vec![DVec3::Y; body.len()]);
+        let begin = || World::new(&body, start.clone(), &shape_based(1e4, 0.0), Surroundings::default(), stepping);
+        let mut world = begin();
+        assert!(!world.advance_towards(Moment::at(0.1), 40) && world.steps() == 40);
+        let mut other = begin();
+        other.advance(world.state().steps);
+        assert_eq!(world.state(), other.state(), "{kernel:?}");
+        assert!(world.advance_towards(Moment::at(0.1), 60));
+        other.advance(100 - other.steps());
+        assert_eq!(world.state(), other.state(), "{kernel:?}");
     }
 }
 
@@ -83,13 +104,14 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
 fn a_rejected_step_leaves_nothing_behind() {
     let body = lattice(2, 0.1);
     let shape = shape_based(1e4, 0.0);
-    for integrator in ALL {
+    let grip = Grip { nodes: vec![0], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+    let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
+    for ((integrator, kernel), grips) in ways.flat_map(|way| [(way, vec![grip.clone()]), (way, vec![])]) {
         // Far beyond what is stable.
-        let stepping = Stepping::new(integrator, 0.5);
+        let stepping = Stepping { kernel, ..Stepping::new(integrator, 0.5) };
         let mut noise = Noise(4);
         let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector() * 0.02).collect());
-        let grip = Grip { nodes: vec![0], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
-        let around = Surroundings { grips: vec![grip], ..Surroundings::default() };
+        let around = Surroundings { grips, ..Surroundings::default() };
         let begin = || World::new(&body, start.clone(), &shape, around.clone(), stepping);
         let mut world = begin();
         world.advance(1000);
@@ -100,6 +122,26 @@ fn a_rejected_step_leaves_nothing_behind() {
         let [ended, before] = [&world, &before].map(World::state);
         assert_eq!((&ended.position, &ended.velocity), (&before.position, &before.velocity), "{integrator:?}");
         assert_eq!(ended.memory, before.memory, "{integrator:?}");
+    }
+}
+
+/// The element that is told is that of the first node that was lost, also where contact stops the node in the same step.
+#[test]
+fn kernels_tell_the_same_runaway() {
+    for body in bodies() {
+        for case in cases(&body, 0.0) {
+            let around =
+                Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.0, 1.0)], ..Surroundings::default() };
+            let mut noise = Noise(4);
+            let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector().with_z(0.0) * 0.1).collect());
+            let [fast, plain] = [Kernel::Fast, Kernel::Reference].map(|kernel| {
+                let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 5.0) };
+                let mut world = World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
+                world.advance(100);
+                world.status()
+            });
+            assert_eq!(fast, plain, "{:?}", case.model);
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use localshape::sim::model::shape_based::{DampingReading, RotationReading, Shape
 use localshape::sim::motion::Place;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
-use localshape::sim::world::{Stepping, Surroundings, World};
+use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
 
 #[test]
 fn states_have_the_same_bits_for_1_2_and_8_threads() {
@@ -41,22 +41,28 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         ..shape.clone()
     };
     let spring = mass_spring(&body, 1e4, 20.0, Springs::EdgesOneDiagonal);
-    for (model, integrator) in [
-        (&shape as &dyn ElasticModel, Integrator::SemiImplicitEuler),
-        (&spring, Integrator::SemiImplicitEuler),
-        (&length, Integrator::VelocityVerlet),
-        (&linear, Integrator::ExplicitEuler),
+    let exact = ShapeBased { rotation: RotationReading::Exact, ..shape.clone() };
+    for (model, integrator, kernel) in [
+        (&shape as &dyn ElasticModel, Integrator::SemiImplicitEuler, Kernel::Fast),
+        (&exact, Integrator::SemiImplicitEuler, Kernel::Fast),
+        (&exact, Integrator::ExplicitEuler, Kernel::Fast),
+        (&spring, Integrator::SemiImplicitEuler, Kernel::Fast),
+        (&shape, Integrator::SemiImplicitEuler, Kernel::Reference),
+        (&spring, Integrator::SemiImplicitEuler, Kernel::Reference),
+        (&length, Integrator::VelocityVerlet, Kernel::Reference),
+        (&linear, Integrator::ExplicitEuler, Kernel::Reference),
     ] {
         let ends = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
             pool.install(|| {
-                let stepping = Stepping::new(integrator, 1e-3);
+                let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
                 let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
+                world.set_threads(threads);
                 world.advance(60);
                 world.state().clone()
             })
         });
-        assert!(ends[0] == ends[1] && ends[0] == ends[2], "{model:?}");
+        assert!(ends[0] == ends[1] && ends[0] == ends[2], "{model:?} {kernel:?}");
         assert!(ends[0] != start);
     }
 }

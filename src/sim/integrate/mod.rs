@@ -97,6 +97,8 @@ impl Trial {
         for ((force, &mass), &velocity) in forces.iter_mut().zip(&system.mass).zip(&state.velocity) {
             *force = velocity + *force / mass * interval.step;
         }
+        // It belongs to velocity Verlet.
+        next.memory.integrator.clear();
         check(forces, limit)
     }
 }

@@ -9,7 +9,6 @@
 //! force is ever evaluated inside an obstacle.
 //!
 //! W. Swope, H. Andersen, P. Berens, K. Wilson, J. Chem. Phys. 76, 637 (1982).
-
 //!
 //! Without damping it remembers the evaluation at the present state: the accelerations, then the memory of the models that
 //! was found with them.

@@ -39,8 +39,8 @@ pub(super) trait Kernel: Send + Sync {
 pub(in crate::sim) struct ByKernel {
     kernel: Box<dyn Kernel>,
     scheme: Scheme,
-    /// Whether it holds the state.
-    is_loaded: bool,
+    /// The steps taken and the memory of the constraints, if the kernel holds the state.
+    holds: Option<(u64, Vec<f64>)>,
     /// The margin of contact (m): near enough to be asked.
     margin: f64,
 }
@@ -69,7 +69,7 @@ impl ByKernel {
             Known::ShapeBased(model) => shape_based(body, model, scheme, gravity, step)?,
             Known::MassSpring(model) => mass_spring(body, model, gravity, step),
         };
-        Some(Self { kernel, scheme, is_loaded: false, margin: MARGIN * body.extent() })
+        Some(Self { kernel, scheme, holds: None, margin: MARGIN * body.extent() })
     }
 }
 
@@ -109,26 +109,26 @@ impl Dynamics for ByKernel {
         state: &mut State,
         count: u64,
     ) -> Result<(), dynamics::Runaway> {
-        if !self.is_loaded {
-            self.kernel.load(&state.position, &state.velocity, &state.memory.model);
-            self.is_loaded = true;
-        }
+        let Self { kernel, scheme, holds, margin } = self;
+        let (done, constraints) = holds.get_or_insert_with(|| {
+            kernel.load(&state.position, &state.velocity, &state.memory.model);
+            (state.steps, state.memory.constraints.clone())
+        });
         let obstacles = system.contact.obstacles().unwrap_or_default();
-        let is_still = system.grips.is_empty() && obstacles.iter().all(Obstacle::is_still);
+        let is_still = obstacles.iter().all(Obstacle::is_still);
         let mut left = count;
         while left > 0 {
-            let steps = if is_still { left } else { 1 };
-            let interval = system.interval(state.steps);
+            let interval = system.interval(*done);
+            let steps = if is_still { system.steps_without_grips(*done).clamp(1, left) } else { 1 };
             let placed: Vec<_> = obstacles.iter().map(|obstacle| obstacle.at(interval.end, interval.step)).collect();
-            let bounds: Vec<Bound> = placed.iter().map(|obstacle| obstacle.bound(self.margin)).collect();
+            let bounds: Vec<Bound> = placed.iter().map(|obstacle| obstacle.bound(*margin)).collect();
             let resolve = |_: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
                 placed.iter().for_each(|obstacle| obstacle.rebound(position, velocity, acceleration));
             };
-            let first = state.steps;
+            let first = *done;
             let speed_limit = |step: u64| limit.at(system.interval(first + step).end);
-            let mut constraints = state.memory.constraints.clone();
-            let kernel = &mut self.kernel;
-            system.change_grips(&mut constraints, |grip, memory| {
+            let mut next = constraints.clone();
+            system.change_grips(&mut next, |grip, memory| {
                 grip.reach(interval.end, memory, |node| kernel.node(node as usize).0);
             });
             let floor = match &placed[..] {
@@ -136,29 +136,35 @@ impl Dynamics for ByKernel {
                 _ => None,
             };
             let around = Around { bounds: &bounds, resolve: &resolve, floor, speed_limit: &speed_limit };
-            if let Err(Runaway { taken, node }) = kernel.step(self.scheme, steps, &around) {
-                state.steps += taken;
+            if let Err(Runaway { taken, node }) = kernel.step(*scheme, steps, &around) {
+                *done += taken;
                 return Err(dynamics::Runaway { node });
             }
-            state.memory.constraints = constraints;
-            for (grip, memory) in system.grips(&state.memory.constraints) {
+            *constraints = next;
+            for (grip, memory) in system.grips(constraints) {
                 grip.moved(interval, memory).for_each(|(node, to, speed)| kernel.set_node(node, to, speed));
             }
-            state.steps += steps;
+            *done += steps;
             left -= steps;
         }
         Ok(())
     }
 
     fn settle(&mut self, state: &mut State) {
-        if self.is_loaded {
-            let State { position, velocity, memory: Memory { model, .. }, .. } = state;
+        if let Some((steps, known)) = &self.holds {
+            let State { position, velocity, memory: Memory { model, constraints, .. }, .. } = state;
             self.kernel.store(position, velocity, model);
+            constraints.clone_from(known);
+            state.steps = *steps;
         }
     }
 
+    fn steps(&self, state: &State) -> u64 {
+        self.holds.as_ref().map_or(state.steps, |(steps, _)| *steps)
+    }
+
     fn restart(&mut self) {
-        self.is_loaded = false;
+        self.holds = None;
     }
 
     fn set_threads(&mut self, threads: usize) {

@@ -149,9 +149,9 @@ impl General {
         let mut places = vec![Place { part: 0, record: 0 }; rest.len()];
         let mut shared_places: Vec<(u32, Place)> = Vec::new();
         let mut made = Vec::with_capacity(parts.len());
+        let mut record = vec![NONE; rest.len()];
         for (part, own) in (0u32..).zip(&parts) {
             // Nodes in the order in which elements need them.
-            let mut record = vec![NONE; rest.len()];
             let (mut index, mut of_others) = (Vec::new(), Vec::new());
             for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
                 let seen = &mut record[node as usize];
@@ -204,6 +204,9 @@ impl General {
                 classes: counts.into_iter().map(class).collect(),
                 index,
             });
+            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
+                record[node as usize] = NONE;
+            }
         }
         shared_places.sort_by_key(|&(node, place)| (node, place.part));
         let mut shared = Shared {

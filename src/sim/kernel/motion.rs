@@ -85,6 +85,13 @@ pub(in crate::sim) fn advance(
             *kernel.is_known() = was_known;
             let is_good = |kernel: &mut _, at| several::<_>(kernel, scheme, at..at + 1, around);
             let taken = (done..done + now).take_while(|&at| is_good(&mut *kernel, at)).last().map_or(done, |at| at + 1);
+            // Once more without contact, which may stop the node that was lost.
+            kernel.restore();
+            *kernel.is_known() = was_known;
+            for at in done..taken {
+                several(kernel, scheme, at..at + 1, around);
+            }
+            several(kernel, scheme, taken..taken + 1, Around { bounds: &[], ..around });
             let limit = (around.speed_limit)(taken);
             let is_lost = |&node: &usize| {
                 let squared = kernel.node(node).1.length_squared();
