@@ -166,27 +166,31 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     if kind == ElementKind::Polygon {
         return 0.5 * topology::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
+    // Elements of a kind have eight corners at most, which their faces share.
+    const CORNERS: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+    let mut corners = [DVec3::ZERO; 8];
+    for (corner, &node) in corners.iter_mut().zip(nodes) {
+        *corner = at(node);
+    }
+    let at = |corner: u32| corners[(corner & 7) as usize];
     let mut volume = 0.0;
-    topology::for_each_face(kind, nodes, |face| {
+    topology::for_each_face(kind, &CORNERS[..nodes.len()], |face| {
         volume += match *face {
-            [a, b, c] => fans([a, b, c].map(at)),
-            [a, b, c, d] => fans([a, b, c, d].map(at)),
+            [a, b, c] => triple(at(a), at(b), at(c)) / 6.0,
+            // Each of the four triangles of two corners that are next to each other and a third is in two fans.
+            [a, b, c, d] => {
+                let (a, b, c, d) = (at(a), at(b), at(c), at(d));
+                (triple(a, b - d, c) + triple(b, c - a, d)) / 12.0
+            }
             _ => unreachable!("elements of a kind have triangles and quadrilaterals"),
         };
     });
     volume
 }
 
-/// Signed volume (m³) between the origin and the mean of a face's fans of triangles.
-fn fans<const CORNERS: usize>(corners: [DVec3; CORNERS]) -> f64 {
-    let sides: [DVec3; CORNERS] = std::array::from_fn(|at| corners[at].cross(corners[(at + 1) % CORNERS]));
-    let mut fans = 0.0;
-    for hub in 0..CORNERS {
-        for step in 1..CORNERS - 1 {
-            fans += corners[hub].dot(sides[(hub + step) % CORNERS]);
-        }
-    }
-    fans / (6 * CORNERS) as f64
+/// The triple product, six times the signed volume (m³) between the origin and a triangle.
+fn triple(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    a.dot(b.cross(c))
 }
 
 /// The volume inside the hull of an element at rest (m³).
