@@ -24,6 +24,7 @@ use super::rotation::{Arctangent, Optimum, Solver, matrix};
 use super::{Around, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
+use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -185,8 +186,6 @@ struct Slab {
     lowest: usize,
     /// What the highest boxes pull at the nodes above them (N).
     highest: usize,
-    /// Of a chunk of boxes `u`, `v`, `t` and `w̄`.
-    work: usize,
     /// Where the memory of the next thread begins.
     end: usize,
 }
@@ -195,11 +194,18 @@ impl Slab {
     fn new(grid: &Grid) -> Self {
         let plane = 3 * grid.stride();
         let below = 9 * (grid.ring() + MOST);
-        let (lowest, highest, work) = (below + plane, below + 2 * plane, below + 3 * plane);
+        let (lowest, highest) = (below + plane, below + 2 * plane);
         // Threads share no line of the cache, nor two that a processor fetches together.
-        Self { rows: 0, below, lowest, highest, work, end: work + 12 * CHUNK + 2 * MOST }
+        Self { rows: 0, below, lowest, highest, end: highest + plane + 2 * MOST }
     }
 }
+
+/// Of a chunk of boxes `u`, `v`, `t` and `w̄`, at the start of a cache line.
+///
+/// On the stack: a function with a variable so aligned also aligns the vectors for which it lacks registers. Else each of
+/// them lies across two lines.
+#[repr(C, align(64))]
+struct Chunk([f64; 12 * CHUNK]);
 
 /// How far a thread is. In a line of the cache of its own.
 #[derive(Default)]
@@ -370,6 +376,7 @@ impl Lattice {
             valence: pattern.valence.as_ptr(),
             slabs: slabs.as_mut_ptr(),
             slab: Slab::new(grid),
+            work: std::ptr::null_mut(),
             grid: *grid,
             stride: grid.stride(),
             box_stride: grid.box_stride(),
@@ -457,6 +464,8 @@ struct Sweep<'a> {
     /// The memory of this thread.
     slabs: *mut f64,
     slab: Slab,
+    /// A [`Chunk`].
+    work: *mut f64,
     grid: Grid,
     stride: usize,
     box_stride: usize,
@@ -494,6 +503,8 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self(&sweep, solver, found) = self;
+        let mut chunk = MaybeUninit::<Chunk>::uninit();
+        let sweep = Sweep { work: chunk.as_mut_ptr().cast(), ..sweep };
         for pass in 0..sweep.passes.len() {
             let (stage, number, commit) = sweep.passes.get(pass);
             let motion = Motion::<L>::new(stage, sweep.step, sweep.gravity, number, *sweep.around);
@@ -821,7 +832,7 @@ impl Sweep<'_> {
             if !self.is_cube {
                 shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
             }
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            let work = self.work.add(at % CHUNK);
             thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
         }
     }
@@ -834,7 +845,7 @@ impl Sweep<'_> {
         unsafe {
             let low = self.nodes.add(plane * self.parts * self.stride + at);
             let high = low.add(self.parts * self.stride);
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            let work = self.work.add(at % CHUNK);
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
@@ -864,7 +875,7 @@ impl Sweep<'_> {
     unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
         // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
         unsafe {
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            let work = self.work.add(at % CHUNK);
             let parts = each!(4, part => each!(3, axis => {
                 if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
             }));
