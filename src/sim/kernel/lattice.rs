@@ -20,7 +20,7 @@ use super::array::Array;
 use super::crew::{Crew, wait_until};
 use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
 use super::motion::{Motion, Nodes, Scheme, Stage};
-use super::rotation::{Arctangent, Optimum, Solver, matrix};
+use super::rotation::{Arctangent, Optimum, Solver, choose, matrix, turn, turned_back};
 use super::{Around, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
@@ -692,7 +692,11 @@ impl Sweep<'_> {
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
                 let mut at = chunk;
-                while S::IN_TWOS && at + 2 * L::WIDTH <= boxes {
+                if S::ONE_PASS {
+                    self.in_stages::<L, S, DAMPED>(plane, chunk, boxes, solver, commit);
+                    at = boxes;
+                }
+                while !S::ONE_PASS && at + 2 * L::WIDTH <= boxes {
                     self.two_boxes::<L, S, DAMPED>(plane, [at, at + L::WIDTH], solver, commit);
                     at += 2 * L::WIDTH;
                 }
@@ -787,6 +791,54 @@ impl Sweep<'_> {
             let edges = self.edges::<L, DAMPED>(plane, at, live);
             let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
             self.shape(plane, at, live, q, commit);
+        }
+    }
+
+    /// The same for a chunk of them, where one pass suffices for most, in three loops. A rotation is a long chain of
+    /// operations; in each loop a processor works on several at once.
+    #[inline(always)]
+    unsafe fn in_stages<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        first: usize,
+        end: usize,
+        solver: S,
+        commit: bool,
+    ) {
+        let mut found = [(0, 0); CHUNK];
+        let scale = L::splat(self.scale);
+        // SAFETY: as above.
+        unsafe {
+            for at in (first..end).step_by(L::WIDTH) {
+                let edges = self.edges::<L, DAMPED>(plane, at, L::load(self.live.add(at)));
+                let b = turned_back(&edges, &matrix(self.last::<L>(plane, at), scale));
+                let work = self.work.add(at % CHUNK);
+                thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
+            }
+            for at in (first..end).step_by(L::WIDTH) {
+                let work = self.work.add(at % CHUNK);
+                let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
+                let (turn, sound, last) = solver.first(&b);
+                let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
+                found[at % CHUNK] = (L::bits(sound), L::bits(last));
+            }
+            for at in (first..end).step_by(L::WIDTH) {
+                let live = L::load(self.live.add(at));
+                let work = self.work.add(at % CHUNK);
+                let [x, y, z, s] = each!(4, part => L::load(work.add(part * CHUNK)));
+                let last = self.last::<L>(plane, at);
+                let (next, in_range) = turn(last, [x, y, z], s);
+                let open = L::bits(L::splat(0.0).lt(live));
+                let (sound, arrived) = found[at % CHUNK];
+                let sound = open & sound & L::bits(in_range);
+                let mut q = choose(L::mask(sound), next, last);
+                let (open, failed) = (sound & !arrived, open & !sound);
+                if open | failed != 0 {
+                    let edges = self.edges::<L, DAMPED>(plane, at, live);
+                    q = solver.go_on(&edges, scale, q, open, failed);
+                }
+                self.shape(plane, at, live, q, commit);
+            }
         }
     }
 

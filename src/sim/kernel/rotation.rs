@@ -15,8 +15,8 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// How rotations are found in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// Whether [`Self::follow_two`] takes less time on a lattice: where the registers do not suffice for two it does not.
-    const IN_TWOS: bool;
+    /// Whether most rotations are found by one pass.
+    const ONE_PASS: bool;
 
     /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
     ///
@@ -32,6 +32,14 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
         last: [[L; 4]; 2],
         live: [L::Mask; 2],
     ) -> [[L; 4]; 2];
+
+    /// The first pass for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
+    /// where no other pass need follow.
+    fn first<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
+
+    /// [`Self::follow`] after the first pass, which led to `q`: lanes that are `open` need more passes, those that have
+    /// `failed` the global solver.
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
 /// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
@@ -52,7 +60,7 @@ pub(super) struct Arctangent {
 pub(super) struct Optimum;
 
 impl Solver for Arctangent {
-    const IN_TWOS: bool = true;
+    const ONE_PASS: bool = false;
 
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
@@ -70,6 +78,16 @@ impl Solver for Arctangent {
                 q = global(a, q, failed);
             }
         }
+        q
+    }
+
+    #[inline(always)]
+    fn first<L: Lanes>(self, _: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+        unreachable!()
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(self, _: &Matrix<L>, _: L, q: [L; 4], _: u32, _: u32) -> [L; 4] {
         q
     }
 
@@ -99,30 +117,21 @@ impl Solver for Arctangent {
 }
 
 impl Solver for Optimum {
-    const IN_TWOS: bool = false;
+    const ONE_PASS: bool = true;
 
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        let mut q = last;
-        let mut open = L::bits(live);
-        let mut failed = 0;
-        for _ in 0..MOST_PASSES {
-            let b = turned_back(a, &matrix(q, scale));
-            let (next, sound, last) = optimum_pass(&b, q);
-            let sound = L::bits(sound);
-            failed |= open & !sound;
-            open &= sound;
-            // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
-            q = choose(L::mask(open), next, q);
-            open &= !L::bits(last);
-            if open == 0 {
-                break;
-            }
-        }
-        if failed | open != 0 {
-            q = global(a, q, failed | open);
-        }
-        q
+        optimum_passes(a, scale, last, L::bits(live), 0, MOST_PASSES)
+    }
+
+    #[inline(always)]
+    fn first<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+        optimum_turn(b)
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4] {
+        optimum_passes(a, scale, q, open, failed, MOST_PASSES - 1)
     }
 
     #[inline(always)]
@@ -153,6 +162,35 @@ impl Solver for Optimum {
         }
         q
     }
+}
+
+/// Passes for the `open` lanes, at most so many; then the global solver for those that have failed.
+#[inline(always)]
+fn optimum_passes<L: Lanes>(
+    a: &Matrix<L>,
+    scale: L,
+    mut q: [L; 4],
+    mut open: u32,
+    mut failed: u32,
+    passes: u32,
+) -> [L; 4] {
+    for _ in 0..passes {
+        let b = turned_back(a, &matrix(q, scale));
+        let (next, sound, last) = optimum_pass(&b, q);
+        let sound = L::bits(sound);
+        failed |= open & !sound;
+        open &= sound;
+        // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
+        q = choose(L::mask(open), next, q);
+        open &= !L::bits(last);
+        if open == 0 {
+            break;
+        }
+    }
+    if failed | open != 0 {
+        q = global(a, q, failed | open);
+    }
+    q
 }
 
 /// After so many passes of [`Optimum`] the global solver takes over. Most sound lanes are there after three.
@@ -186,7 +224,7 @@ pub(super) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
 
 /// `RᵀA`, as rows: entry `[i][j]` is in row `i` and column `j`.
 #[inline(always)]
-fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
+pub(super) fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
     each!(3, i => each!(3, j => dot(&r[i], &a[j])))
 }
 
@@ -203,7 +241,7 @@ fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
 
 /// `q ⊗ (v, s)`, made of unit length, and whether that was possible.
 #[inline(always)]
-fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
+pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
     let product = [
         z.neg_mul_add(b, y.mul_add(c, w.mul_add(a, s * x))),
         x.neg_mul_add(c, z.mul_add(a, w.mul_add(b, s * y))),
@@ -255,11 +293,19 @@ fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
 }
 
 /// One pass of [`Optimum`], where it is sound, and where it is the last.
+#[inline(always)]
+fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
+    let ([x, y, z, s], definite, short) = optimum_turn(b);
+    let (next, in_range) = turn(q, [x, y, z], s);
+    (next, L::both(definite, in_range), short)
+}
+
+/// The turn of a pass up to its length, where it is sound but for that, and where it is the last.
 ///
 /// Homogeneous, so that nothing is divided: with `d = det 2H`, `w = adj(2H) g`, `x = adj(2H) w`, `y = adj(2H) x` and
 /// `m = g·w` the turn is `(d⁴ w − m (d² − |w|²) x + m² y, d⁵)`.
 #[inline(always)]
-fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
+fn optimum_turn<L: Lanes>(b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
     let g = axial(b);
     let sums = [b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]];
     // 2H, of which the off-diagonal entries are kept with their signs turned.
@@ -279,18 +325,17 @@ fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Ma
     let (first, second) = (m * (d2 - squares), m * m);
     let v = each!(3, row => second.mul_add(y[row], first.neg_mul_add(x[row], d4 * w[row])));
     let d5 = d4 * d;
-    let (next, in_range) = turn(q, v, d5);
     let trace = (hx + hy) + hz;
     let cube = trace * trace * trace;
     let zero = L::splat(0.0);
     let definite = L::both(zero.lt(hx), L::both(zero.lt(azz), (L::splat(SOUND) * cube).lt(d)));
     // |v|² ≤ SHORT · 27 d / tr³, with v in units of d⁵.
     let short = (dot(&v, &v) * cube).le(L::splat(27.0 * SHORT) * d * (d5 * d5));
-    (next, L::both(definite, in_range), short)
+    ([v[0], v[1], v[2], d5], definite, short)
 }
 
 #[inline(always)]
-fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
+pub(super) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
     each!(4, part => a[part].select(mask, b[part]))
 }
 
