@@ -180,6 +180,8 @@ struct Pattern {
 struct Slab {
     /// A ring of boxes: `w̄ + v`, `u` and `t`.
     rows: usize,
+    /// A ring of squares of nodes along x and z; see [`Sweep::squares`].
+    squares: usize,
     /// What the boxes below pull at the nodes of a plane (N).
     below: usize,
     /// What the lowest boxes pull at the nodes below them (N).
@@ -193,10 +195,11 @@ struct Slab {
 impl Slab {
     fn new(grid: &Grid) -> Self {
         let plane = 3 * grid.stride();
-        let below = 9 * (grid.ring() + MOST);
+        let squares = 9 * (grid.ring() + MOST);
+        let below = squares + 12 * (grid.ring() + MOST);
         let (lowest, highest) = (below + plane, below + 2 * plane);
         // Threads share no line of the cache, nor two that a processor fetches together.
-        Self { rows: 0, below, lowest, highest, end: highest + plane + 2 * MOST }
+        Self { rows: 0, squares, below, lowest, highest, end: highest + plane + 2 * MOST }
     }
 }
 
@@ -676,8 +679,9 @@ impl Sweep<'_> {
         let zero = L::splat(0.0);
         let layer = self.grid.layer();
         let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
-        // The place in the ring of rows.
+        // The place in the ring of rows, and how far the ring of squares is filled.
         let mut own = 0;
+        let mut filled = (0, 0);
         // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where they are asked for. A
         // chunk of `work` holds what is written to it. The ring holds more than a row in whole vectors; there is none before
         // the first.
@@ -693,7 +697,7 @@ impl Sweep<'_> {
                 let boxes = self.box_stride.min(chunk + CHUNK);
                 let mut at = chunk;
                 if S::ONE_PASS {
-                    self.in_stages::<L, S, DAMPED>(plane, chunk, boxes, solver, commit);
+                    filled = self.in_stages::<L, S, DAMPED>(plane, chunk, boxes, own, filled, solver, commit);
                     at = boxes;
                 }
                 while !S::ONE_PASS && at + 2 * L::WIDTH <= boxes {
@@ -802,15 +806,23 @@ impl Sweep<'_> {
         plane: usize,
         first: usize,
         end: usize,
+        mut own: usize,
+        (mut filled, mut place): (usize, usize),
         solver: S,
         commit: bool,
-    ) {
+    ) -> (usize, usize) {
         let mut found = [(0, 0); CHUNK];
         let scale = L::splat(self.scale);
         // SAFETY: as above.
         unsafe {
+            if first < end {
+                let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
+                place = self.squares::<L, DAMPED>(plane, filled, needed, place);
+                filled = needed;
+            }
             for at in (first..end).step_by(L::WIDTH) {
-                let edges = self.edges::<L, DAMPED>(plane, at, L::load(self.live.add(at)));
+                let edges = self.edges_of_squares::<L, DAMPED>(at, own, L::load(self.live.add(at)));
+                own = self.next(own, L::WIDTH);
                 let b = turned_back(&edges, &matrix(self.last::<L>(plane, at), scale));
                 let work = self.work.add(at % CHUNK);
                 thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
@@ -839,6 +851,92 @@ impl Sweep<'_> {
                 }
                 self.shape(plane, at, live, q, commit);
             }
+        }
+        (filled, place)
+    }
+
+    /// Writes, for squares of four nodes along x and z, what [`pair`] is of them, and the sum of their velocities: from
+    /// one number on, up to another. Returns the place in the ring after them.
+    #[inline(always)]
+    unsafe fn squares<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        from: usize,
+        to: usize,
+        mut place: usize,
+    ) -> usize {
+        // SAFETY: as for `edges`.
+        unsafe {
+            let low = self.nodes.add(plane * self.parts * self.stride);
+            let high = low.add(self.parts * self.stride);
+            macro_rules! upright {
+                ($at:expr) => {
+                    each!(3, axis => {
+                        let (low, high) = (low.add(axis * self.stride + $at), high.add(axis * self.stride + $at));
+                        let (a, b) = (L::load(low), L::load(high));
+                        let speed = if DAMPED {
+                            L::load(low.add(VELOCITY * self.stride)) + L::load(high.add(VELOCITY * self.stride))
+                        } else {
+                            L::splat(0.0)
+                        };
+                        (a + b, b - a, speed)
+                    })
+                };
+            }
+            let mut left = upright!(from);
+            for at in (from..to).step_by(L::WIDTH) {
+                let next = upright!(at + L::WIDTH);
+                let right = each!(3, axis => left[axis].0.shift_out(next[axis].0));
+                let sum = each!(3, axis => left[axis].0 + right[axis]);
+                let x = each!(3, axis => right[axis] - left[axis].0);
+                let z = each!(3, axis => left[axis].1 + left[axis].1.shift_out(next[axis].1));
+                let ring = self.slabs.add(self.slab.squares);
+                if DAMPED {
+                    let speed = each!(3, axis => left[axis].2 + left[axis].2.shift_out(next[axis].2));
+                    self.put(ring, place, &[sum, x, z, speed]);
+                } else {
+                    self.put(ring, place, &[sum, x, z]);
+                }
+                place = self.next(place, L::WIDTH);
+                left = next;
+            }
+        }
+        place
+    }
+
+    /// [`Self::edges`], from the squares on both sides along y. `own` is the place of the lower ones.
+    #[inline(always)]
+    unsafe fn edges_of_squares<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
+        // SAFETY: the ring holds the squares in whole vectors, and a vector more.
+        unsafe {
+            let row = self.grid.row();
+            let near = self.slabs.add(self.slab.squares + own);
+            let beyond = self.next(own, row);
+            let far = self.slabs.add(self.slab.squares + beyond / MOST * MOST);
+            let distance = L::distance(beyond % MOST);
+            let part = self.ring + MOST;
+            let work = self.work.add(at % CHUNK);
+            let mut edges = [[L::splat(0.0); 3]; 3];
+            let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
+            thrice!(axis => {
+                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance));
+                let x = (3 + axis) * part;
+                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance);
+                edges[1][axis] = sum1 - sum0;
+                let z = (6 + axis) * part;
+                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance);
+                let mut mean = of_p * (sum0 + sum1);
+                if DAMPED {
+                    let v = (9 + axis) * part;
+                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance);
+                    mean = of_v.mul_add(sum, mean);
+                }
+                mean.store(work.add((9 + axis) * CHUNK));
+            });
+            if !self.is_cube {
+                edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
+            }
+            edges
         }
     }
 
