@@ -508,24 +508,12 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
         let Self(&sweep, solver, found) = self;
         let mut chunk = MaybeUninit::<Chunk>::uninit();
         let sweep = Sweep { work: chunk.as_mut_ptr().cast(), ..sweep };
-        for pass in 0..sweep.passes.len() {
-            let (stage, number, commit) = sweep.passes.get(pass);
-            let motion = Motion::<L>::new(stage, sweep.step, sweep.gravity, number, *sweep.around);
-            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
-            let bad = unsafe {
-                if stage == Stage::Coast {
-                    sweep.coast::<L>(pass, &motion)
-                } else {
-                    sweep.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
-                }
-            };
-            if let Some(node) = bad {
-                *found = Some(Runaway { taken: number, node });
-                sweep.stop.store(true, Ordering::Relaxed);
-            }
-            if sweep.stop.load(Ordering::Relaxed) {
-                return;
-            }
+        if sweep.passes.scheme == Scheme::SemiImplicitEuler {
+            // Again with a stage that the compiler knows.
+            let passes = Passes { scheme: Scheme::SemiImplicitEuler, ..sweep.passes };
+            Sweep { passes, ..sweep }.passes::<L, S, DAMPED>(solver, found);
+        } else {
+            sweep.passes::<L, S, DAMPED>(solver, found);
         }
     }
 }
@@ -568,6 +556,30 @@ impl Passes {
 }
 
 impl Sweep<'_> {
+    /// All passes.
+    #[inline(always)]
+    fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Runaway>) {
+        for pass in 0..self.passes.len() {
+            let (stage, number, commit) = self.passes.get(pass);
+            let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
+            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
+            let bad = unsafe {
+                if stage == Stage::Coast {
+                    self.coast::<L>(pass, &motion)
+                } else {
+                    self.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
+                }
+            };
+            if let Some(node) = bad {
+                *found = Some(Runaway { taken: number, node });
+                self.stop.store(true, Ordering::Relaxed);
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+        }
+    }
+
     #[inline(always)]
     fn slabs(&self) -> *mut f64 {
         self.slabs
