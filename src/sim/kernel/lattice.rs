@@ -806,7 +806,7 @@ impl Sweep<'_> {
             let live = L::load(self.live.add(at));
             let edges = self.edges::<L, DAMPED>(plane, at, live);
             let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
-            self.shape(plane, at, live, q, commit);
+            self.put_turns(plane, at, q, commit);
         }
     }
 
@@ -861,7 +861,7 @@ impl Sweep<'_> {
                     let edges = self.edges::<L, DAMPED>(plane, at, live);
                     q = solver.go_on(&edges, scale, q, open, failed);
                 }
-                self.shape(plane, at, live, q, commit);
+                self.put_turns(plane, at, q, commit);
             }
         }
         (filled, place)
@@ -968,8 +968,8 @@ impl Sweep<'_> {
             let last = each!(2, of => self.last::<L>(plane, at[of]));
             let is_live = each!(2, of => L::splat(0.0).lt(live[of]));
             let q = solver.follow_two([&edges[0], &edges[1]], [L::splat(self.scale); 2], last, is_live);
-            self.shape(plane, at[0], live[0], q[0], commit);
-            self.shape(plane, at[1], live[1], q[1], commit);
+            self.put_turns(plane, at[0], q[0], commit);
+            self.put_turns(plane, at[1], q[1], commit);
         }
     }
 
@@ -980,22 +980,31 @@ impl Sweep<'_> {
         each!(4, part => unsafe { L::load(self.turns.add((plane * 4 + part) * self.box_stride + at)) })
     }
 
-    /// Writes `u`, `v` and `t` of boxes, and their new rotations if they are kept.
+    /// Hands new rotations over, and writes them if they are kept.
     #[inline(always)]
-    unsafe fn shape<L: Lanes>(&self, plane: usize, at: usize, live: L, q: [L; 4], commit: bool) {
+    unsafe fn put_turns<L: Lanes>(&self, plane: usize, at: usize, q: [L; 4], commit: bool) {
         // SAFETY: the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written to it.
         unsafe {
             if commit {
-                for (part, number) in q.into_iter().enumerate() {
-                    number.store(self.turns.add((plane * 4 + part) * self.box_stride + at));
-                }
+                let _ = each!(4, part => q[part].store(self.turns.add((plane * 4 + part) * self.box_stride + at)));
             }
-            let mut shape = matrix(q, L::splat(self.half) * live);
+            let work = self.work.add(at % CHUNK);
+            let _ = each!(4, part => q[part].store(work.add(part * CHUNK)));
+        }
+    }
+
+    /// `u`, `v` and `t` of boxes.
+    #[inline(always)]
+    unsafe fn shape<L: Lanes>(&self, at: usize) -> [[L; 3]; 3] {
+        // SAFETY: `live` holds all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let work = self.work.add(at % CHUNK);
+            let q = each!(4, part => L::load(work.add(part * CHUNK)));
+            let mut shape = matrix(q, L::splat(self.half) * L::load(self.live.add(at)));
             if !self.is_cube {
                 shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
             }
-            let work = self.work.add(at % CHUNK);
-            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+            shape
         }
     }
 
@@ -1038,10 +1047,12 @@ impl Sweep<'_> {
         // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
         unsafe {
             let work = self.work.add(at % CHUNK);
-            let parts = each!(4, part => each!(3, axis => {
-                if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
-            }));
-            let [u, v, t, mean] = parts;
+            let zero = [L::splat(0.0); 3];
+            let ([u, v, t], mean) = if is_box {
+                (self.shape::<L>(at), each!(3, axis => L::load(work.add((9 + axis) * CHUNK))))
+            } else {
+                ([zero; 3], zero)
+            };
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
