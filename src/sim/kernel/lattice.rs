@@ -140,6 +140,10 @@ const ACCELERATION: usize = 7;
 /// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
 const CHUNK: usize = 64;
 
+/// Where `w̄` and the rotation stand in a [`Chunk`].
+const MEAN: usize = 9;
+const TURN: usize = 12;
+
 /// A lattice of equal boxes at work.
 pub(in crate::sim) struct Lattice {
     set: Set,
@@ -203,12 +207,13 @@ impl Slab {
     }
 }
 
-/// Of a chunk of boxes `u`, `v`, `t` and `w̄`, at the start of a cache line.
+/// Of a chunk of boxes what one loop hands to the next: nine numbers of a rotation on its way, `w̄`, and the new rotation.
+/// At the start of a cache line.
 ///
 /// On the stack: a function with a variable so aligned also aligns the vectors for which it lacks registers. Else each of
 /// them lies across two lines.
 #[repr(C, align(64))]
-struct Chunk([f64; 12 * CHUNK]);
+struct Chunk([f64; 16 * CHUNK]);
 
 /// How far a thread is. In a line of the cache of its own.
 #[derive(Default)]
@@ -707,19 +712,7 @@ impl Sweep<'_> {
             }
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
-                let mut at = chunk;
-                if S::ONE_PASS {
-                    filled = self.in_stages::<L, S, DAMPED>(plane, chunk, boxes, own, filled, solver, commit);
-                    at = boxes;
-                }
-                while !S::ONE_PASS && at + 2 * L::WIDTH <= boxes {
-                    self.two_boxes::<L, S, DAMPED>(plane, [at, at + L::WIDTH], solver, commit);
-                    at += 2 * L::WIDTH;
-                }
-                while at < boxes {
-                    self.boxes::<L, S, DAMPED>(plane, at, solver, commit);
-                    at += L::WIDTH;
-                }
+                filled = self.boxes::<L, S, DAMPED>(plane, [chunk, boxes], own, filled, solver, commit);
                 let mut at = chunk;
                 while at < layer.min(chunk + CHUNK) {
                     let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
@@ -798,77 +791,97 @@ impl Sweep<'_> {
         }
     }
 
-    /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
+    /// The rotations of a chunk of boxes, and their `w̄`. `own` is the place of the first in the ring; that of squares is
+    /// `filled` up to a box, and from then on at a place, which are returned for the next chunk.
+    ///
+    /// In several loops: a rotation is a long chain of operations, and in a short loop a processor works on several at once.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S, commit: bool) {
-        // SAFETY: `live` holds all boxes of a plane in whole vectors.
-        unsafe {
-            let live = L::load(self.live.add(at));
-            let edges = self.edges::<L, DAMPED>(plane, at, live);
-            let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
-            self.put_turns(plane, at, q, commit);
-        }
-    }
-
-    /// The same for a chunk of them, where one pass suffices for most, in three loops. A rotation is a long chain of
-    /// operations; in each loop a processor works on several at once.
-    #[inline(always)]
-    unsafe fn in_stages<L: Lanes, S: Solver, const DAMPED: bool>(
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
         plane: usize,
-        first: usize,
-        end: usize,
-        mut own: usize,
+        [first, end]: [usize; 2],
+        own: usize,
         (mut filled, mut place): (usize, usize),
         solver: S,
         commit: bool,
     ) -> (usize, usize) {
-        let mut found = [(0, 0); CHUNK];
+        let passes = solver.passes();
         let scale = L::splat(self.scale);
-        // SAFETY: as above.
+        // For each vector the lanes of which more is to be found, those where a pass was sound, and where it was the last.
+        let mut lanes = [[0u8; 3]; CHUNK];
+        // SAFETY: `live` and the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written.
         unsafe {
             if first < end {
                 let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
                 place = self.squares::<L, DAMPED>(plane, filled, needed, place);
                 filled = needed;
             }
-            for at in (first..end).step_by(L::WIDTH) {
-                let edges = self.edges_of_squares::<L, DAMPED>(at, own, L::load(self.live.add(at)));
-                own = self.next(own, L::WIDTH);
-                let b = turned_back(&edges, &matrix(self.last::<L>(plane, at), scale));
-                let work = self.work.add(at % CHUNK);
-                thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
-            }
-            for at in (first..end).step_by(L::WIDTH) {
-                let work = self.work.add(at % CHUNK);
-                let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
-                let (turn, sound, last) = solver.first(&b);
-                let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
-                found[at % CHUNK] = (L::bits(sound), L::bits(last));
-            }
-            for at in (first..end).step_by(L::WIDTH) {
-                let live = L::load(self.live.add(at));
-                let work = self.work.add(at % CHUNK);
-                let [x, y, z, s] = each!(4, part => L::load(work.add(part * CHUNK)));
-                let last = self.last::<L>(plane, at);
-                let (next, in_range) = turn(last, [x, y, z], s);
-                let open = L::bits(L::splat(0.0).lt(live));
-                let (sound, arrived) = found[at % CHUNK];
-                let sound = open & sound & L::bits(in_range);
-                let mut q = choose(L::mask(sound), next, last);
-                let (open, failed) = (sound & !arrived, open & !sound);
-                if open | failed != 0 {
-                    let edges = self.edges::<L, DAMPED>(plane, at, live);
-                    q = solver.go_on(&edges, scale, q, open, failed);
+            for pass in 0..passes {
+                let is_last = pass + 1 == passes;
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let live = L::load(self.live.add(at));
+                    if pass == 0 {
+                        lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
+                    }
+                    let edges = self.edges::<L, DAMPED>(at, here, live);
+                    here = self.next(here, L::WIDTH);
+                    let b = turned_back(&edges, &matrix(self.turns::<L>(plane, at, pass == 0), scale));
+                    let work = self.work.add(at % CHUNK);
+                    thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
                 }
-                self.put_turns(plane, at, q, commit);
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
+                    let (turn, sound, last) = solver.pass(&b);
+                    let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
+                    lanes[at % CHUNK][1] = L::bits(sound) as u8;
+                    lanes[at % CHUNK][2] = L::bits(last) as u8;
+                }
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let [x, y, z, s] = each!(4, part => L::load(work.add(part * CHUNK)));
+                    let before = self.turns::<L>(plane, at, pass == 0);
+                    let (next, in_range) = turn(before, [x, y, z], s);
+                    let [open, sound, last] = lanes[at % CHUNK];
+                    let sound = u32::from(open & sound) & L::bits(in_range);
+                    let mut q = choose(L::mask(sound), next, before);
+                    lanes[at % CHUNK][0] = sound as u8;
+                    let failed = u32::from(open) & !sound;
+                    let late = if is_last { sound & !u32::from(last) } else { 0 };
+                    if failed | late != 0 {
+                        let edges = self.edges::<L, DAMPED>(at, here, L::load(self.live.add(at)));
+                        q = solver.go_on(&edges, scale, q, late, failed);
+                    }
+                    here = self.next(here, L::WIDTH);
+                    let _ = each!(4, part => q[part].store(work.add((TURN + part) * CHUNK)));
+                    if commit && is_last {
+                        let turns = self.turns.add(plane * 4 * self.box_stride + at);
+                        let _ = each!(4, part => q[part].store(turns.add(part * self.box_stride)));
+                    }
+                }
             }
         }
         (filled, place)
     }
 
-    /// Writes, for squares of four nodes along x and z, what [`pair`] is of them, and the sum of their velocities: from
-    /// one number on, up to another. Returns the place in the ring after them.
+    /// The rotations of boxes: those of the last step, or those found since.
+    #[inline(always)]
+    unsafe fn turns<L: Lanes>(&self, plane: usize, at: usize, is_first: bool) -> [L; 4] {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let (from, stride) = if is_first {
+                (self.turns.add(plane * 4 * self.box_stride + at), self.box_stride)
+            } else {
+                (self.work.add(TURN * CHUNK + at % CHUNK), CHUNK)
+            };
+            each!(4, part => L::load(from.add(part * stride)))
+        }
+    }
+
+    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the
+    /// sum of their velocities: from one number on, up to another. Returns the place in the ring after them.
     #[inline(always)]
     unsafe fn squares<L: Lanes, const DAMPED: bool>(
         &self,
@@ -877,7 +890,7 @@ impl Sweep<'_> {
         to: usize,
         mut place: usize,
     ) -> usize {
-        // SAFETY: as for `edges`.
+        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more; of the ring see `put`.
         unsafe {
             let low = self.nodes.add(plane * self.parts * self.stride);
             let high = low.add(self.parts * self.stride);
@@ -916,9 +929,10 @@ impl Sweep<'_> {
         place
     }
 
-    /// [`Self::edges`], from the squares on both sides along y. `own` is the place of the lower ones.
+    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`. `own` is the place
+    /// of the squares at their lower ends along y.
     #[inline(always)]
-    unsafe fn edges_of_squares<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
+    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
         // SAFETY: the ring holds the squares in whole vectors, and a vector more.
         unsafe {
             let row = self.grid.row();
@@ -943,53 +957,12 @@ impl Sweep<'_> {
                     let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance);
                     mean = of_v.mul_add(sum, mean);
                 }
-                mean.store(work.add((9 + axis) * CHUNK));
+                mean.store(work.add((MEAN + axis) * CHUNK));
             });
             if !self.is_cube {
                 edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
             }
             edges
-        }
-    }
-
-    /// The same for two vectors of them.
-    #[inline(always)]
-    unsafe fn two_boxes<L: Lanes, S: Solver, const DAMPED: bool>(
-        &self,
-        plane: usize,
-        at: [usize; 2],
-        solver: S,
-        commit: bool,
-    ) {
-        // SAFETY: as above.
-        unsafe {
-            let live = each!(2, of => L::load(self.live.add(at[of])));
-            let edges = each!(2, of => self.edges::<L, DAMPED>(plane, at[of], live[of]));
-            let last = each!(2, of => self.last::<L>(plane, at[of]));
-            let is_live = each!(2, of => L::splat(0.0).lt(live[of]));
-            let q = solver.follow_two([&edges[0], &edges[1]], [L::splat(self.scale); 2], last, is_live);
-            self.put_turns(plane, at[0], q[0], commit);
-            self.put_turns(plane, at[1], q[1], commit);
-        }
-    }
-
-    /// The last rotations of boxes.
-    #[inline(always)]
-    unsafe fn last<L: Lanes>(&self, plane: usize, at: usize) -> [L; 4] {
-        // SAFETY: the turns hold all boxes of a plane in whole vectors.
-        each!(4, part => unsafe { L::load(self.turns.add((plane * 4 + part) * self.box_stride + at)) })
-    }
-
-    /// Hands new rotations over, and writes them if they are kept.
-    #[inline(always)]
-    unsafe fn put_turns<L: Lanes>(&self, plane: usize, at: usize, q: [L; 4], commit: bool) {
-        // SAFETY: the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written to it.
-        unsafe {
-            if commit {
-                let _ = each!(4, part => q[part].store(self.turns.add((plane * 4 + part) * self.box_stride + at)));
-            }
-            let work = self.work.add(at % CHUNK);
-            let _ = each!(4, part => q[part].store(work.add(part * CHUNK)));
         }
     }
 
@@ -999,44 +972,12 @@ impl Sweep<'_> {
         // SAFETY: `live` holds all boxes of a plane in whole vectors, and `work` those of a chunk.
         unsafe {
             let work = self.work.add(at % CHUNK);
-            let q = each!(4, part => L::load(work.add(part * CHUNK)));
+            let q = each!(4, part => L::load(work.add((TURN + part) * CHUNK)));
             let mut shape = matrix(q, L::splat(self.half) * L::load(self.live.add(at)));
             if !self.is_cube {
                 shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
             }
             shape
-        }
-    }
-
-    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`.
-    #[inline(always)]
-    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, live: L) -> [[L; 3]; 3] {
-        let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more.
-        unsafe {
-            let low = self.nodes.add(plane * self.parts * self.stride + at);
-            let high = low.add(self.parts * self.stride);
-            let work = self.work.add(at % CHUNK);
-            let mut edges = [[L::splat(0.0); 3]; 3];
-            let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
-            thrice!(axis => {
-                let (low, high) = (low.add(axis * self.stride), high.add(axis * self.stride));
-                let ((sum0, x0, z0), (sum1, x1, z1)) = (pair::<L>(low, high, 0), pair::<L>(low, high, row));
-                edges[0][axis] = x0 + x1;
-                edges[1][axis] = sum1 - sum0;
-                edges[2][axis] = z0 + z1;
-                let mut mean = of_p * (sum0 + sum1);
-                if DAMPED {
-                    let (low, high) = (low.add(VELOCITY * self.stride), high.add(VELOCITY * self.stride));
-                    let (sum0, sum1) = (pair::<L>(low, high, 0).0, pair::<L>(low, high, row).0);
-                    mean = of_v.mul_add(sum0 + sum1, mean);
-                }
-                mean.store(work.add((9 + axis) * CHUNK));
-            });
-            if !self.is_cube {
-                edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
-            }
-            edges
         }
     }
 
@@ -1049,7 +990,7 @@ impl Sweep<'_> {
             let work = self.work.add(at % CHUNK);
             let zero = [L::splat(0.0); 3];
             let ([u, v, t], mean) = if is_box {
-                (self.shape::<L>(at), each!(3, axis => L::load(work.add((9 + axis) * CHUNK))))
+                (self.shape::<L>(at), each!(3, axis => L::load(work.add((MEAN + axis) * CHUNK))))
             } else {
                 ([zero; 3], zero)
             };
@@ -1117,31 +1058,6 @@ impl Sweep<'_> {
         }
         None
     }
-}
-
-/// Two nodes along z, two along x: their sum, and their differences along x and along z.
-///
-/// # Safety
-/// All four are readable in whole vectors, and two more.
-#[inline(always)]
-unsafe fn pair<L: Lanes>(low: *const f64, high: *const f64, offset: usize) -> (L, L, L) {
-    // SAFETY: the caller's.
-    unsafe {
-        let (a, b) = (beyond::<L>(low, offset), beyond::<L>(high, offset));
-        let (c, d) = (beyond::<L>(low, offset + 1), beyond::<L>(high, offset + 1));
-        let (left, right) = (a + b, c + d);
-        (left + right, right - left, (b - a) + (d - c))
-    }
-}
-
-/// What lies so far beyond an address that is aligned as planes are.
-///
-/// # Safety
-/// It is readable, in whole vectors and one more.
-#[inline(always)]
-unsafe fn beyond<L: Lanes>(from: *const f64, offset: usize) -> L {
-    // SAFETY: the caller's.
-    unsafe { L::load_beyond(from.add(offset / MOST * MOST), L::distance(offset % MOST)) }
 }
 
 #[cfg(test)]

@@ -15,9 +15,6 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// How rotations are found in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// Whether most rotations are found by one pass.
-    const ONE_PASS: bool;
-
     /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
     ///
     /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
@@ -33,12 +30,15 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
         live: [L::Mask; 2],
     ) -> [[L; 4]; 2];
 
-    /// The first pass for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
-    /// where no other pass need follow.
-    fn first<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
+    /// How many passes most rotations take.
+    fn passes(self) -> u32;
 
-    /// [`Self::follow`] after the first pass, which led to `q`: lanes that are `open` need more passes, those that have
-    /// `failed` the global solver.
+    /// One of them for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
+    /// where no other pass need follow them.
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
+
+    /// [`Self::follow`] after these passes, which led to `q`: lanes that are `open` need more, those that have `failed` the
+    /// global solver.
     fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
@@ -60,35 +60,24 @@ pub(super) struct Arctangent {
 pub(super) struct Optimum;
 
 impl Solver for Arctangent {
-    const ONE_PASS: bool = false;
-
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        let mut q = last;
-        let mut open = L::bits(live);
-        for _ in 0..self.passes {
-            let b = turned_back(a, &matrix(q, scale));
-            let well_posed = is_well_posed(&b);
-            let (next, in_range) = arctangent_pass(&b, q);
-            let sound = L::bits(L::both(well_posed, in_range));
-            let failed = open & !sound;
-            open &= sound;
-            q = choose(L::mask(open), next, q);
-            if failed != 0 {
-                q = global(a, q, failed);
-            }
-        }
-        q
+        arctangent_passes(a, scale, last, L::bits(live), 0, self.passes)
     }
 
     #[inline(always)]
-    fn first<L: Lanes>(self, _: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
-        unreachable!()
+    fn passes(self) -> u32 {
+        self.passes
     }
 
     #[inline(always)]
-    fn go_on<L: Lanes>(self, _: &Matrix<L>, _: L, q: [L; 4], _: u32, _: u32) -> [L; 4] {
-        q
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+        (arctangent_turn(b), is_well_posed(b), L::mask(L::ALL))
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4] {
+        arctangent_passes(a, scale, q, open, failed, 0)
     }
 
     #[inline(always)]
@@ -117,15 +106,18 @@ impl Solver for Arctangent {
 }
 
 impl Solver for Optimum {
-    const ONE_PASS: bool = true;
-
     #[inline(always)]
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
         optimum_passes(a, scale, last, L::bits(live), 0, MOST_PASSES)
     }
 
     #[inline(always)]
-    fn first<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+    fn passes(self) -> u32 {
+        1
+    }
+
+    #[inline(always)]
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
         optimum_turn(b)
     }
 
@@ -162,6 +154,30 @@ impl Solver for Optimum {
         }
         q
     }
+}
+
+/// So many passes for the `open` lanes; the global solver for those that have failed or do.
+#[inline(always)]
+fn arctangent_passes<L: Lanes>(
+    a: &Matrix<L>,
+    scale: L,
+    mut q: [L; 4],
+    mut open: u32,
+    mut failed: u32,
+    passes: u32,
+) -> [L; 4] {
+    for _ in 0..passes {
+        let b = turned_back(a, &matrix(q, scale));
+        let (next, in_range) = arctangent_pass(&b, q);
+        let sound = L::bits(L::both(is_well_posed(&b), in_range));
+        failed |= open & !sound;
+        open &= sound;
+        q = choose(L::mask(open), next, q);
+    }
+    if failed != 0 {
+        q = global(a, q, failed);
+    }
+    q
 }
 
 /// Passes for the `open` lanes, at most so many; then the global solver for those that have failed.
@@ -258,6 +274,13 @@ pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -
 /// One solution of Eq. (15), `C w = g` with `C = tr(B) I − Bᵀ`, and the rotation by `atan |w|` about it.
 #[inline(always)]
 fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
+    let [x, y, z, s] = arctangent_turn(b);
+    turn(q, [x, y, z], s)
+}
+
+/// Its turn up to its length.
+#[inline(always)]
+fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
     let g = axial(b);
     let c0 = [b[1][1] + b[2][2], -b[0][1], -b[0][2]];
     let c1 = [-b[1][0], b[0][0] + b[2][2], -b[1][2]];
@@ -267,7 +290,7 @@ fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
     // In units of the determinant.
     let w = [dot(&g, &c12), dot(&g, &cross(&c2, &c0)), dot(&g, &cross(&c0, &c1))];
     let root = determinant.mul_add(determinant, dot(&w, &w)).sqrt();
-    turn(q, w, determinant + root)
+    [w[0], w[1], w[2], determinant + root]
 }
 
 #[inline(always)]
