@@ -15,13 +15,11 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// How rotations are found in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
+    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs. Two
+    /// vectors of them: each is a long chain of operations, and two keep the processor busy.
     ///
     /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
     /// it in round-off only.
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4];
-
-    /// The same twice at once. Each is a long chain of operations; two keep the processor busy.
     fn follow_two<L: Lanes>(
         self,
         a: [&Matrix<L>; 2],
@@ -30,15 +28,15 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
         live: [L::Mask; 2],
     ) -> [[L; 4]; 2];
 
-    /// How many passes most rotations take.
+    /// How many passes most rotations take. Who has many vectors takes them by [`Self::pass`] and [`turn`] instead.
     fn passes(self) -> u32;
 
     /// One of them for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
-    /// where no other pass need follow them.
+    /// where no pass beyond these is needed.
     fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
 
-    /// [`Self::follow`] after these passes, which led to `q`: lanes that are `open` need more, those that have `failed` the
-    /// global solver.
+    /// What remains after these passes, which led to `q`: lanes that are `open` need more of them, those that have `failed`
+    /// the global solver.
     fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
@@ -61,11 +59,6 @@ pub(super) struct Optimum;
 
 impl Solver for Arctangent {
     #[inline(always)]
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        arctangent_passes(a, scale, last, L::bits(live), 0, self.passes)
-    }
-
-    #[inline(always)]
     fn passes(self) -> u32 {
         self.passes
     }
@@ -76,8 +69,8 @@ impl Solver for Arctangent {
     }
 
     #[inline(always)]
-    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4] {
-        arctangent_passes(a, scale, q, open, failed, 0)
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, _: L, q: [L; 4], _: u32, failed: u32) -> [L; 4] {
+        global(a, q, failed)
     }
 
     #[inline(always)]
@@ -107,11 +100,6 @@ impl Solver for Arctangent {
 
 impl Solver for Optimum {
     #[inline(always)]
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        optimum_passes(a, scale, last, L::bits(live), 0, MOST_PASSES)
-    }
-
-    #[inline(always)]
     fn passes(self) -> u32 {
         1
     }
@@ -122,8 +110,24 @@ impl Solver for Optimum {
     }
 
     #[inline(always)]
-    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4] {
-        optimum_passes(a, scale, q, open, failed, MOST_PASSES - 1)
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, mut q: [L; 4], mut open: u32, mut failed: u32) -> [L; 4] {
+        for _ in 1..MOST_PASSES {
+            let b = turned_back(a, &matrix(q, scale));
+            let (next, sound, last) = optimum_pass(&b, q);
+            let sound = L::bits(sound);
+            failed |= open & !sound;
+            open &= sound;
+            // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
+            q = choose(L::mask(open), next, q);
+            open &= !L::bits(last);
+            if open == 0 {
+                break;
+            }
+        }
+        if failed | open != 0 {
+            q = global(a, q, failed | open);
+        }
+        q
     }
 
     #[inline(always)]
@@ -154,59 +158,6 @@ impl Solver for Optimum {
         }
         q
     }
-}
-
-/// So many passes for the `open` lanes; the global solver for those that have failed or do.
-#[inline(always)]
-fn arctangent_passes<L: Lanes>(
-    a: &Matrix<L>,
-    scale: L,
-    mut q: [L; 4],
-    mut open: u32,
-    mut failed: u32,
-    passes: u32,
-) -> [L; 4] {
-    for _ in 0..passes {
-        let b = turned_back(a, &matrix(q, scale));
-        let (next, in_range) = arctangent_pass(&b, q);
-        let sound = L::bits(L::both(is_well_posed(&b), in_range));
-        failed |= open & !sound;
-        open &= sound;
-        q = choose(L::mask(open), next, q);
-    }
-    if failed != 0 {
-        q = global(a, q, failed);
-    }
-    q
-}
-
-/// Passes for the `open` lanes, at most so many; then the global solver for those that have failed.
-#[inline(always)]
-fn optimum_passes<L: Lanes>(
-    a: &Matrix<L>,
-    scale: L,
-    mut q: [L; 4],
-    mut open: u32,
-    mut failed: u32,
-    passes: u32,
-) -> [L; 4] {
-    for _ in 0..passes {
-        let b = turned_back(a, &matrix(q, scale));
-        let (next, sound, last) = optimum_pass(&b, q);
-        let sound = L::bits(sound);
-        failed |= open & !sound;
-        open &= sound;
-        // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
-        q = choose(L::mask(open), next, q);
-        open &= !L::bits(last);
-        if open == 0 {
-            break;
-        }
-    }
-    if failed | open != 0 {
-        q = global(a, q, failed | open);
-    }
-    q
 }
 
 /// After so many passes of [`Optimum`] the global solver takes over. Most sound lanes are there after three.
@@ -406,7 +357,8 @@ mod tests {
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
                 let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
                 let live = L::mask((1u32 << some.len()) - 1);
-                let q = self.0.follow(&a, L::splat(1.0), q, live).map(L::to_array);
+                let [q, _] = self.0.follow_two([&a; 2], [L::splat(1.0); 2], [q; 2], [live; 2]);
+                let q = q.map(L::to_array);
                 found.extend((0..some.len()).map(|at| DQuat::from_array([0, 1, 2, 3].map(|part: usize| q[part][at]))));
             }
             found
@@ -555,7 +507,9 @@ mod tests {
                 let q = [0.5, -0.5, 0.1, 0.7].map(L::splat);
                 let one = L::splat(1.0);
                 let none = L::mask(0);
-                for found in [Optimum.follow(&nan, one, q, none), Arctangent { passes: 2 }.follow(&nan, one, q, none)] {
+                let (two, ones, still) = ([&nan; 2], [one; 2], [none; 2]);
+                let found = Optimum.follow_two(two, ones, [q; 2], still);
+                for found in found.into_iter().chain(Arctangent { passes: 2 }.follow_two(two, ones, [q; 2], still)) {
                     assert_eq!(found.map(L::to_array), q.map(L::to_array));
                 }
             }
