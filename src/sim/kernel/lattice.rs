@@ -834,6 +834,9 @@ impl Sweep<'_> {
                     let work = self.work.add(at % CHUNK);
                     let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
                     let (turn, sound, last) = solver.pass(&b);
+                    // Of a large body the next chunk's are in no near cache, and short loops leave no time to foresee them.
+                    let ahead = self.turns.wrapping_add(plane * 4 * self.box_stride + at + CHUNK);
+                    let _ = each!(4, part => L::expect(ahead.wrapping_add(part * self.box_stride)));
                     let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
                     lanes[at % CHUNK][1] = L::bits(sound) as u8;
                     lanes[at % CHUNK][2] = L::bits(last) as u8;
