@@ -149,6 +149,8 @@ pub(in crate::sim) trait Lanes:
     fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// `[previous.last, self.first, …]`: all lanes move up by one.
     fn shift_in(self, previous: Self) -> Self;
+    /// `[self.second, …, next.first]`: all lanes move down by one.
+    fn shift_out(self, next: Self) -> Self;
     /// One bit per lane, the lowest for the first.
     fn bits(mask: Self::Mask) -> u32;
     /// The mask with these bits.
@@ -416,6 +418,10 @@ mod portable {
             Self(from_fn(|at| if at == 0 { previous.0[N - 1] } else { self.0[at - 1] }))
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(from_fn(|at| if at == N - 1 { next.0[0] } else { self.0[at + 1] }))
+        }
+        #[inline(always)]
         fn bits(mask: [bool; N]) -> u32 {
             mask.iter().rev().fold(0, |bits, &lane| bits << 1 | u32::from(lane))
         }
@@ -595,6 +601,11 @@ mod x86 {
             Self(unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous.0, self.0), self.0) })
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            // The odd of `self`, and the even of its upper half and the lower half of the other.
+            Self(unsafe { _mm256_shuffle_pd::<0b0101>(self.0, _mm256_permute2f128_pd::<0x21>(self.0, next.0)) })
+        }
+        #[inline(always)]
         fn bits(mask: __m256d) -> u32 {
             unsafe { _mm256_movemask_pd(mask) as u32 }
         }
@@ -717,6 +728,13 @@ mod x86 {
             Self(unsafe {
                 let (low, high) = (_mm512_castpd_si512(previous.0), _mm512_castpd_si512(self.0));
                 _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(high, low))
+            })
+        }
+        #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(unsafe {
+                let (low, high) = (_mm512_castpd_si512(self.0), _mm512_castpd_si512(next.0));
+                _mm512_castsi512_pd(_mm512_alignr_epi64::<1>(high, low))
             })
         }
         #[inline(always)]
@@ -869,6 +887,10 @@ mod neon {
             Self(unsafe { vextq_f64::<1>(previous.0, self.0) })
         }
         #[inline(always)]
+        fn shift_out(self, next: Self) -> Self {
+            Self(unsafe { vextq_f64::<1>(self.0, next.0) })
+        }
+        #[inline(always)]
         fn bits(mask: uint64x2_t) -> u32 {
             unsafe { (vgetq_lane_u64::<0>(mask) & 1 | vgetq_lane_u64::<1>(mask) & 2) as u32 }
         }
@@ -896,11 +918,12 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Vec<Vec<f64>> {
             // Eight lanes of each, in as many vectors as that takes.
-            let mut all = vec![Vec::new(); 18];
+            let mut all = vec![Vec::new(); 19];
             let mut previous = L::splat(9.0);
             for first in (0..MOST).step_by(L::WIDTH) {
                 // SAFETY: WIDTH divides MOST.
                 let [a, b, c] = self.0.each_ref().map(|array| unsafe { L::load(array[first..].as_ptr()) });
+                let next = self.0[0].get(first + L::WIDTH).map_or(9.0, |&value| value);
                 let flag = |mask| {
                     assert_eq!(L::bits(L::mask(L::bits(mask))), L::bits(mask));
                     L::splat(1.0).select(mask, L::splat(0.0))
@@ -921,6 +944,7 @@ mod tests {
                     flag(a.le(b)),
                     c.select(a.lt(b), a),
                     a.shift_in(previous),
+                    a.shift_out(L::splat(next)),
                     flag(L::both(a.lt(b), b.le(c))),
                     flag(L::mask(0b0110_1001 >> first)),
                     L::from_array(a.to_array()),
@@ -958,6 +982,7 @@ mod tests {
             each(&|a, b, _| flag(a <= b)),
             each(&|a, b, c| if a < b { c } else { a }),
             [9.0].into_iter().chain(a).take(MOST).collect(),
+            a.into_iter().skip(1).chain([9.0]).collect(),
             each(&|a, b, c| flag(a < b && b <= c)),
             [1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0].to_vec(),
             a.to_vec(),

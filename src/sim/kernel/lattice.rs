@@ -20,10 +20,11 @@ use super::array::Array;
 use super::crew::{Crew, wait_until};
 use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
 use super::motion::{Motion, Nodes, Scheme, Stage};
-use super::rotation::{Arctangent, Optimum, Solver, matrix};
+use super::rotation::{Arctangent, Optimum, Solver, choose, matrix, turn, turned_back};
 use super::{Around, Rotation, Runaway};
 use crate::sim::body::{Body, Dimension};
 use glam::DVec3;
+use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -139,6 +140,10 @@ const ACCELERATION: usize = 7;
 /// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
 const CHUNK: usize = 64;
 
+/// Where `w̄` and the rotation stand in a [`Chunk`].
+const MEAN: usize = 9;
+const TURN: usize = 12;
+
 /// A lattice of equal boxes at work.
 pub(in crate::sim) struct Lattice {
     set: Set,
@@ -179,14 +184,14 @@ struct Pattern {
 struct Slab {
     /// A ring of boxes: `w̄ + v`, `u` and `t`.
     rows: usize,
+    /// A ring of squares of nodes along x and z; see [`Sweep::squares`].
+    squares: usize,
     /// What the boxes below pull at the nodes of a plane (N).
     below: usize,
     /// What the lowest boxes pull at the nodes below them (N).
     lowest: usize,
     /// What the highest boxes pull at the nodes above them (N).
     highest: usize,
-    /// Of a chunk of boxes `u`, `v`, `t` and `w̄`.
-    work: usize,
     /// Where the memory of the next thread begins.
     end: usize,
 }
@@ -194,12 +199,21 @@ struct Slab {
 impl Slab {
     fn new(grid: &Grid) -> Self {
         let plane = 3 * grid.stride();
-        let below = 9 * (grid.ring() + MOST);
-        let (lowest, highest, work) = (below + plane, below + 2 * plane, below + 3 * plane);
+        let squares = 9 * (grid.ring() + MOST);
+        let below = squares + 12 * (grid.ring() + MOST);
+        let (lowest, highest) = (below + plane, below + 2 * plane);
         // Threads share no line of the cache, nor two that a processor fetches together.
-        Self { rows: 0, below, lowest, highest, work, end: work + 12 * CHUNK + 2 * MOST }
+        Self { rows: 0, squares, below, lowest, highest, end: highest + plane + 2 * MOST }
     }
 }
+
+/// Of a chunk of boxes what one loop hands to the next: nine numbers of a rotation on its way, `w̄`, and the new rotation.
+/// At the start of a cache line.
+///
+/// On the stack: a function with a variable so aligned also aligns the vectors for which it lacks registers. Else each of
+/// them lies across two lines.
+#[repr(C, align(64))]
+struct Chunk([f64; 16 * CHUNK]);
 
 /// How far a thread is. In a line of the cache of its own.
 #[derive(Default)]
@@ -370,6 +384,7 @@ impl Lattice {
             valence: pattern.valence.as_ptr(),
             slabs: slabs.as_mut_ptr(),
             slab: Slab::new(grid),
+            work: std::ptr::null_mut(),
             grid: *grid,
             stride: grid.stride(),
             box_stride: grid.box_stride(),
@@ -457,6 +472,8 @@ struct Sweep<'a> {
     /// The memory of this thread.
     slabs: *mut f64,
     slab: Slab,
+    /// A [`Chunk`].
+    work: *mut f64,
     grid: Grid,
     stride: usize,
     box_stride: usize,
@@ -494,24 +511,14 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self(&sweep, solver, found) = self;
-        for pass in 0..sweep.passes.len() {
-            let (stage, number, commit) = sweep.passes.get(pass);
-            let motion = Motion::<L>::new(stage, sweep.step, sweep.gravity, number, *sweep.around);
-            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
-            let bad = unsafe {
-                if stage == Stage::Coast {
-                    sweep.coast::<L>(pass, &motion)
-                } else {
-                    sweep.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
-                }
-            };
-            if let Some(node) = bad {
-                *found = Some(Runaway { taken: number, node });
-                sweep.stop.store(true, Ordering::Relaxed);
-            }
-            if sweep.stop.load(Ordering::Relaxed) {
-                return;
-            }
+        let mut chunk = MaybeUninit::<Chunk>::uninit();
+        let sweep = Sweep { work: chunk.as_mut_ptr().cast(), ..sweep };
+        if sweep.passes.scheme == Scheme::SemiImplicitEuler {
+            // Again with a stage that the compiler knows.
+            let passes = Passes { scheme: Scheme::SemiImplicitEuler, ..sweep.passes };
+            Sweep { passes, ..sweep }.passes::<L, S, DAMPED>(solver, found);
+        } else {
+            sweep.passes::<L, S, DAMPED>(solver, found);
         }
     }
 }
@@ -554,6 +561,30 @@ impl Passes {
 }
 
 impl Sweep<'_> {
+    /// All passes.
+    #[inline(always)]
+    fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Runaway>) {
+        for pass in 0..self.passes.len() {
+            let (stage, number, commit) = self.passes.get(pass);
+            let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
+            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
+            let bad = unsafe {
+                if stage == Stage::Coast {
+                    self.coast::<L>(pass, &motion)
+                } else {
+                    self.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
+                }
+            };
+            if let Some(node) = bad {
+                *found = Some(Runaway { taken: number, node });
+                self.stop.store(true, Ordering::Relaxed);
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+        }
+    }
+
     #[inline(always)]
     fn slabs(&self) -> *mut f64 {
         self.slabs
@@ -665,8 +696,9 @@ impl Sweep<'_> {
         let zero = L::splat(0.0);
         let layer = self.grid.layer();
         let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
-        // The place in the ring of rows.
+        // The place in the ring of rows, and how far the ring of squares is filled.
         let mut own = 0;
+        let mut filled = (0, 0);
         // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where they are asked for. A
         // chunk of `work` holds what is written to it. The ring holds more than a row in whole vectors; there is none before
         // the first.
@@ -680,15 +712,7 @@ impl Sweep<'_> {
             }
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
-                let mut at = chunk;
-                while S::IN_TWOS && at + 2 * L::WIDTH <= boxes {
-                    self.two_boxes::<L, S, DAMPED>(plane, [at, at + L::WIDTH], solver, commit);
-                    at += 2 * L::WIDTH;
-                }
-                while at < boxes {
-                    self.boxes::<L, S, DAMPED>(plane, at, solver, commit);
-                    at += L::WIDTH;
-                }
+                filled = self.boxes::<L, S, DAMPED>(plane, [chunk, boxes], own, filled, solver, commit);
                 let mut at = chunk;
                 while at < layer.min(chunk + CHUNK) {
                     let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
@@ -767,94 +791,196 @@ impl Sweep<'_> {
         }
     }
 
-    /// `w̄`, `u`, `v` and `t` of boxes: the forces on their corners are `w̄ ± u ± v ± t`, without `−w` of the nodes.
+    /// The rotations of a chunk of boxes, and their `w̄`. `own` is the place of the first in the ring; that of squares is
+    /// `filled` up to a box, and from then on at a place, which are returned for the next chunk.
+    ///
+    /// In several loops: a rotation is a long chain of operations, and in a short loop a processor works on several at once.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(&self, plane: usize, at: usize, solver: S, commit: bool) {
-        // SAFETY: `live` holds all boxes of a plane in whole vectors.
-        unsafe {
-            let live = L::load(self.live.add(at));
-            let edges = self.edges::<L, DAMPED>(plane, at, live);
-            let q = solver.follow(&edges, L::splat(self.scale), self.last::<L>(plane, at), L::splat(0.0).lt(live));
-            self.shape(plane, at, live, q, commit);
-        }
-    }
-
-    /// The same for two vectors of them.
-    #[inline(always)]
-    unsafe fn two_boxes<L: Lanes, S: Solver, const DAMPED: bool>(
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
         plane: usize,
-        at: [usize; 2],
+        [first, end]: [usize; 2],
+        own: usize,
+        (mut filled, mut place): (usize, usize),
         solver: S,
         commit: bool,
-    ) {
-        // SAFETY: as above.
+    ) -> (usize, usize) {
+        let passes = solver.passes();
+        let scale = L::splat(self.scale);
+        // For each vector the lanes of which more is to be found, those where a pass was sound, and where it was the last.
+        let mut lanes = [[0u8; 3]; CHUNK];
+        // SAFETY: `live` and the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written.
         unsafe {
-            let live = each!(2, of => L::load(self.live.add(at[of])));
-            let edges = each!(2, of => self.edges::<L, DAMPED>(plane, at[of], live[of]));
-            let last = each!(2, of => self.last::<L>(plane, at[of]));
-            let is_live = each!(2, of => L::splat(0.0).lt(live[of]));
-            let q = solver.follow_two([&edges[0], &edges[1]], [L::splat(self.scale); 2], last, is_live);
-            self.shape(plane, at[0], live[0], q[0], commit);
-            self.shape(plane, at[1], live[1], q[1], commit);
-        }
-    }
-
-    /// The last rotations of boxes.
-    #[inline(always)]
-    unsafe fn last<L: Lanes>(&self, plane: usize, at: usize) -> [L; 4] {
-        // SAFETY: the turns hold all boxes of a plane in whole vectors.
-        each!(4, part => unsafe { L::load(self.turns.add((plane * 4 + part) * self.box_stride + at)) })
-    }
-
-    /// Writes `u`, `v` and `t` of boxes, and their new rotations if they are kept.
-    #[inline(always)]
-    unsafe fn shape<L: Lanes>(&self, plane: usize, at: usize, live: L, q: [L; 4], commit: bool) {
-        // SAFETY: the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written to it.
-        unsafe {
-            if commit {
-                for (part, number) in q.into_iter().enumerate() {
-                    number.store(self.turns.add((plane * 4 + part) * self.box_stride + at));
+            if first < end {
+                let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
+                place = self.squares::<L, DAMPED>(plane, filled, needed, place);
+                filled = needed;
+            }
+            for pass in 0..passes {
+                let is_last = pass + 1 == passes;
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let live = L::load(self.live.add(at));
+                    if pass == 0 {
+                        lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
+                    }
+                    let edges = self.edges::<L, DAMPED>(at, here, live);
+                    here = self.next(here, L::WIDTH);
+                    let b = turned_back(&edges, &matrix(self.turns::<L>(plane, at, pass == 0), scale));
+                    let work = self.work.add(at % CHUNK);
+                    thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
+                }
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
+                    let (turn, sound, last) = solver.pass(&b);
+                    // Of a large body the next chunk's are in no near cache, and short loops leave no time to foresee them.
+                    let ahead = self.turns.wrapping_add(plane * 4 * self.box_stride + at + CHUNK);
+                    let _ = each!(4, part => L::expect(ahead.wrapping_add(part * self.box_stride)));
+                    let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
+                    lanes[at % CHUNK][1] = L::bits(sound) as u8;
+                    lanes[at % CHUNK][2] = L::bits(last) as u8;
+                }
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let [x, y, z, s] = each!(4, part => L::load(work.add(part * CHUNK)));
+                    let before = self.turns::<L>(plane, at, pass == 0);
+                    let (next, in_range) = turn(before, [x, y, z], s);
+                    let [open, sound, last] = lanes[at % CHUNK];
+                    let sound = u32::from(open & sound) & L::bits(in_range);
+                    let mut q = choose(L::mask(sound), next, before);
+                    lanes[at % CHUNK][0] = sound as u8;
+                    let failed = u32::from(open) & !sound;
+                    let late = if is_last { sound & !u32::from(last) } else { 0 };
+                    if failed | late != 0 {
+                        let edges = self.edges::<L, DAMPED>(at, here, L::load(self.live.add(at)));
+                        q = solver.go_on(&edges, scale, q, late, failed);
+                    }
+                    here = self.next(here, L::WIDTH);
+                    let _ = each!(4, part => q[part].store(work.add((TURN + part) * CHUNK)));
+                    if commit && is_last {
+                        let turns = self.turns.add(plane * 4 * self.box_stride + at);
+                        let _ = each!(4, part => q[part].store(turns.add(part * self.box_stride)));
+                    }
                 }
             }
-            let mut shape = matrix(q, L::splat(self.half) * live);
-            if !self.is_cube {
-                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
-            }
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
-            thrice!(column => thrice!(axis => shape[column][axis].store(work.add((3 * column + axis) * CHUNK))));
+        }
+        (filled, place)
+    }
+
+    /// The rotations of boxes: those of the last step, or those found since.
+    #[inline(always)]
+    unsafe fn turns<L: Lanes>(&self, plane: usize, at: usize, is_first: bool) -> [L; 4] {
+        // SAFETY: the turns hold all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let (from, stride) = if is_first {
+                (self.turns.add(plane * 4 * self.box_stride + at), self.box_stride)
+            } else {
+                (self.work.add(TURN * CHUNK + at % CHUNK), CHUNK)
+            };
+            each!(4, part => L::load(from.add(part * stride)))
         }
     }
 
-    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`.
+    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the
+    /// sum of their velocities: from one number on, up to another. Returns the place in the ring after them.
     #[inline(always)]
-    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, plane: usize, at: usize, live: L) -> [[L; 3]; 3] {
-        let row = self.grid.row();
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more.
+    unsafe fn squares<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        from: usize,
+        to: usize,
+        mut place: usize,
+    ) -> usize {
+        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more; of the ring see `put`.
         unsafe {
-            let low = self.nodes.add(plane * self.parts * self.stride + at);
+            let low = self.nodes.add(plane * self.parts * self.stride);
             let high = low.add(self.parts * self.stride);
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
+            macro_rules! upright {
+                ($at:expr) => {
+                    each!(3, axis => {
+                        let (low, high) = (low.add(axis * self.stride + $at), high.add(axis * self.stride + $at));
+                        let (a, b) = (L::load(low), L::load(high));
+                        let speed = if DAMPED {
+                            L::load(low.add(VELOCITY * self.stride)) + L::load(high.add(VELOCITY * self.stride))
+                        } else {
+                            L::splat(0.0)
+                        };
+                        (a + b, b - a, speed)
+                    })
+                };
+            }
+            let mut left = upright!(from);
+            for at in (from..to).step_by(L::WIDTH) {
+                let next = upright!(at + L::WIDTH);
+                let right = each!(3, axis => left[axis].0.shift_out(next[axis].0));
+                let sum = each!(3, axis => left[axis].0 + right[axis]);
+                let x = each!(3, axis => right[axis] - left[axis].0);
+                let z = each!(3, axis => left[axis].1 + left[axis].1.shift_out(next[axis].1));
+                let ring = self.slabs.add(self.slab.squares);
+                if DAMPED {
+                    let speed = each!(3, axis => left[axis].2 + left[axis].2.shift_out(next[axis].2));
+                    self.put(ring, place, &[sum, x, z, speed]);
+                } else {
+                    self.put(ring, place, &[sum, x, z]);
+                }
+                place = self.next(place, L::WIDTH);
+                left = next;
+            }
+        }
+        place
+    }
+
+    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`. `own` is the place
+    /// of the squares at their lower ends along y.
+    #[inline(always)]
+    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
+        // SAFETY: the ring holds the squares in whole vectors, and a vector more.
+        unsafe {
+            let row = self.grid.row();
+            let near = self.slabs.add(self.slab.squares + own);
+            let beyond = self.next(own, row);
+            let far = self.slabs.add(self.slab.squares + beyond / MOST * MOST);
+            let distance = L::distance(beyond % MOST);
+            let part = self.ring + MOST;
+            let work = self.work.add(at % CHUNK);
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
-                let (low, high) = (low.add(axis * self.stride), high.add(axis * self.stride));
-                let ((sum0, x0, z0), (sum1, x1, z1)) = (pair::<L>(low, high, 0), pair::<L>(low, high, row));
-                edges[0][axis] = x0 + x1;
+                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance));
+                let x = (3 + axis) * part;
+                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance);
                 edges[1][axis] = sum1 - sum0;
-                edges[2][axis] = z0 + z1;
+                let z = (6 + axis) * part;
+                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance);
                 let mut mean = of_p * (sum0 + sum1);
                 if DAMPED {
-                    let (low, high) = (low.add(VELOCITY * self.stride), high.add(VELOCITY * self.stride));
-                    let (sum0, sum1) = (pair::<L>(low, high, 0).0, pair::<L>(low, high, row).0);
-                    mean = of_v.mul_add(sum0 + sum1, mean);
+                    let v = (9 + axis) * part;
+                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance);
+                    mean = of_v.mul_add(sum, mean);
                 }
-                mean.store(work.add((9 + axis) * CHUNK));
+                mean.store(work.add((MEAN + axis) * CHUNK));
             });
             if !self.is_cube {
                 edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
             }
             edges
+        }
+    }
+
+    /// `u`, `v` and `t` of boxes.
+    #[inline(always)]
+    unsafe fn shape<L: Lanes>(&self, at: usize) -> [[L; 3]; 3] {
+        // SAFETY: `live` holds all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let work = self.work.add(at % CHUNK);
+            let q = each!(4, part => L::load(work.add((TURN + part) * CHUNK)));
+            let mut shape = matrix(q, L::splat(self.half) * L::load(self.live.add(at)));
+            if !self.is_cube {
+                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            }
+            shape
         }
     }
 
@@ -864,11 +990,13 @@ impl Sweep<'_> {
     unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
         // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
         unsafe {
-            let work = self.slabs.add(self.slab.work + at % CHUNK);
-            let parts = each!(4, part => each!(3, axis => {
-                if is_box { L::load(work.add((3 * part + axis) * CHUNK)) } else { L::splat(0.0) }
-            }));
-            let [u, v, t, mean] = parts;
+            let work = self.work.add(at % CHUNK);
+            let zero = [L::splat(0.0); 3];
+            let ([u, v, t], mean) = if is_box {
+                (self.shape::<L>(at), each!(3, axis => L::load(work.add((MEAN + axis) * CHUNK))))
+            } else {
+                ([zero; 3], zero)
+            };
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
@@ -933,31 +1061,6 @@ impl Sweep<'_> {
         }
         None
     }
-}
-
-/// Two nodes along z, two along x: their sum, and their differences along x and along z.
-///
-/// # Safety
-/// All four are readable in whole vectors, and two more.
-#[inline(always)]
-unsafe fn pair<L: Lanes>(low: *const f64, high: *const f64, offset: usize) -> (L, L, L) {
-    // SAFETY: the caller's.
-    unsafe {
-        let (a, b) = (beyond::<L>(low, offset), beyond::<L>(high, offset));
-        let (c, d) = (beyond::<L>(low, offset + 1), beyond::<L>(high, offset + 1));
-        let (left, right) = (a + b, c + d);
-        (left + right, right - left, (b - a) + (d - c))
-    }
-}
-
-/// What lies so far beyond an address that is aligned as planes are.
-///
-/// # Safety
-/// It is readable, in whole vectors and one more.
-#[inline(always)]
-unsafe fn beyond<L: Lanes>(from: *const f64, offset: usize) -> L {
-    // SAFETY: the caller's.
-    unsafe { L::load_beyond(from.add(offset / MOST * MOST), L::distance(offset % MOST)) }
 }
 
 #[cfg(test)]

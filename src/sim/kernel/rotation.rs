@@ -15,16 +15,11 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// How rotations are found in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// Whether [`Self::follow_two`] takes less time on a lattice: where the registers do not suffice for two it does not.
-    const IN_TWOS: bool;
-
-    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
+    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs. Two
+    /// vectors of them: each is a long chain of operations, and two keep the processor busy.
     ///
     /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
     /// it in round-off only.
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4];
-
-    /// The same twice at once. Each is a long chain of operations; two keep the processor busy.
     fn follow_two<L: Lanes>(
         self,
         a: [&Matrix<L>; 2],
@@ -32,6 +27,17 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
         last: [[L; 4]; 2],
         live: [L::Mask; 2],
     ) -> [[L; 4]; 2];
+
+    /// How many passes most rotations take. Who has many vectors takes them by [`Self::pass`] and [`turn`] instead.
+    fn passes(self) -> u32;
+
+    /// One of them for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
+    /// where no pass beyond these is needed.
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
+
+    /// What remains after these passes, which led to `q`: lanes that are `open` need more of them, those that have `failed`
+    /// the global solver.
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
 /// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
@@ -52,25 +58,19 @@ pub(super) struct Arctangent {
 pub(super) struct Optimum;
 
 impl Solver for Arctangent {
-    const IN_TWOS: bool = true;
+    #[inline(always)]
+    fn passes(self) -> u32 {
+        self.passes
+    }
 
     #[inline(always)]
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        let mut q = last;
-        let mut open = L::bits(live);
-        for _ in 0..self.passes {
-            let b = turned_back(a, &matrix(q, scale));
-            let well_posed = is_well_posed(&b);
-            let (next, in_range) = arctangent_pass(&b, q);
-            let sound = L::bits(L::both(well_posed, in_range));
-            let failed = open & !sound;
-            open &= sound;
-            q = choose(L::mask(open), next, q);
-            if failed != 0 {
-                q = global(a, q, failed);
-            }
-        }
-        q
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+        (arctangent_turn(b), is_well_posed(b), L::mask(L::ALL))
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, _: L, q: [L; 4], _: u32, failed: u32) -> [L; 4] {
+        global(a, q, failed)
     }
 
     #[inline(always)]
@@ -99,14 +99,19 @@ impl Solver for Arctangent {
 }
 
 impl Solver for Optimum {
-    const IN_TWOS: bool = false;
+    #[inline(always)]
+    fn passes(self) -> u32 {
+        1
+    }
 
     #[inline(always)]
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: L::Mask) -> [L; 4] {
-        let mut q = last;
-        let mut open = L::bits(live);
-        let mut failed = 0;
-        for _ in 0..MOST_PASSES {
+    fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
+        optimum_turn(b)
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, mut q: [L; 4], mut open: u32, mut failed: u32) -> [L; 4] {
+        for _ in 1..MOST_PASSES {
             let b = turned_back(a, &matrix(q, scale));
             let (next, sound, last) = optimum_pass(&b, q);
             let sound = L::bits(sound);
@@ -186,7 +191,7 @@ pub(super) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
 
 /// `RᵀA`, as rows: entry `[i][j]` is in row `i` and column `j`.
 #[inline(always)]
-fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
+pub(super) fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
     each!(3, i => each!(3, j => dot(&r[i], &a[j])))
 }
 
@@ -203,7 +208,7 @@ fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
 
 /// `q ⊗ (v, s)`, made of unit length, and whether that was possible.
 #[inline(always)]
-fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
+pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
     let product = [
         z.neg_mul_add(b, y.mul_add(c, w.mul_add(a, s * x))),
         x.neg_mul_add(c, z.mul_add(a, w.mul_add(b, s * y))),
@@ -220,6 +225,13 @@ fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], 
 /// One solution of Eq. (15), `C w = g` with `C = tr(B) I − Bᵀ`, and the rotation by `atan |w|` about it.
 #[inline(always)]
 fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
+    let [x, y, z, s] = arctangent_turn(b);
+    turn(q, [x, y, z], s)
+}
+
+/// Its turn up to its length.
+#[inline(always)]
+fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
     let g = axial(b);
     let c0 = [b[1][1] + b[2][2], -b[0][1], -b[0][2]];
     let c1 = [-b[1][0], b[0][0] + b[2][2], -b[1][2]];
@@ -229,7 +241,7 @@ fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
     // In units of the determinant.
     let w = [dot(&g, &c12), dot(&g, &cross(&c2, &c0)), dot(&g, &cross(&c0, &c1))];
     let root = determinant.mul_add(determinant, dot(&w, &w)).sqrt();
-    turn(q, w, determinant + root)
+    [w[0], w[1], w[2], determinant + root]
 }
 
 #[inline(always)]
@@ -255,11 +267,19 @@ fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
 }
 
 /// One pass of [`Optimum`], where it is sound, and where it is the last.
+#[inline(always)]
+fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
+    let ([x, y, z, s], definite, short) = optimum_turn(b);
+    let (next, in_range) = turn(q, [x, y, z], s);
+    (next, L::both(definite, in_range), short)
+}
+
+/// The turn of a pass up to its length, where it is sound but for that, and where it is the last.
 ///
 /// Homogeneous, so that nothing is divided: with `d = det 2H`, `w = adj(2H) g`, `x = adj(2H) w`, `y = adj(2H) x` and
 /// `m = g·w` the turn is `(d⁴ w − m (d² − |w|²) x + m² y, d⁵)`.
 #[inline(always)]
-fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
+fn optimum_turn<L: Lanes>(b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
     let g = axial(b);
     let sums = [b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]];
     // 2H, of which the off-diagonal entries are kept with their signs turned.
@@ -279,18 +299,17 @@ fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Ma
     let (first, second) = (m * (d2 - squares), m * m);
     let v = each!(3, row => second.mul_add(y[row], first.neg_mul_add(x[row], d4 * w[row])));
     let d5 = d4 * d;
-    let (next, in_range) = turn(q, v, d5);
     let trace = (hx + hy) + hz;
     let cube = trace * trace * trace;
     let zero = L::splat(0.0);
     let definite = L::both(zero.lt(hx), L::both(zero.lt(azz), (L::splat(SOUND) * cube).lt(d)));
     // |v|² ≤ SHORT · 27 d / tr³, with v in units of d⁵.
     let short = (dot(&v, &v) * cube).le(L::splat(27.0 * SHORT) * d * (d5 * d5));
-    (next, L::both(definite, in_range), short)
+    ([v[0], v[1], v[2], d5], definite, short)
 }
 
 #[inline(always)]
-fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
+pub(super) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
     each!(4, part => a[part].select(mask, b[part]))
 }
 
@@ -338,7 +357,8 @@ mod tests {
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
                 let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
                 let live = L::mask((1u32 << some.len()) - 1);
-                let q = self.0.follow(&a, L::splat(1.0), q, live).map(L::to_array);
+                let [q, _] = self.0.follow_two([&a; 2], [L::splat(1.0); 2], [q; 2], [live; 2]);
+                let q = q.map(L::to_array);
                 found.extend((0..some.len()).map(|at| DQuat::from_array([0, 1, 2, 3].map(|part: usize| q[part][at]))));
             }
             found
@@ -487,7 +507,9 @@ mod tests {
                 let q = [0.5, -0.5, 0.1, 0.7].map(L::splat);
                 let one = L::splat(1.0);
                 let none = L::mask(0);
-                for found in [Optimum.follow(&nan, one, q, none), Arctangent { passes: 2 }.follow(&nan, one, q, none)] {
+                let (two, ones, still) = ([&nan; 2], [one; 2], [none; 2]);
+                let found = Optimum.follow_two(two, ones, [q; 2], still);
+                for found in found.into_iter().chain(Arctangent { passes: 2 }.follow_two(two, ones, [q; 2], still)) {
                     assert_eq!(found.map(L::to_array), q.map(L::to_array));
                 }
             }
