@@ -1,7 +1,8 @@
 //! What the diagnostics of a state are computed from: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
-use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy, Volumes};
+use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
+use super::kernel::{Lanes, MOST, Set, Work};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -9,54 +10,57 @@ use super::state::Nodes;
 use super::topology;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
+use std::ops::{Add, Mul, Sub};
 use std::sync::Arc;
 
-/// Threads measure no fewer elements than this at a time.
-const LEAST_ELEMENTS: usize = 1024;
+/// Threads measure so many elements at a time.
+const CHUNK: usize = 1024;
 
 /// What is known of a body beforehand.
 pub struct Diagnose {
     body: Arc<Body>,
-    sizes: Vec<ElementSize>,
-    /// Total volume at rest (m³, in the plane m²).
+    /// Signed volume of each element at rest (m³, in the plane m²). A segment, a triangle in space or anything else that is
+    /// flat there has none and never turns over.
+    volumes_at_rest: Vec<f64>,
+    /// Their sum.
     volume_at_rest: f64,
+    /// The elements that are not measured by their faces.
+    affine: Vec<Affine>,
     /// Mean of the rest positions (m).
     rest_centre: DVec3,
     /// Rest positions relative to their mean (m).
     centred: Vec<DVec3>,
 }
 
-/// How the signed volume of an element is measured.
-enum ElementSize {
-    /// By its faces; `at_rest` is its signed volume at rest (m³, in the plane m²).
-    Faces { at_rest: f64 },
-    /// By the affine map that fits it best: `det(Σ r R0ᵀ (Σ R0 R0ᵀ)⁻¹)` times the rest volume.
-    Affine { at_rest: f64, inverse: DMat3, rest: Vec<DVec3> },
-    /// A segment, a triangle in space or anything else that is flat there has none and never turns over.
-    None,
+/// An element without faces of its own: its volume is that of the affine map that fits it best,
+/// `det(Σ r R0ᵀ (Σ R0 R0ᵀ)⁻¹)` times its volume at rest.
+struct Affine {
+    element: usize,
+    /// `(Σ R0 R0ᵀ)⁻¹` (1/m²).
+    inverse: DMat3,
+    /// `R0` of its corners (m).
+    rest: Vec<DVec3>,
 }
 
 impl Diagnose {
     /// Measures the body at rest.
     pub fn new(body: &Arc<Body>) -> Self {
-        let sizes: Vec<_> = (0..body.elements.len()).map(|element| element_size(body, element)).collect();
-        let volume_at_rest = sizes
-            .iter()
-            .map(|size| match size {
-                ElementSize::Faces { at_rest } | ElementSize::Affine { at_rest, .. } => *at_rest,
-                ElementSize::None => 0.0,
-            })
-            .sum();
+        let affine: Vec<_> = (0..body.elements.len()).filter_map(|element| Affine::new(body, element)).collect();
+        let mut volumes_at_rest = volumes_by_faces(body, &body.rest);
+        for Affine { element, .. } in &affine {
+            volumes_at_rest[*element] = hull_volume(body, *element);
+        }
+        let volume_at_rest = volumes_at_rest.iter().sum();
         let rest_centre = mean(&body.rest);
         let centred = body.rest.iter().map(|&rest| rest - rest_centre).collect();
-        Self { body: Arc::clone(body), sizes, volume_at_rest, rest_centre, centred }
+        Self { body: Arc::clone(body), volumes_at_rest, volume_at_rest, affine, rest_centre, centred }
     }
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
     pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
         let facts = self.facts(state, gravity, || report.clone());
         let all = Diagnostics::of(&facts, |_| true);
-        (all, facts.volumes.turned_over.clone(), *facts.placement)
+        (all, facts.turned_over().collect(), *facts.placement)
     }
 
     /// Some diagnostics of a state; the others are zero. What no one of them needs is not computed.
@@ -73,41 +77,27 @@ impl Diagnose {
     }
 
     fn facts<'a>(&'a self, state: Nodes<'a>, gravity: DVec3, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
-        let volumes = move || {
-            let elements = (0..self.sizes.len()).into_par_iter().with_min_len(LEAST_ELEMENTS);
-            let volumes: Vec<_> = elements.map(|element| self.volume(element, state.position)).collect();
-            Volumes {
-                turned_over: volumes.iter().map(|&(now, at_rest)| is_turned_over(now, at_rest)).collect(),
-                // In the order of the elements, whoever measured them.
-                sum: volumes.iter().fold(0.0, |sum, (now, _)| sum + now),
-            }
-        };
         Facts {
             mass: &self.body.mass,
             state,
             gravity,
             report: Lazy::new(Box::new(report)),
-            volumes: Lazy::new(Box::new(volumes)),
+            volumes: Lazy::new(Box::new(move || self.volumes(state.position))),
+            volumes_at_rest: &self.volumes_at_rest,
             volume_at_rest: self.volume_at_rest,
             placement: Lazy::new(Box::new(move || self.placement(state.position))),
             centred: &self.centred,
         }
     }
 
-    /// Signed volume of an element now and at rest (m³, in the plane m²).
-    fn volume(&self, element: usize, position: &[DVec3]) -> (f64, f64) {
-        let nodes = &self.body.elements[element];
-        match &self.sizes[element] {
-            ElementSize::Faces { at_rest } => (volume_by_faces(self.body.kinds[element], nodes, position), *at_rest),
-            ElementSize::Affine { at_rest, inverse, rest } => {
-                let corners: Vec<_> = nodes.iter().map(|&node| position[node as usize]).collect();
-                let centre = mean(&corners);
-                let moments =
-                    moment(&corners.iter().map(|&corner| corner - centre).collect::<Vec<_>>(), rest.iter().copied());
-                ((moments * *inverse).determinant() * at_rest, *at_rest)
-            }
-            ElementSize::None => (0.0, 0.0),
+    /// Signed volume of each element (m³, in the plane m²).
+    fn volumes(&self, position: &[DVec3]) -> Vec<f64> {
+        let mut volumes = volumes_by_faces(&self.body, position);
+        let measured: Vec<_> = self.affine.par_iter().map(|affine| affine.stretch(&self.body, position)).collect();
+        for (affine, stretch) in self.affine.iter().zip(measured) {
+            volumes[affine.element] = stretch * self.volumes_at_rest[affine.element];
         }
+        volumes
     }
 
     /// The rigid placement of the rest shape that is nearest to the nodes.
@@ -126,7 +116,7 @@ impl Diagnose {
 /// this bound a billionth of its height later.
 const ROUND_OFF: f64 = 1e-9;
 
-fn is_turned_over(now: f64, at_rest: f64) -> bool {
+pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
     now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
 
@@ -135,23 +125,91 @@ fn is_turned_over(now: f64, at_rest: f64) -> bool {
 /// Round-off leaves 1e-16 of it for corners in a plane; a plate a thousand times wider than thick has 1e-6.
 const FLAT: f64 = 1e-12;
 
-fn element_size(body: &Body, element: usize) -> ElementSize {
-    let (nodes, kind) = (&body.elements[element], body.kinds[element]);
-    match kind {
-        ElementKind::Segment | ElementKind::Triangle => ElementSize::None,
-        ElementKind::Other => {
-            let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
-            let centre = mean(&corners);
-            let rest: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
-            let moments = moment(&rest, rest.iter().copied());
-            let mean_moment = (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z) / 3.0;
-            if moments.determinant() <= FLAT * mean_moment * mean_moment * mean_moment {
-                return ElementSize::None;
-            }
-            let at_rest = hull_volume(body, element);
-            ElementSize::Affine { at_rest, inverse: moments.inverse(), rest }
+impl Affine {
+    /// `None` for an element that is measured by its faces, or is flat.
+    fn new(body: &Body, element: usize) -> Option<Self> {
+        if body.kinds[element] != ElementKind::Other {
+            return None;
         }
-        _ => ElementSize::Faces { at_rest: volume_by_faces(kind, nodes, &body.rest) },
+        let corners: Vec<_> = body.elements[element].iter().map(|&node| body.rest[node as usize]).collect();
+        let centre = mean(&corners);
+        let rest: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
+        let moments = moment(&rest, rest.iter().copied());
+        let mean_moment = (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z) / 3.0;
+        let is_flat = moments.determinant() <= FLAT * mean_moment * mean_moment * mean_moment;
+        (!is_flat).then(|| Self { element, inverse: moments.inverse(), rest })
+    }
+
+    /// By what its volume has grown.
+    fn stretch(&self, body: &Body, position: &[DVec3]) -> f64 {
+        let corners: Vec<_> = body.elements[self.element].iter().map(|&node| position[node as usize]).collect();
+        let centre = mean(&corners);
+        let relative: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
+        (moment(&relative, self.rest.iter().copied()) * self.inverse).determinant()
+    }
+}
+
+/// Signed volume of each element by its faces (m³, in the plane m²); zero for those that have none.
+fn volumes_by_faces(body: &Body, position: &[DVec3]) -> Vec<f64> {
+    let mut volumes = vec![0.0; body.elements.len()];
+    let set = Set::best();
+    volumes.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, volumes)| {
+        set.run(Measure { body, position, first: chunk * CHUNK, volumes });
+    });
+    volumes
+}
+
+/// The volumes by their faces of elements that follow each other.
+struct Measure<'a> {
+    body: &'a Body,
+    position: &'a [DVec3],
+    first: usize,
+    volumes: &'a mut [f64],
+}
+
+impl Work for Measure<'_> {
+    type Output = ();
+
+    /// As many elements of one kind as there are lanes at a time, the others one by one: with the same bits.
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { body, position, first, volumes } = self;
+        let kinds = &body.kinds[first..][..volumes.len()];
+        let mut at = 0;
+        while at < kinds.len() {
+            let (kind, elements) = (kinds[at], first + at..first + at + L::WIDTH);
+            let is_block = kinds.get(at..at + L::WIDTH).is_some_and(|all| all.iter().all(|&one| one == kind));
+            match kind {
+                ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => at += 1,
+                ElementKind::Polygon => {
+                    volumes[at] = volume_by_faces(kind, &body.elements[first + at], position);
+                    at += 1;
+                }
+                _ if is_block => {
+                    let mut arrays = [[[0.0; MOST]; 3]; 8];
+                    for (lane, element) in elements.enumerate() {
+                        let corners = corners(&body.elements[element], position);
+                        for (arrays, corner) in arrays.iter_mut().zip(corners) {
+                            for (array, value) in arrays.iter_mut().zip(corner) {
+                                array[lane] = value;
+                            }
+                        }
+                    }
+                    let mut lanes = [[L::splat(0.0); 3]; 8];
+                    for (lanes, arrays) in lanes.iter_mut().zip(arrays) {
+                        for (lanes, array) in lanes.iter_mut().zip(arrays) {
+                            *lanes = L::from_array(array);
+                        }
+                    }
+                    volumes[at..at + L::WIDTH].copy_from_slice(&inside(kind, &lanes).to_array()[..L::WIDTH]);
+                    at += L::WIDTH;
+                }
+                _ => {
+                    volumes[at] = inside(kind, &corners(&body.elements[first + at], position));
+                    at += 1;
+                }
+            }
+        }
     }
 }
 
@@ -160,37 +218,91 @@ fn element_size(body: &Body, element: usize) -> ElementSize {
 /// A face with more than three corners is the mean of its fans of triangles from every corner. For a quadrilateral
 /// that is exactly the bilinear patch, so a hexahedron gets the volume of its trilinear map.
 pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> f64 {
-    // Relative to the first node, so that distance from the origin costs no digits.
-    let origin = position[nodes[0] as usize];
-    let at = |node: u32| position[node as usize] - origin;
     if kind == ElementKind::Polygon {
+        // Relative to the first node, so that distance from the origin costs no digits.
+        let origin = position[nodes[0] as usize];
+        let at = |node: u32| position[node as usize] - origin;
         return 0.5 * topology::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
-    // Elements of a kind have eight corners at most, which their faces share.
-    const CORNERS: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
-    let mut corners = [DVec3::ZERO; 8];
+    inside(kind, &corners(nodes, position))
+}
+
+/// The corners of an element (m), relative to the first one, so that distance from the origin costs no digits. Elements of a
+/// kind have eight at most.
+#[inline(always)]
+fn corners(nodes: &[u32], position: &[DVec3]) -> [[f64; 3]; 8] {
+    let origin = position[nodes[0] as usize];
+    let mut corners = [[0.0; 3]; 8];
     for (corner, &node) in corners.iter_mut().zip(nodes) {
-        *corner = at(node);
+        *corner = (position[node as usize] - origin).to_array();
     }
-    let at = |corner: u32| corners[(corner & 7) as usize];
-    let mut volume = 0.0;
-    topology::for_each_face(kind, &CORNERS[..nodes.len()], |face| {
-        volume += match *face {
-            [a, b, c] => triple(at(a), at(b), at(c)) / 6.0,
+    corners
+}
+
+/// A number, or one in each lane.
+trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    fn new(value: f64) -> Self;
+    fn over(self, divisor: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn new(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn over(self, divisor: f64) -> Self {
+        self / divisor
+    }
+}
+
+impl<L: Lanes> Number for L {
+    #[inline(always)]
+    fn new(value: f64) -> Self {
+        L::splat(value)
+    }
+
+    #[inline(always)]
+    fn over(self, divisor: f64) -> Self {
+        self.div(L::splat(divisor))
+    }
+}
+
+/// Signed volume (m³) inside the faces of an element with these corners.
+#[inline(always)]
+fn inside<T: Number>(kind: ElementKind, corners: &[[T; 3]; 8]) -> T {
+    let mut volume = T::new(0.0);
+    for face in topology::face_table(kind) {
+        let part = match **face {
+            [a, b, c] => triple(at(corners, a), at(corners, b), at(corners, c)).over(6.0),
             // Each of the four triangles of two corners that are next to each other and a third is in two fans.
             [a, b, c, d] => {
-                let (a, b, c, d) = (at(a), at(b), at(c), at(d));
-                (triple(a, b - d, c) + triple(b, c - a, d)) / 12.0
+                let (a, b, c, d) = (at(corners, a), at(corners, b), at(corners, c), at(corners, d));
+                (triple(a, minus(b, d), c) + triple(b, minus(c, a), d)).over(12.0)
             }
             _ => unreachable!("elements of a kind have triangles and quadrilaterals"),
         };
-    });
+        volume = volume + part;
+    }
     volume
 }
 
-/// The triple product, six times the signed volume (m³) between the origin and a triangle.
-fn triple(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    a.dot(b.cross(c))
+#[inline(always)]
+fn at<T: Number>(corners: &[[T; 3]; 8], corner: u8) -> [T; 3] {
+    corners[usize::from(corner & 7)]
+}
+
+#[inline(always)]
+fn minus<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// The triple product `a · (b × c)`, six times the signed volume (m³) between the origin and a triangle.
+#[inline(always)]
+fn triple<T: Number>(a: [T; 3], b: [T; 3], c: [T; 3]) -> T {
+    let cross = [b[1] * c[2] - c[1] * b[2], b[2] * c[0] - c[2] * b[0], b[0] * c[1] - c[0] * b[1]];
+    a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]
 }
 
 /// The volume inside the hull of an element at rest (m³).
@@ -265,6 +377,35 @@ mod tests {
         };
         assert!((0..100).all(|turn| over(0.0, turn) == 0));
         assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
+    }
+
+    /// Of every kind one by one, and in runs longer and shorter than the lanes of any set.
+    #[test]
+    fn every_set_measures_the_same_volumes() {
+        let place = |at: u32| (at.wrapping_mul(2_654_435_761) >> 8) as f64 / f64::from(1u32 << 24);
+        let node = |node: u32| DVec3::new(place(3 * node), place(3 * node + 1), place(3 * node + 2));
+        let counts = [8, 4, 5, 6, 8, 8, 6, 7, 3, 2].into_iter().chain([8; 21]).chain([4; 13]).chain([6; 9]);
+        let mut elements = IndexLists::default();
+        for (first, count) in (0..).zip(counts) {
+            elements.push(&(0..count).map(|corner| first + 3 * corner).collect::<Vec<u32>>());
+        }
+        let rest: Vec<_> = (0..100).map(node).collect();
+        let body = Body::new(Dimension::Space, rest, vec![1.0; 100], elements, Solids::Ordered, None);
+        let alone = |element: usize| match body.kinds[element] {
+            ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => 0.0,
+            kind => volume_by_faces(kind, &body.elements[element], &body.rest),
+        };
+        let alone: Vec<_> = (0..body.elements.len()).map(alone).collect();
+        assert!(alone.iter().filter(|&&volume| volume != 0.0).count() > 40);
+        for set in Set::all() {
+            let mut volumes = vec![0.0; alone.len()];
+            set.run(Measure { body: &body, position: &body.rest, first: 0, volumes: &mut volumes });
+            assert_eq!(
+                volumes.iter().map(|v| v.to_bits()).collect::<Vec<_>>(),
+                alone.iter().map(|v| v.to_bits()).collect::<Vec<_>>(),
+                "{set:?}"
+            );
+        }
     }
 
     #[test]

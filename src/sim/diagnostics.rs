@@ -1,6 +1,7 @@
 //! The diagnostics: numbers that describe a state. One table says of each what it is called, its unit, what it means and
 //! how it is computed; files, strips, figures, goldens and the schema follow from it.
 
+use super::diagnose::is_turned_over;
 use super::model::Report;
 use super::snapshot::Placement;
 use super::state::Nodes;
@@ -14,14 +15,6 @@ use std::fmt;
 /// Something that is computed when it is first asked for.
 pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 
-/// The signed volumes of elements.
-pub(super) struct Volumes {
-    /// Whether each element has changed sign.
-    pub(super) turned_over: Vec<bool>,
-    /// That of the body (m³, in the plane m²).
-    pub(super) sum: f64,
-}
-
 /// What diagnostics are computed from.
 pub(super) struct Facts<'a> {
     /// Mass of each node (kg).
@@ -31,8 +24,11 @@ pub(super) struct Facts<'a> {
     pub(super) gravity: DVec3,
     /// What the model says of the state.
     pub(super) report: Lazy<'a, Report>,
-    pub(super) volumes: Lazy<'a, Volumes>,
-    /// Volume at rest (m³, in the plane m²).
+    /// Signed volume of each element (m³, in the plane m²).
+    pub(super) volumes: Lazy<'a, Vec<f64>>,
+    /// The same at rest.
+    pub(super) volumes_at_rest: &'a [f64],
+    /// Their sum.
     pub(super) volume_at_rest: f64,
     pub(super) placement: Lazy<'a, Placement>,
     /// Rest positions relative to their mean (m).
@@ -48,6 +44,11 @@ impl Facts<'_> {
             sum += of_node(mass, position, velocity);
         }
         sum
+    }
+
+    /// Whether each element has turned over.
+    pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
+        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
     }
 
     /// RMS distance of the nodes from the placement (m).
@@ -213,10 +214,10 @@ diagnostics! { facts:
 
     /// How many elements have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
-        facts.volumes.turned_over.iter().filter(|&&turned| turned).count();
+        facts.turned_over().filter(|&turned| turned).count();
 
     /// Total signed volume over the rest value; in the plane, area.
-    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.sum / facts.volume_at_rest;
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.iter().sum::<f64>() / facts.volume_at_rest;
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();

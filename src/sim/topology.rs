@@ -79,7 +79,7 @@ pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
 /// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
 ///
 /// A polygon is its own single face and has no entry here, nor has what no table can hold; see [`Elements`].
-fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
+pub(super) fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     match kind {
         ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
         ElementKind::Triangle => &[&[0, 1, 2]],

@@ -21,7 +21,7 @@ pub(in crate::sim) mod springs;
 mod tests;
 
 pub(in crate::sim) use drive::ByKernel;
-pub(in crate::sim) use lanes::Set;
+pub(in crate::sim) use lanes::{Lanes, MOST, Set, Work};
 
 use glam::DVec3;
 
