@@ -200,7 +200,7 @@ pub enum Next {
 impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With `whole_course`, which it must note down, all is simulated
     /// before the first.
-    /// States that do not fit into memory until then are kept in a file without a name in `folder`.
+    /// Their states wait in a file without a name in `folder`.
     pub fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
         let waiting = whole_course.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
         Self { runner, frames: frames.to_vec(), taken: 0, waiting }
@@ -209,7 +209,7 @@ impl<'a> Frames<'a> {
     /// Goes on, each run by `most_steps` at most.
     ///
     /// # Errors
-    /// If states that wait do not fit into memory and cannot be kept on disk.
+    /// If states that wait cannot be kept on disk.
     pub fn next(&mut self, most_steps: u64) -> io::Result<Next> {
         let Self { runner, frames, taken, waiting } = self;
         if let Some(waiting) = waiting
@@ -260,51 +260,38 @@ impl<'a> Frames<'a> {
     }
 }
 
-/// Pieces of bytes: the first in memory, those beyond a bound in a file without a name, which goes with it.
+/// Pieces of bytes in a file without a name, which goes with it.
 struct Store {
     folder: PathBuf,
-    memory: Vec<u8>,
+    /// Made for the first piece.
     file: Option<File>,
-    /// Where each piece ends in memory, or behind it in the file.
+    /// Where each piece ends.
     ends: Vec<u64>,
 }
 
 impl Store {
-    /// So much is kept in memory (bytes).
-    const MOST_MEMORY: usize = 64 << 20;
-
     fn new(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), memory: Vec::new(), file: None, ends: Vec::new() }
+        Self { folder: folder.to_owned(), file: None, ends: Vec::new() }
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let end = self.ends.last().copied().unwrap_or(0);
-        if self.file.is_none() && self.memory.len() + bytes.len() <= Self::MOST_MEMORY {
-            self.memory.extend_from_slice(bytes);
-        } else {
-            let file = match &mut self.file {
-                Some(file) => file,
-                None => self.file.insert(tempfile::tempfile_in(&self.folder)?),
-            };
-            file.seek(SeekFrom::Start(end - self.memory.len() as u64))?;
-            file.write_all(bytes)?;
-        }
+        let file = match &mut self.file {
+            Some(file) => file,
+            None => self.file.insert(tempfile::tempfile_in(&self.folder)?),
+        };
+        let end = file.seek(SeekFrom::End(0))?;
+        file.write_all(bytes)?;
         self.ends.push(end + bytes.len() as u64);
         Ok(())
     }
 
     fn get(&mut self, piece: usize) -> io::Result<Vec<u8>> {
         let (start, end) = (piece.checked_sub(1).map_or(0, |before| self.ends[before]), self.ends[piece]);
-        let in_memory = self.memory.len() as u64;
-        match &mut self.file {
-            Some(file) if start >= in_memory => {
-                let mut bytes = vec![0; (end - start) as usize];
-                file.seek(SeekFrom::Start(start - in_memory))?;
-                file.read_exact(&mut bytes)?;
-                Ok(bytes)
-            }
-            _ => Ok(self.memory[start as usize..end as usize].to_vec()),
-        }
+        let file = self.file.as_mut().ok_or(io::ErrorKind::NotFound)?;
+        let mut bytes = vec![0; (end - start) as usize];
+        file.seek(SeekFrom::Start(start))?;
+        file.read_exact(&mut bytes)?;
+        Ok(bytes)
     }
 }
 
@@ -376,7 +363,7 @@ mod tests {
             loop {
                 let [done, all] = frames.steps();
                 assert!(done <= all);
-                match frames.next(slice).expect("memory") {
+                match frames.next(slice).expect("a file") {
                     Next::Working => {}
                     Next::Course(history) => {
                         assert!(taken.is_empty());
@@ -399,11 +386,10 @@ mod tests {
     }
 
     #[test]
-    fn pieces_come_back_from_memory_and_from_disk() {
+    fn pieces_come_back() {
         let mut store = Store::new(&std::env::temp_dir());
-        let piece = |at: usize| vec![at as u8; [30 << 20, 30 << 20, 9 << 20, 0, 1 << 20][at]];
+        let piece = |at: usize| vec![at as u8; [300, 30, 9000, 0, 1][at]];
         (0..5).for_each(|at| store.put(&piece(at)).unwrap());
-        assert!(store.memory.len() <= Store::MOST_MEMORY && store.file.is_some());
         assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));
     }
 }

@@ -44,7 +44,8 @@ impl FrameWriter {
 
     /// The same, also handing each file to `tap` with the number of its frame; without a folder only that.
     pub(crate) fn start_with(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
-        let (queue, frames) = sync_channel(threads);
+        // Nothing waits in between: a frame goes to a thread that is free, or stays where it was drawn until one is.
+        let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
         let thread = |_| {
             let (folder, frames, tap) = (folder.map(Path::to_owned), Arc::clone(&frames), tap.clone());
