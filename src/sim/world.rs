@@ -259,6 +259,14 @@ impl World {
         self.report_with(&self.system.parts[part], &mut |_, _, _| {})
     }
 
+    /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must have been one of an Euler method,
+    /// with its nodes at `before` (m) when it began; empty for a model without rotations. It takes the rotations of the step
+    /// itself, and so costs much less than [`Self::report`].
+    pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
+        let part = &self.system.parts[0];
+        part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
+    }
+
     fn report_with(&self, part: &Part, share: &mut Share<'_>) -> Report {
         part.forces.report(part.nodes_of(self.state.nodes()), &self.state.memory.model[part.memory.clone()], share)
     }

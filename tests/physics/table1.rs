@@ -2,6 +2,7 @@
 
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
+use localshape::sim::model::Report;
 use localshape::sim::snapshot::Diagnostic;
 use localshape::table::table1::{Orientation, Protocol, ROWS, SOLVERS, Summary, Table1, measure};
 use localshape::table::{Spread, ratio};
@@ -127,8 +128,38 @@ fn more_starts_change_none() {
         let [_, _, sheet] = measure(&Protocol { orientations, duration: 0.1, ..SHORT }, &|_| true).unwrap().files();
         sheet.lines().map(str::to_owned).collect::<Vec<_>>()
     };
-    let (few, many) = (rows(2), rows(3));
-    assert!(few.iter().all(|row| many.contains(row)), "{few:#?}");
+    let many = rows(17);
+    for few in [rows(1), rows(3)] {
+        assert!(few.iter().all(|row| many.contains(row)), "{few:#?}");
+    }
+}
+
+/// Asked for before the step, and after it of the rotations that it left behind: the same bits.
+#[test]
+fn alpha_follows_from_what_a_step_leaves_behind() {
+    for rotation in ["arctangent", "symmetric", "exact", "vector-length", "linear-update"] {
+        let text = format!(
+            "gravity = [0, -9.8, 0]
+            time = {{ duration = 1, step = 0.006 }}
+            body = {{ lattice = {{ cells = [2, 1, 1], side = 0.1 }}, lowest = 0.1, rotation = {{ axis = [1, 2, 3], angle = 1 }} }}
+            obstacle = [{{ kind = 'floor', restitution = 1, friction = 0 }}]
+            run = [{{ name = 'one', kernel = 'reference', \
+                      model = {{ kind = 'shape-based', stiffness = 1e4, rotation = '{rotation}' }} }}]"
+        );
+        let scene = Scene::parse(&text, "alpha", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.world(0);
+        let mut largest = 0.0f64;
+        for _ in 0..100 {
+            let asked = world.report(0).residual(Report::ROTATION).expect("rotations");
+            let before = world.state().position.clone();
+            world.advance(1);
+            let left = world.residuals(&before);
+            assert_eq!(left.len(), 2);
+            assert_eq!(left.into_iter().fold(0.0, f64::max).to_bits(), asked.to_bits(), "{rotation}");
+            largest = largest.max(asked);
+        }
+        assert!(largest > 0.0, "{rotation}");
+    }
 }
 
 #[test]

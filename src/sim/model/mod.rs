@@ -183,6 +183,13 @@ pub trait ForceModel: Send + Sync {
     /// Energy and errors, as an evaluation of the forces with the same nodes and memory finds them. `share` is told of each
     /// element or spring in order.
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;
+
+    /// α of Eq. (18) of each element (rad/s²) in an evaluation of the forces with the nodes at `position` (m) that has led
+    /// to this memory; none for a model without rotations.
+    fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
+        let _ = (position, memory);
+        Vec::new()
+    }
 }
 
 /// Is told the number of an element or spring, its nodes, and the part of its energy (J) that is each node's.

@@ -184,6 +184,15 @@ impl Solver {
             Self::Linear => 9,
         }
     }
+
+    /// The rotation that is remembered.
+    fn matrix(self, memory: &[f64]) -> DMat3 {
+        match self {
+            Self::Plane => planar::matrix(DVec2::from_slice(memory)),
+            Self::Space => DMat3::from_quat(DQuat::from_slice(memory)),
+            Self::Linear => DMat3::from_cols_slice(memory),
+        }
+    }
 }
 
 impl ShapeBased {
@@ -198,22 +207,13 @@ impl ShapeBased {
     /// The rotation of an element from its last one, as read. `at_rest` is `Σ R0 rᵀ` (m²).
     fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
         match solver {
-            Solver::Plane => {
-                let found = planar::solve(at_rest, DVec2::from_slice(last));
-                found.write_to_slice(next);
-                planar::matrix(found)
-            }
-            Solver::Space => {
-                let found = self.follow(at_rest, DQuat::from_slice(last));
-                found.write_to_slice(next);
-                DMat3::from_quat(found)
-            }
+            Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
+            Solver::Space => self.follow(at_rest, DQuat::from_slice(last)).write_to_slice(next),
             Solver::Linear => {
-                let found = linear_update::follow(at_rest, DMat3::from_cols_slice(last), self.passes);
-                found.write_cols_to_slice(next);
-                found
+                linear_update::follow(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
             }
         }
+        solver.matrix(next)
     }
 
     /// The rotation of an element in space from its last one, as read.
@@ -285,6 +285,11 @@ impl Elements {
         Fit { centre, at_rest, turn: self.model.rotation(self.solver, at_rest, last, next) }
     }
 
+    /// α of an element with a rotation, for its `Σ R0 rᵀ` (m²).
+    fn residual(&self, element: usize, at_rest: DMat3, turn: DMat3) -> f64 {
+        angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element])
+    }
+
     /// Eq. (4) for one element: writes the force on each of its corners (N).
     #[doc(alias = "Eq. 4")]
     fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) {
@@ -352,7 +357,7 @@ impl ForceModel for Elements {
                 let squared = (at.position[node as usize] - centre - turn * rest).length_squared();
                 *share = 0.5 * self.model.stiffness * squared;
             }
-            alpha[0] = angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element]);
+            alpha[0] = self.residual(element, at_rest, turn);
         });
         for (element, nodes) in self.body.elements.iter().enumerate() {
             share(element, nodes, &shares[self.body.elements.range(element)]);
@@ -361,6 +366,15 @@ impl ForceModel for Elements {
         let energy = shares.iter().sum();
         let residual = alphas.into_iter().fold(0.0, f64::max);
         Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
+    }
+
+    fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
+        let residual = |element: usize| {
+            let (nodes, rest) = self.element(element);
+            let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
+            self.residual(element, at_rest, self.solver.matrix(self.of(element, memory)))
+        };
+        (0..self.body.elements.len()).map(residual).collect()
     }
 }
 
