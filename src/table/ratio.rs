@@ -197,8 +197,10 @@ impl Ratios {
         let mut text = format!(
             "<!-- {} -->\n\
             # Computation time of the shape model over that of mass-spring\n\n\
-            Whole steps of blocks of cubes on a floor, two passes of Eq. (15), both models vectorised (`kernel = \"fast\"`), {time} time of {threads} thread{} ({} {}). Medians \
-            of {rounds} rounds in which all models take turns, of ratios with their quartiles in parentheses. The paper \
+            Whole steps of blocks of cubes on a floor, {time} time of {threads} thread{} ({} {}). Both models are vectorised \
+            (`kernel = \"fast\"`): the shape model, with two passes of Eq. (15), by the fused kernel of lattices, mass-spring by \
+            the kernel of springs that repeat from node to node. Medians of {rounds} rounds in which all models take turns, \
+            of ratios with their quartiles in parentheses. The paper \
             says {PRINTED}, for a body, springs and a machine that it does not tell. These are times of one machine: \
             another one, or this one while it does something else, gives others. Springs that cubes share are \
             computed once.\n\n",
