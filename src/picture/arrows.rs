@@ -59,6 +59,7 @@ pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Col
         along: [along.x, along.y].map(narrow),
         colour,
         second: halo,
+        opacity: u8::MAX,
         shape: MarkShape::Arrow,
     }
 }
@@ -100,8 +101,7 @@ impl Arrows<'_> {
         });
         let arrows = farthest_first(ends.collect()).filter_map(|(opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
-            let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);
-            Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })
+            arrow(ends, self.size * self.thickness, self.colour, self.halo).faded(opacity * part)
         });
         marks.extend(arrows);
     }

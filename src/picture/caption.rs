@@ -1,7 +1,6 @@
 //! The words of a picture: names, clock, counts and numbers, and the lines between panels.
 
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
-use super::narrow::narrow;
 use super::palette::{Colour, LineStyle, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
@@ -135,9 +134,8 @@ impl Writer<'_> {
         let thickness = thickness * self.scale.line_factor;
         let mut piece = |from: f64, to: f64| {
             let thickness = thickness.round().max(1.0);
-            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness].map(narrow);
-            let shape = MarkShape::Filled;
-            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness];
+            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, colour));
         };
         if dash.is_empty() {
             return piece(0.0, length.round());
@@ -264,9 +262,8 @@ impl Writer<'_> {
             [first, top - 0.5 * (tick - thickness), thickness, tick],
             [last, top - 0.5 * (tick - thickness), thickness, tick],
         ] {
-            let rectangle = [x, y.round(), width, height].map(narrow);
-            let (colour, shape) = (self.palette.second_text, MarkShape::Filled);
-            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+            let rectangle = [x, y.round(), width, height];
+            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, self.palette.second_text));
         }
         let colour = self.palette.second_text;
         let baseline = room.top + lines.caption;
@@ -284,15 +281,7 @@ impl Writer<'_> {
         for place in &layout.panels {
             let [left, top, width, height] = place.viewport.map(f64::from);
             let height = height + place.strip.map_or(0.0, |strip| f64::from(strip[1] + strip[3]) - top - height);
-            let mut line = |rectangle: [f64; 4]| {
-                self.marks.push(Mark {
-                    rectangle: rectangle.map(narrow),
-                    along: Mark::UPRIGHT,
-                    colour: halved,
-                    second: halved,
-                    shape: MarkShape::Filled,
-                });
-            };
+            let mut line = |rectangle| self.marks.push(Mark::upright(rectangle, MarkShape::Filled, halved));
             // Beside strips it goes as far down as these.
             let above_bottom = if place.strip.is_some() { 0.0 } else { inset };
             if left > 0.0 && height > inset + above_bottom {

@@ -174,7 +174,7 @@ pub(super) fn wide(fonts: &Fonts, text: &str, unit: f64) -> f64 {
 }
 
 pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
-    Mark { rectangle: rectangle.map(narrow), along: Mark::UPRIGHT, colour, second: colour, shape: MarkShape::Filled }
+    Mark::upright(rectangle, MarkShape::Filled, colour)
 }
 
 /// A filled disc.

@@ -5,14 +5,12 @@ use super::Curve;
 use super::caption::Writer;
 use super::chart::{Chart, NUMBERS};
 use super::course::{Line, OWN};
-use super::layout::Scale;
+use super::layout::{CURVE_NAME, Scale};
 use super::narrow::narrow;
 use super::text::{Fonts, Weight};
 
-/// From the chart to the names: the mark of the present moment has room there. From one name to the next (px in the
-/// reference picture).
+/// From the chart to the names: the mark of the present moment has room there (px in the reference picture).
 const GAP: f64 = 14.0;
-pub(super) const APART: f64 = 15.0;
 /// Where there are more names than this, a sample of its line stands before each: its length, and the gap after it (px in
 /// the reference picture).
 const FEW: usize = 4;
@@ -78,8 +76,8 @@ impl Ends {
         let mut order = farthest(all, own, fitting(bottom - top, unit));
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
         let heights: Vec<_> = order.iter().map(|&(_, [_, y])| y).collect();
-        let half = 0.5 * APART * unit;
-        let places = spread(&heights, APART * unit, [top + half, bottom - half]);
+        let half = 0.5 * CURVE_NAME * unit;
+        let places = spread(&heights, CURVE_NAME * unit, [top + half, bottom - half]);
         let left = chart.right + GAP * unit;
         for (&(at, [x, y]), &place) in order.iter().zip(&places) {
             let line = &lines[at];
@@ -117,7 +115,7 @@ impl Ends {
 
 /// How many names fit above each other into a height (px).
 fn fitting(height: f64, unit: f64) -> usize {
-    (height / (APART * unit) + 1e-6) as usize
+    (height / (CURVE_NAME * unit) + 1e-6) as usize
 }
 
 /// So many ends of curves at most: an own one, and then by turns the one that is farthest above or below all before.

@@ -1,7 +1,6 @@
 //! Marks on nodes that a hand holds or drags: nothing where no hand is at work.
 
 use super::layout::{Rectangle, Scale};
-use super::narrow::narrow;
 use super::palette::Palette;
 use super::pointer::{Going, Pointers};
 use super::skin::Skin;
@@ -84,12 +83,7 @@ impl Hands<'_> {
             return;
         }
         let shape = if ringed { MarkShape::Hand } else { MarkShape::Pin };
-        marks.extend(shape.faint(opacity).map(|shape| Mark {
-            rectangle: [pixel[0] - radius, pixel[1] - radius, 2.0 * radius, 2.0 * radius].map(narrow),
-            along: Mark::UPRIGHT,
-            colour: self.palette.pointer,
-            second: self.palette.halo,
-            shape,
-        }));
+        let whole = Mark::around(pixel.into(), radius, shape, self.palette.pointer);
+        marks.extend(Mark { second: self.palette.halo, ..whole }.faded(opacity));
     }
 }

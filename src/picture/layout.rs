@@ -12,8 +12,6 @@
 //! caption
 //! ```
 
-use super::ends::APART;
-use super::strip::{MOST_OTHERS, NAMES_HEIGHT};
 use crate::look::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
@@ -56,6 +54,12 @@ pub(super) const LEAST_CHART: f64 = 14.0;
 const STRIP_SHARE: f64 = 0.34;
 const STRIP_SHARE_OF_MANY: f64 = 0.42;
 const MANY: usize = 5;
+/// Curves of more other runs than this are left out of strips: nobody could follow them, and they take time.
+pub(super) const MOST_OTHERS: usize = 15;
+/// From one name at the end of a curve to the next, and the height of the room for these names in strips of the usual
+/// height (px in the reference picture).
+pub(super) const CURVE_NAME: f64 = 15.0;
+const CURVE_NAMES: f64 = 86.0;
 
 /// Room above and below the body in a panel with and without words there (px in the reference picture).
 const WORDS_ABOVE: f64 = 95.0;
@@ -125,8 +129,8 @@ impl Layout {
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
         let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         // The names at the ends of curves have room above each other.
-        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * APART } else { 0.0 };
-        let strip_units = STRIP + (names - NAMES_HEIGHT).max(0.0);
+        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * CURVE_NAME } else { 0.0 };
+        let strip_units = STRIP + (names - CURVE_NAMES).max(0.0);
         let share = if runs < MANY { STRIP_SHARE } else { STRIP_SHARE_OF_MANY };
         let strip_height = |height: f64| match view.strip {
             Some(_) => {

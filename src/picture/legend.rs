@@ -2,10 +2,11 @@
 //! nothing.
 
 use super::arrows;
+use super::axis::{Axis, Kind};
 use super::caption::Writer;
+use super::chart::filled;
 use super::layout::Scale;
-use super::narrow::narrow;
-use super::number::{self, Ticks};
+use super::number;
 use super::palette::Colour;
 use super::text::Weight;
 use super::{Mark, MarkShape};
@@ -28,6 +29,8 @@ const LENGTHS: [f64; 2] = [190.0, 340.0];
 /// Numbers nearer to each other than this are thinned out (px in the reference picture).
 const NUMBERS_APART: f64 = 9.0;
 const TICK: f64 = 5.0;
+/// Ticks at the most.
+const MOST_TICKS: usize = 5;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
@@ -142,13 +145,13 @@ impl Legend {
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
         let &Bar { name, ramp, beyond, .. } = bar;
-        let mut ticks = Ticks::new(bar.range, bar.unit);
+        let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
         let wide = |text: &String| fonts.width(text, Weight::Regular, numbers);
-        let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
+        let widths: Vec<_> = axis.texts.iter().map(wide).collect();
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
-        let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
+        let unit_text = if axis.unit.is_empty() { String::new() } else { format!("({})", axis.unit) };
         let caption = 16.0 * unit;
         let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
         let named = writer.fonts.width(name, Weight::SemiBold, caption)
@@ -158,8 +161,8 @@ impl Legend {
         let free = right - left - named - gap - overhang;
         let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
         let room = widths.iter().sum::<f64>() + NUMBERS_APART * unit * widths.len() as f64;
-        if room > length && widths.len() == 5 {
-            ticks.halve();
+        if room > length && widths.len() == MOST_TICKS {
+            axis.halve();
         }
         let whole = named + gap + length;
         let centred = middle - whole / 2.0;
@@ -170,38 +173,31 @@ impl Legend {
         self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
         let bar_left = (left + named + gap).round();
         let rim = (unit * writer.scale.line_factor).round().max(1.0);
-        let mark = |rectangle: [f64; 4], colour, second, shape| Mark {
-            rectangle: rectangle.map(narrow),
-            along: Mark::UPRIGHT,
-            colour,
-            second,
-            shape,
-        };
         // Values beyond the scale: the bar goes on in a point.
         let cap = 0.8 * height;
         for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {
             let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];
             for (out, colour) in [(rim, palette.axis), (0.0, colour)] {
                 let [wide, high] = [cap + 1.6 * out, height + 2.0 * out];
-                let along = if end == 0 { [-1.0, 0.0] } else { Mark::UPRIGHT };
-                let y = if end == 0 { top + height + out } else { top - out };
-                let rectangle = [x, y, wide, high].map(narrow);
-                writer.marks.push(Mark { rectangle, along, colour, second: colour, shape: MarkShape::Point });
+                let (y, along) = if end == 0 { (top + height + out, [-1.0, 0.0]) } else { (top - out, Mark::UPRIGHT) };
+                let point = Mark::upright([x, y, wide, high], MarkShape::Point, colour);
+                writer.marks.push(Mark { along, ..point });
             }
         }
         let sides = |end: usize| if beyond[end] { 0.0 } else { rim };
         let framed = [bar_left - sides(0), top - rim, length + sides(0) + sides(1), height + 2.0 * rim];
-        writer.marks.push(mark(framed, palette.axis, palette.axis, MarkShape::Filled));
+        writer.marks.push(filled(framed, palette.axis));
         let pieces = ramp.len() - 1;
         let at = |piece: usize| bar_left + (length * piece as f64 / pieces as f64).round();
         for piece in 0..pieces {
             let rectangle = [at(piece), top, at(piece + 1) - at(piece), height];
-            writer.marks.push(mark(rectangle, ramp[piece], ramp[piece + 1], MarkShape::Blend));
+            let blend = Mark::upright(rectangle, MarkShape::Blend, ramp[piece]);
+            writer.marks.push(Mark { second: ramp[piece + 1], ..blend });
         }
-        for (&share, text) in ticks.places.iter().zip(&ticks.texts) {
-            let x = bar_left + share * length;
+        for (&tick, text) in axis.ticks.iter().zip(&axis.texts) {
+            let x = bar_left + axis.share(tick).clamp(0.0, 1.0) * length;
             let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
-            writer.marks.push(mark(line, palette.axis, palette.axis, MarkShape::Filled));
+            writer.marks.push(filled(line, palette.axis));
             let baseline = top + height + (TICK + 14.5) * unit;
             self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, baseline);
         }

@@ -48,7 +48,8 @@ pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Face, Fonts, Glyph, TextRun, Weight};
 
-use glam::{Mat4, Vec3};
+use glam::{DVec2, Mat4, Vec3};
+use narrow::narrow;
 
 /// Everything that a frame shows, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -367,6 +368,8 @@ pub struct Mark {
     pub colour: Colour,
     /// The colour of what is drawn on it.
     pub second: Colour,
+    /// Its opacity (of 255).
+    pub opacity: u8,
     /// What it looks like.
     pub shape: MarkShape,
 }
@@ -374,6 +377,24 @@ pub struct Mark {
 impl Mark {
     /// Along the width of a mark that is not turned.
     pub const UPRIGHT: [f32; 2] = [1.0, 0.0];
+
+    /// An opaque mark of one colour that is not turned: left, top, width and height (px).
+    fn upright([left, top, width, height]: [f64; 4], shape: MarkShape, colour: Colour) -> Self {
+        let rectangle = [left, top, width, height].map(narrow);
+        Self { rectangle, along: Self::UPRIGHT, colour, second: colour, opacity: u8::MAX, shape }
+    }
+
+    /// The same around a middle and as far as a radius (px).
+    fn around(middle: DVec2, radius: f64, shape: MarkShape, colour: Colour) -> Self {
+        let DVec2 { x, y } = middle;
+        Self::upright([x - radius, y - radius, 2.0 * radius, 2.0 * radius], shape, colour)
+    }
+
+    /// The mark with a part of its opacity, from 0 to 1; `None` if nothing of it would be seen.
+    fn faded(self, part: f64) -> Option<Self> {
+        let opacity = (f64::from(self.opacity) * part.clamp(0.0, 1.0)).round() as u8;
+        (opacity > 0).then_some(Self { opacity, ..self })
+    }
 }
 
 /// What a mark looks like.
@@ -406,34 +427,4 @@ pub enum MarkShape {
     Pin,
     /// A disc in a ring, both with a halo of the second colour.
     Hand,
-    /// An [`Self::Arrow`] of an opacity (of 255).
-    FaintArrow(u8),
-    /// A [`Self::Pin`] of an opacity (of 255).
-    FaintPin(u8),
-    /// A [`Self::Hand`] of an opacity (of 255).
-    FaintHand(u8),
-    /// A [`Self::Node`] of an opacity (of 255).
-    FaintNode(u8),
-    /// A [`Self::CounterClockwise`] of an opacity (of 255).
-    FaintCounterClockwise(u8),
-    /// A [`Self::Clockwise`] of an opacity (of 255).
-    FaintClockwise(u8),
-}
-
-impl MarkShape {
-    /// The same shape with a part of its opacity; `None` if nothing is left of it.
-    fn faint(self, part: f64) -> Option<Self> {
-        let opacity = (255.0 * part.clamp(0.0, 1.0)).round() as u8;
-        match self {
-            _ if opacity == 0 => None,
-            _ if opacity == 255 => Some(self),
-            Self::Arrow => Some(Self::FaintArrow(opacity)),
-            Self::Pin => Some(Self::FaintPin(opacity)),
-            Self::Hand => Some(Self::FaintHand(opacity)),
-            Self::Node => Some(Self::FaintNode(opacity)),
-            Self::CounterClockwise => Some(Self::FaintCounterClockwise(opacity)),
-            Self::Clockwise => Some(Self::FaintClockwise(opacity)),
-            _ => Some(self),
-        }
-    }
 }

@@ -103,8 +103,9 @@ impl Flat<'_> {
         let depth = reaches.fold(FLOOR_DEPTH * unit, f64::min).max(0.0);
         let mut mark = |[from, to]: [f64; 2], [above, below]: [f64; 2], colour, shape| {
             let corner = start + from * along - above * along.perp();
-            let rectangle = [corner.x, corner.y, to - from, above + below].map(narrow);
-            marks.push(Mark { rectangle, along: [along.x, along.y].map(narrow), colour, second: colour, shape });
+            let rectangle = [corner.x, corner.y, to - from, above + below];
+            let along = [along.x, along.y].map(narrow);
+            marks.push(Mark { along, ..Mark::upright(rectangle, shape, colour) });
         };
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
@@ -145,16 +146,10 @@ impl Flat<'_> {
             return;
         }
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);
-        let mark = |rectangle: [f64; 4], colour, shape| Mark {
-            rectangle: rectangle.map(narrow),
-            along: Mark::UPRIGHT,
-            colour,
-            second: colour,
-            shape,
-        };
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
-            marks.push(mark([left + margin, y, length, depth], self.palette.hairline, MarkShape::Fading));
+            let below = [left + margin, y, length, depth];
+            marks.push(Mark::upright(below, MarkShape::Fading, self.palette.hairline));
         }
         let pixels = self.position.iter().filter_map(|&point| self.lens.project(point)).map(|(pixel, _)| pixel);
         let lowest = pixels.clone().map(|pixel| pixel[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -167,7 +162,7 @@ impl Flat<'_> {
             let high = (high + room).min(left + width - margin);
             if high > low {
                 let depth = (SHADOW_DEPTH * unit).min(depth);
-                marks.push(mark([low, y, high - low, depth], self.palette.shadow, MarkShape::Shadow));
+                marks.push(Mark::upright([low, y, high - low, depth], MarkShape::Shadow, self.palette.shadow));
             }
         }
         if !has_floor {
@@ -175,7 +170,7 @@ impl Flat<'_> {
         }
         let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
         let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
-        marks.push(mark(line, self.palette.axis, MarkShape::Smooth));
+        marks.push(Mark::upright(line, MarkShape::Smooth, self.palette.axis));
     }
 
     /// Arrows that say which way round elements are, above the body.
@@ -207,8 +202,8 @@ impl Flat<'_> {
         let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
             let Some(pixel) = self.pixel(point) else { continue };
-            let colour = colours(node).unwrap_or(self.palette.node);
-            self.round(pixel, radius, colour, self.palette.edge, MarkShape::Node, marks);
+            let disc = Mark::around(pixel, radius, MarkShape::Node, colours(node).unwrap_or(self.palette.node));
+            self.add(Mark { second: self.palette.edge, ..disc }, pixel, radius, marks);
         }
     }
 
@@ -230,9 +225,10 @@ impl Flat<'_> {
         // Where there is less room it is smaller, so that it does not come at once when the camera draws near.
         let size = (room / (ROOMY * unit)).min(1.0);
         let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
-        if let Some(shape) = MarkShape::CounterClockwise.faint(grown.min(free)) {
-            let colour = self.palette.sign();
-            self.round(middle, size * RING[0] * unit, colour, colour, shape, marks);
+        let radius = size * RING[0] * unit;
+        let sign = Mark::around(middle, radius, MarkShape::CounterClockwise, self.palette.sign());
+        if let Some(sign) = sign.faded(grown.min(free)) {
+            self.add(sign, middle, radius, marks);
         }
     }
 
@@ -242,35 +238,23 @@ impl Flat<'_> {
         // A disc must not hide the element that it stands on.
         let size = (room / (0.55 * disc)).min(1.0);
         let grown = (size - SMALLEST_ALARM) / FADING_SIGN;
-        let [ground, sign] = [MarkShape::Node, MarkShape::Clockwise].map(|shape| shape.faint(grown));
-        if let (Some(ground), Some(sign)) = (ground, sign) {
-            let white = [255; 3];
-            self.round(middle, size * disc, white, white, ground, marks);
-            let colour = self.palette.alarm_on_white;
-            self.round(middle, size * ring, colour, colour, sign, marks);
+        let ground = (size * disc, MarkShape::Node, [255; 3]);
+        let sign = (size * ring, MarkShape::Clockwise, self.palette.alarm_on_white);
+        for (radius, shape, colour) in [ground, sign] {
+            if let Some(mark) = Mark::around(middle, radius, shape, colour).faded(grown) {
+                self.add(mark, middle, radius, marks);
+            }
         }
     }
 
-    /// A mark of a radius around a pixel.
-    fn round(
-        &self,
-        middle: DVec2,
-        radius: f64,
-        colour: Colour,
-        second: Colour,
-        shape: MarkShape,
-        marks: &mut Vec<Mark>,
-    ) {
-        // Nothing of one panel appears in its neighbour.
+    /// Adds a mark of a radius around a pixel (px), unless it would reach into a neighbouring panel.
+    fn add(&self, mark: Mark, middle: DVec2, radius: f64, marks: &mut Vec<Mark>) {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let inside = left + radius <= middle.x
             && middle.x <= left + width - radius
             && top + radius <= middle.y
             && middle.y <= top + height - radius;
-        if inside {
-            let rectangle = [middle.x - radius, middle.y - radius, 2.0 * radius, 2.0 * radius].map(narrow);
-            marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second, shape });
-        }
+        marks.extend(inside.then_some(mark));
     }
 
     fn pixel(&self, point: DVec3) -> Option<DVec2> {

@@ -69,6 +69,6 @@ impl Pointers<'_> {
         let ends = [tail, tail + way];
         let opacity = grown.min(inside(ends[0])).min(inside(ends[1]));
         let whole = arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo);
-        marks.extend(whole.shape.faint(opacity).map(|shape| Mark { shape, ..whole }));
+        marks.extend(whole.faded(opacity));
     }
 }

@@ -4,7 +4,9 @@
 //! The body is projected along many directions onto a grid of cells. One direction fills one bit of each cell, a row of
 //! cells is one machine word, and so a projected triangle costs one operation for each row it touches.
 
+use super::camera::{Framing, Lens};
 use super::narrow::narrow;
+use crate::look::Light;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -12,6 +14,9 @@ use std::ops::Range;
 pub const CELLS: usize = 128;
 /// Half the angle of the cone from which the key light comes (rad).
 const KEY_CONE: f64 = 0.12;
+/// How much steeper the key light falls for each distance of the camera that bodies have risen: the shadow stays in the
+/// panel.
+const KEY_STEEPENING: f64 = 8.0;
 /// How many directions stand for the key light and for the sky.
 const DIRECTIONS: [usize; 2] = [48, 96];
 /// Bodies of more triangles than this get fewer directions, or the shadow would take longer than everything else.
@@ -66,6 +71,15 @@ impl Plane {
         let along = DVec2::new(towards_light.dot(self.axes[0]), towards_light.dot(self.axes[1]));
         -along / self.normal.dot(towards_light)
     }
+}
+
+/// Unit vector towards the key light, which goes with a camera.
+pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
+    let towards_viewer = lens.right.cross(DVec3::Y);
+    let (left, towards) = libm::sincos(light.azimuth);
+    let level = towards * towards_viewer - left * lens.right;
+    let slope = libm::tan(light.elevation) + KEY_STEEPENING * framing.rise / framing.distance;
+    (level + slope * DVec3::Y).normalize()
 }
 
 /// A point by its place over a plane and its height above it.

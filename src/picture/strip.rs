@@ -6,7 +6,7 @@ use super::caption::Writer;
 use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
 use super::course::{self, Line, OWN};
 use super::ends::Ends;
-use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, Rectangle, Scale};
+use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, MOST_OTHERS, Rectangle, Scale};
 use super::text::Weight;
 use crate::history::History;
 use crate::scene::Scene;
@@ -19,8 +19,6 @@ const NAME_BASELINE: f64 = 13.0;
 const ABOVE: f64 = 26.0;
 /// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
-/// Where there are more other runs than this, they would only be a thicket, and take their time.
-pub(super) const MOST_OTHERS: usize = 15;
 /// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
 const OTHER: f64 = 1.4;
 const FAINT: f64 = 0.55;
@@ -30,8 +28,6 @@ const HALO: f64 = 2.2;
 /// at most (px in the reference picture).
 const NAMES: f64 = 0.4;
 const NAMES_ABOVE: f64 = 8.0;
-/// The height of the room for these names (px in the reference picture), in strips of the usual height.
-pub(super) const NAMES_HEIGHT: f64 = 86.0;
 
 /// What the strips of a scene show.
 #[derive(Debug)]

@@ -173,36 +173,27 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
 
 /// A mark that is no glyph, as the shader reads it.
 fn plain(mark: &picture::Mark) -> Mark {
-    let opacity = match mark.shape {
-        MarkShape::FaintArrow(opacity)
-        | MarkShape::FaintPin(opacity)
-        | MarkShape::FaintHand(opacity)
-        | MarkShape::FaintNode(opacity)
-        | MarkShape::FaintCounterClockwise(opacity)
-        | MarkShape::FaintClockwise(opacity) => opacity,
-        _ => 255,
-    };
     let [red, green, blue] = mark.colour;
     Mark {
         rectangle: mark.rectangle,
         along: mark.along,
-        colour: [red, green, blue, opacity],
+        colour: [red, green, blue, mark.opacity],
         second: opaque(mark.second),
         glyph: [0; 2],
         shape: match mark.shape {
             MarkShape::Filled => 0,
             MarkShape::Struck => 1,
-            MarkShape::Node | MarkShape::FaintNode(_) => 3,
-            MarkShape::CounterClockwise | MarkShape::FaintCounterClockwise(_) => 4,
-            MarkShape::Clockwise | MarkShape::FaintClockwise(_) => 5,
+            MarkShape::Node => 3,
+            MarkShape::CounterClockwise => 4,
+            MarkShape::Clockwise => 5,
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
-            MarkShape::Arrow | MarkShape::FaintArrow(_) => 9,
+            MarkShape::Arrow => 9,
             MarkShape::Blend => 10,
             MarkShape::Point => 11,
-            MarkShape::Pin | MarkShape::FaintPin(_) => 12,
-            MarkShape::Hand | MarkShape::FaintHand(_) => 13,
+            MarkShape::Pin => 12,
+            MarkShape::Hand => 13,
         },
     }
 }

@@ -64,6 +64,16 @@ fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
         && is_at(7, xy + z)
 }
 
+/// SI prefixes and their factors.
+const PREFIXES: [(f64, &str); 7] =
+    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+
+/// The SI prefix that leaves one to three digits before the point of a size, and its factor.
+pub fn prefix(size: f64) -> (f64, &'static str) {
+    // Rounding may leave a size a little below a power of a thousand.
+    PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
+}
+
 /// A number with so many significant digits.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)

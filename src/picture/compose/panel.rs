@@ -1,7 +1,6 @@
 //! One panel: its parts, one after the other.
 
 use super::Composer;
-use super::ground::key_light;
 use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
@@ -13,6 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
+use crate::picture::shadow::key_light;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;

@@ -238,7 +238,8 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
 
 /// The second line of a picture: what the model is made of, its stiffness and, if it has any, its damping.
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
-    let mut text = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
+    let (factor, prefix) = words::prefix(stiffness);
+    let mut text = format!("{parts}, k = {} {prefix}N/m", words::rounded(stiffness / factor, 3));
     if damping > 0.0 {
         let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
         text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
@@ -252,11 +253,4 @@ fn elements_in_words(body: &Body) -> String {
         [(count, name)] => format!("{count} {name}"),
         _ => format!("{} elements", body.elements.len()),
     }
-}
-
-/// A number of a unit with the prefix that leaves one to three digits before the point, such as `10 kN/m`.
-fn with_prefix(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
-    let (scale, prefix) = PREFIXES.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-3, "m"));
-    format!("{} {prefix}{unit}", words::rounded(value / scale, 3))
 }

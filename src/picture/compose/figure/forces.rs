@@ -435,11 +435,12 @@ impl<'a> Drawn<'a> {
         order.sort_by(|&a, &b| seen[a].total_cmp(&seen[b]));
         for &at in &order {
             let whole = arrow(arrows[at], scale.line(), own, palette.halo);
-            above.extend(whole.shape.faint(HIDDEN + (1.0 - HIDDEN) * seen[at]).map(|shape| Mark { shape, ..whole }));
+            above.extend(whole.faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
         }
         for (&at, &seen) in position.iter().zip(&seen) {
             if seen > 0.0 {
-                above.push(disc(self.pixel(at), NODE * scale.line(), palette.node, palette.edge));
+                let disc = Mark::around(self.pixel(at), NODE * scale.line(), MarkShape::Node, palette.node);
+                above.push(Mark { second: palette.edge, ..disc });
             }
         }
         if forces.numbers {
@@ -668,18 +669,8 @@ fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Mark {
     let along = (to - from).try_normalize().unwrap_or(DVec2::X);
     // The border of the mark is a pixel wide, half of it outside.
     let corner = from - 0.5 * along - 0.5 * (thickness + 1.0) * along.perp();
-    Mark {
-        rectangle: [corner.x, corner.y, from.distance(to) + 1.0, thickness + 1.0].map(narrow),
-        along: along.to_array().map(narrow),
-        colour,
-        second: colour,
-        shape: MarkShape::Smooth,
-    }
-}
-
-fn disc(at: DVec2, radius: f64, colour: Colour, rim: Colour) -> Mark {
-    let rectangle = [at.x - radius, at.y - radius, 2.0 * radius, 2.0 * radius].map(narrow);
-    Mark { rectangle, along: Mark::UPRIGHT, colour, second: rim, shape: MarkShape::Node }
+    let rectangle = [corner.x, corner.y, from.distance(to) + 1.0, thickness + 1.0];
+    Mark { along: along.to_array().map(narrow), ..Mark::upright(rectangle, MarkShape::Smooth, colour) }
 }
 
 #[cfg(test)]
