@@ -63,6 +63,11 @@ pub fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
 
+/// The smallest difference of two colours to anybody (CIEDE2000).
+pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
+    Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
+}
+
 /// A colour in CIELAB: lightness from 0 to 100, how red rather than green, how yellow rather than blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lab(pub [f64; 3]);

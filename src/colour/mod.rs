@@ -7,6 +7,7 @@ mod difference;
 mod oklab;
 mod typed;
 
+pub(crate) use difference::least_difference;
 pub use difference::{Lab, Sight, cie76, ciede2000, difference, lab, seen_by};
 pub use oklab::{Oklab, from_oklab, oklab};
 pub(crate) use typed::names;
@@ -37,6 +38,11 @@ pub fn luminance(colour: Colour) -> f64 {
     let [red, green, blue] = linear(colour);
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
+
+/// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
+pub(crate) const LEAST_CONTRAST: f64 = 4.5;
+/// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
+pub(crate) const LINE_CONTRAST: f64 = 3.0;
 
 /// The contrast of two colours, from 1 to 21 (WCAG 2.2). Words of the usual size need 4.5.
 pub fn contrast(one: Colour, other: Colour) -> f64 {

@@ -1,11 +1,11 @@
 //! What the scene looks like: colours, type, lines and margins.
 
 use super::file::{ShowFile, ViewFile};
-use super::palette::{LEAST_CONTRAST, LINE_CONTRAST, Palette};
+use super::palette::{Palette, Theme};
 use super::ramp::ramp;
 use super::typed::{BackgroundFile, ColoursFile};
-use super::view::{FloorStyle, FontFiles, Look, Theme};
-use crate::colour::{Colour, Sight, contrast, difference, readable, written};
+use super::view::{FloorStyle, FontFiles, Look};
+use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Sight, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
 
 /// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).

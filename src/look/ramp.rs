@@ -1,6 +1,7 @@
 //! The colours of scalar fields: named scales.
 
-use super::view::{ColourMap, Theme};
+use super::palette::Theme;
+use super::view::ColourMap;
 use crate::colour::{Colour, Oklab, from_oklab};
 use colorous::Gradient;
 

@@ -1,6 +1,6 @@
 //! What comes near the body in the course of a scene, so that the picture can show it.
 
-use super::framing::Around;
+use super::subject::Subject;
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -17,7 +17,7 @@ const PARTS: usize = 24;
 const MANY_KEYS: usize = 500;
 
 /// The points (m) of obstacles and grips that are at any time near the box around a body of a size (m).
-pub(crate) fn near(scene: &Around<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
+pub(crate) fn near(scene: &Subject<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
     let (low, high) = (low - NEAR * size, high + NEAR * size);
     let around = Neighbourhood { scene, size, middle: (low + high) / 2.0, corners: [low, high] };
     let mut points = Vec::new();
@@ -27,7 +27,7 @@ pub(crate) fn near(scene: &Around<'_>, [low, high]: [DVec3; 2], size: f64) -> Ve
 }
 
 struct Neighbourhood<'a> {
-    scene: &'a Around<'a>,
+    scene: &'a Subject<'a>,
     size: f64,
     middle: DVec3,
     corners: [DVec3; 2],

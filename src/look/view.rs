@@ -1,6 +1,6 @@
 //! How a scene is looked at, resolved.
 
-use super::palette::Palette;
+use super::palette::{Palette, Theme};
 use crate::sim::body::Dimension;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -273,17 +273,6 @@ pub struct StrainScale {
     pub map: ColourMap,
 }
 
-/// The colours of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Theme {
-    /// Near-white ground, for papers.
-    #[default]
-    Light,
-    /// Near-black ground, for talks.
-    Dark,
-}
-
 /// A perspective camera that looks at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -301,6 +290,23 @@ pub struct Camera {
     pub rise: f64,
     /// How it goes along with the bodies shown, alike in all panels.
     pub follow: Follow,
+}
+
+impl Camera {
+    /// Where it stands before it follows anything (m).
+    pub(crate) fn eye(&self) -> DVec3 {
+        let [_, _, towards] = axes(self.azimuth, self.elevation);
+        self.target + self.distance * towards
+    }
+}
+
+/// The unit vectors to the right of a camera, up, and towards it from the point looked at, by its azimuth and elevation
+/// (rad).
+pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
+    let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    [right, towards.cross(right), towards]
 }
 
 /// How a camera goes along with the bodies shown. What it does is a function of the frame alone, so that any frame can

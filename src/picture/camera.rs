@@ -2,7 +2,7 @@
 
 use super::layout;
 use super::narrow::narrow_row;
-use crate::look::{Camera, Follow, View};
+use crate::look::{Camera, Follow, View, axes};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
@@ -144,14 +144,12 @@ impl Lens {
             Dimension::Space => (camera.azimuth, camera.elevation),
             Dimension::Plane => (0.0, 0.0),
         };
-        let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
-        let towards = DVec3::new(across * level, rise, along * level);
-        let right = DVec3::new(along, 0.0, -across);
+        let [right, up, towards] = axes(azimuth, elevation);
         let orthographic = dimension == Dimension::Plane;
         Self {
             eye: framing.target + framing.distance * towards,
             right,
-            up: towards.cross(right),
+            up,
             forward: -towards,
             focal: if orthographic { slope / framing.distance } else { slope },
             centre,

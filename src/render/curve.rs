@@ -1,7 +1,7 @@
 //! Flat curves over the finished picture.
 
 use super::overlay::CanvasUniform;
-use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, uniform_entry};
+use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Curve, Picture};
 use bytemuck::{Pod, Zeroable};
@@ -45,11 +45,7 @@ impl Curves {
             shader: &module,
             entries: ["piece", "piece_colour"],
             groups: &[&layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Piece>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
+            vertices: &[Some(for_instances::<Piece>(&ATTRIBUTES))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target: ENCODED_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),

@@ -1,7 +1,7 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
 use super::panel::{Panels, is_visible, limit};
-use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, LineKind, Panel, Picture, Rectangle};
@@ -148,11 +148,7 @@ impl Way {
                 shader: &module,
                 entries: ["segment", fragment],
                 groups: &[&panels.layout, &layout],
-                vertices: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Segment>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &ATTRIBUTES,
-                })],
+                vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 target: LINE_FORMAT,
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),

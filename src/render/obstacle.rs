@@ -1,7 +1,10 @@
 //! Solid obstacles among the bodies, and transparent ones below and above them. Made when the first one is drawn.
 
 use super::panel::{Panels, is_visible, limit, linear};
-use super::pipeline::{BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{
+    BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader,
+    texture_entry,
+};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Pane, Picture, Rectangle};
@@ -101,7 +104,7 @@ impl Solids {
             shader: &module,
             entries: ["solid_corner", fragment],
             groups: &[&panels.layout],
-            vertices: &[Some(layout::<SolidVertex>(&SOLID, wgpu::VertexStepMode::Vertex))],
+            vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
             topology: wgpu::PrimitiveTopology::TriangleList,
             target: BODY_FORMAT,
             blend: None,
@@ -213,11 +216,11 @@ impl Slabs {
             recipe.build(gpu)
         };
         let pane = |fragment| {
-            let corners = layout::<PaneVertex>(&PANE, wgpu::VertexStepMode::Vertex);
+            let corners = for_vertices::<PaneVertex>(&PANE);
             build(["pane_corner", fragment], corners, wgpu::PrimitiveTopology::TriangleList)
         };
         let edge = |fragment| {
-            let pieces = layout::<EdgePiece>(&EDGE, wgpu::VertexStepMode::Instance);
+            let pieces = for_instances::<EdgePiece>(&EDGE);
             build(["edge_corner", fragment], pieces, wgpu::PrimitiveTopology::TriangleStrip)
         };
         Self {
@@ -315,8 +318,4 @@ fn add_fan(pane: &Pane, grid: glam::Vec3, corners: &mut Vec<PaneVertex>) {
             ..middle
         }));
     }
-}
-
-fn layout<T>(attributes: &[wgpu::VertexAttribute], step_mode: wgpu::VertexStepMode) -> wgpu::VertexBufferLayout<'_> {
-    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
 }

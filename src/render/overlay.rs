@@ -1,7 +1,7 @@
 //! Marks and words on top of everything.
 
 use super::glyphs::Glyphs;
-use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
+use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{self, Colour, Fonts, MarkShape, Picture, TextRun};
 use bytemuck::{Pod, Zeroable};
@@ -69,11 +69,7 @@ impl Overlay {
             shader: &module,
             entries: ["corner", "mark_colour"],
             groups: &[&layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Mark>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
+            vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target: ENCODED_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),

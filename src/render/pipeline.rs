@@ -69,6 +69,17 @@ impl Recipe<'_> {
     }
 }
 
+/// How elements of a type lie in a buffer that holds one for each vertex.
+pub(super) fn for_vertices<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    let step_mode = wgpu::VertexStepMode::Vertex;
+    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
+}
+
+/// How elements of a type lie in a buffer that holds one for each instance of a few vertices.
+pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
+}
+
 /// A shader from its parts, one behind the other.
 pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -1,15 +1,8 @@
-//! Whether a camera can see anything.
+//! Whether a camera stands inside a body.
 
-use super::view::Camera;
 use crate::sim::body::Body;
 use glam::DVec3;
 use std::f64::consts::PI;
-
-/// Where a camera stands at the start (m).
-pub(crate) fn eye(camera: &Camera) -> DVec3 {
-    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
-    camera.target + camera.distance * DVec3::new(across * level, rise, along * level)
-}
 
 /// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
 pub(crate) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
