@@ -1,5 +1,8 @@
-//! Colours as numbers: how bright they are, how they mix, how different they look, also to colour-blind eyes. Knows
-//! nothing of scenes and pictures.
+//! Colours as numbers: luminance, mixing, contrast and colour difference, also for colour-blind eyes. Independent of
+//! scenes and pictures.
+//!
+//! CIEDE2000 and Oklab are written out here because thresholds and GIF palettes need the same bits on every machine: the
+//! small crates for them compute in single precision, and `palette` with other constants and a library sine.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -24,7 +27,7 @@ pub fn linear(colour: Colour) -> [f64; 3] {
     })
 }
 
-/// Linear light as the nearest sRGB bytes; what no byte can say comes to the nearest end.
+/// Linear light as the nearest sRGB bytes; values out of range are clamped.
 pub fn encoded(linear: [f64; 3]) -> Colour {
     linear.map(|light| {
         let light = light.clamp(0.0, 1.0);
@@ -50,7 +53,7 @@ pub fn contrast(one: Colour, other: Colour) -> f64 {
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
-/// One colour on its way to another: itself at a share of 0, the other at 1, between them by the sRGB bytes.
+/// A mix of two colours, linear in their sRGB bytes: the first at a share of 0, the other at 1.
 pub fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
     std::array::from_fn(|at| {
         let [from, to] = [one[at], other[at]].map(f64::from);

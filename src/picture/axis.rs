@@ -3,7 +3,7 @@
 use super::number::{times_ten, with_minus};
 use crate::sim::words::{prefix, rounded};
 
-/// What an axis shows, and how it may be divided.
+/// What an axis shows, which decides how it is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     /// Time (s), from end to end and no further.
@@ -23,9 +23,9 @@ pub(super) struct Axis {
     pub(super) range: [f64; 2],
     /// The round numbers, rising.
     pub(super) ticks: Vec<f64>,
-    /// What stands there.
+    /// The text at each of them.
     pub(super) texts: Vec<String>,
-    /// The unit of what stands there, with its prefix.
+    /// The unit of these texts, with its prefix.
     pub(super) unit: String,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Axis {
 /// part, so that no curve runs along its border.
 const NEAR: f64 = 0.13;
 const BEYOND: f64 = 0.05;
-/// Units that have prefixes: `kkg m/s` is none.
+/// The units that take an SI prefix; `kkg m/s` would be wrong.
 const WITH_PREFIX: [&str; 3] = ["m", "m/s", "J"];
 
 impl Axis {
@@ -42,7 +42,7 @@ impl Axis {
     pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
-            // No one counts kiloseconds.
+            // Kiloseconds are not in use.
             Kind::Time if largest >= 1.0 => (1.0, ""),
             Kind::Time => prefix(largest),
             _ if WITH_PREFIX.contains(&unit) => prefix(largest),
@@ -52,7 +52,7 @@ impl Axis {
         let [low, high] = [low / factor, high / factor];
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
-            // Nothing ever happens.
+            // The value is constant.
             let (ticks, texts) = if low == 0.0 { (vec![0.0], vec!["0".to_owned()]) } else { Default::default() };
             return Self { range: [low * factor, low * factor + (low * factor).abs().max(1.0)], ticks, texts, unit };
         }
@@ -92,7 +92,7 @@ struct Division {
     range: [f64; 2],
     ticks: Vec<f64>,
     decimals: usize,
-    /// Ticks, and once more those that are ends.
+    /// The number of ticks, plus one for each end with a tick.
     worth: usize,
 }
 
@@ -104,7 +104,7 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         Kind::Time | Kind::Value => &[5.0, 2.0, 1.0],
         Kind::Colour => &[5.0, 2.5, 2.0, 1.0],
     };
-    // Of whole things there are no parts.
+    // Counts have no fractions.
     let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
     let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
     // On to the next round number where that is near, or not.

@@ -1,5 +1,4 @@
-//! What colours and arrows mean: one key for all panels, below them on ground of its own, so that it collides with
-//! nothing.
+//! The key of colours and arrows: one for all panels, below them, so that it overlaps nothing.
 
 use super::arrows;
 use super::axis::{Axis, Kind};
@@ -35,7 +34,7 @@ const MOST_TICKS: usize = 5;
 const APART: f64 = 44.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
-/// How far a thick one stays from the words above, which stand half a margin above the ground or higher (px in the
+/// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
 /// reference picture).
 const CLEAR: f64 = 2.0;
 
@@ -105,7 +104,7 @@ impl Legend {
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some([metres, length, size]) = arrow {
-            // However thick lines are, it stays on its ground and clear of the words above.
+            // However thick lines are, the arrow stays inside the key and clear of the text above.
             let free = middle - ground + 0.5 * margin - CLEAR * writer.scale.unit;
             let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
             let size = size.min(most.max(size / writer.scale.line_factor));
@@ -127,7 +126,7 @@ impl Legend {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
         writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
-        // The words stand still when the camera moves.
+        // The text does not move with the camera.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(
             writer,
@@ -173,7 +172,7 @@ impl Legend {
         self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
         let bar_left = (left + named + gap).round();
         let rim = (unit * writer.scale.line_factor).round().max(1.0);
-        // Values beyond the scale: the bar goes on in a point.
+        // Where values lie beyond the scale, the bar ends in a point.
         let cap = 0.8 * height;
         for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {
             let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];

@@ -1,4 +1,4 @@
-//! Numbers as a picture writes them: few digits, a unit that suits them, a minus that is one.
+//! Numbers as text: few digits, a suitable unit, a true minus sign.
 
 use crate::sim::words::{prefix, rounded};
 
@@ -33,8 +33,8 @@ fn decimals(seconds: f64) -> usize {
     text.split_once('.').filter(|_| plain).map_or(1, |(_, decimals)| decimals.len())
 }
 
-/// How moments (s) that stand beside each other are written: with equally many decimals from a second on, and zero like
-/// its neighbours.
+/// How times (s) that stand beside each other are written: with equally many decimals from a second on, and zero in the
+/// unit of its neighbours.
 pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> String {
     let times: Vec<_> = times.collect();
     let small = times.iter().all(|&time| time < 1.0) || times.iter().any(|&time| time > 0.0 && time < 1.0);

@@ -1,4 +1,4 @@
-//! The colours of scalar fields, which the scene's maps name.
+//! Looking up the colours of scalar fields.
 
 use crate::colour::Colour;
 use crate::look::ramp;

@@ -1,5 +1,5 @@
-//! The strip below a panel: a diagnostic of its run over the whole scene, the other runs faintly behind it, and the
-//! present moment. All strips of a picture have the same scales, and nothing in them moves but that moment.
+//! The strip below a panel: the time series of a diagnostic of its run, those of the other runs faintly behind it, and a
+//! mark at the present time. All strips of a picture have the same axes, and nothing in them moves but that mark.
 
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
@@ -33,7 +33,7 @@ const NAMES_ABOVE: f64 = 8.0;
 #[derive(Debug)]
 pub(super) struct Strips {
     diagnostic: Diagnostic,
-    /// What a reader calls it.
+    /// Its name in the picture.
     name: &'static str,
     /// The last time shown (s).
     end: f64,
@@ -48,7 +48,7 @@ impl Strips {
         let palette = &scene.view.look.palette;
         let line = |course| Line::new(diagnostic, course, scene, palette);
         let lines: Vec<_> = history.courses.iter().map(line).collect();
-        // Counts blow up to the number of elements at the most, and all of them are shown.
+        // Counts are bounded by the number of elements, so diverged runs are shown whole.
         let range = course::range(&lines, diagnostic != Diagnostic::TurnedOver);
         let name = course::name(diagnostic, scene);
         Self { diagnostic, name, end: history.end, range, lines }
@@ -140,7 +140,7 @@ impl Strips {
         let after = left + fonts.width(&name, Weight::SemiBold, size);
         writer.words.push(writer.fonts.lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
         if !note.is_empty() && fonts.width(note, Weight::Regular, size) <= left + room - after {
-            // What is shortened would lose its space, so it is all or nothing.
+            // Shortening would lose the space before it, so the note is written whole or not at all.
             writer.words.push(writer.fonts.lay_out(
                 note,
                 Weight::Regular,

@@ -1,4 +1,4 @@
-//! One square for each element, a row for each layer, so that one sees which elements have turned over.
+//! The tally: one square for each element, a row for each layer, with the turned-over elements marked.
 
 use super::layout::Scale;
 use super::palette::Palette;
@@ -12,7 +12,7 @@ const MOST_SQUARES: usize = 200;
 pub(super) const HEIGHT: f64 = 36.0;
 /// The widest tally (px in the reference picture).
 const WIDTH: f64 = 200.0;
-/// Squares smaller than this (px in the reference picture) say less than a bar.
+/// Squares smaller than this (px in the reference picture) would be less legible than a bar.
 const LEAST_SQUARE: f64 = 4.0;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];

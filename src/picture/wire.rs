@@ -37,7 +37,7 @@ const LONGEST_STEP: f64 = 0.05;
 #[derive(Debug, Default)]
 pub(super) struct Edges {
     /// Each edge once.
-    all: Vec<[u32; 2]>,
+    pub(super) all: Vec<[u32; 2]>,
     /// The edges of each element, and the nodes of those that have none.
     of_elements: Vec<Vec<[u32; 2]>>,
 }

@@ -14,7 +14,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/curve.wgsl");
 #[repr(C)]
 struct Piece {
     ends: [Vec2; 2],
-    /// Normals of the lines that part it from its neighbours, along the curve; zero at the ends of a curve.
+    /// Normals of the lines that separate it from its neighbours, along the curve; zero at the ends of a curve.
     joints: [Vec2; 2],
     colour: [u8; 4],
     /// Width, where in the pattern it begins, and how long the pattern is: 0 for a solid curve.
@@ -81,7 +81,7 @@ impl Curves {
     }
 }
 
-/// The pieces of a curve, each with what parts it from its neighbours.
+/// The pieces of a curve, each with the lines that separate it from its neighbours.
 fn pieces(curve: &Curve) -> Vec<Piece> {
     let mut points: Vec<Vec2> = curve.points.iter().copied().map(Vec2::from).collect();
     points.dedup();
@@ -89,7 +89,7 @@ fn pieces(curve: &Curve) -> Vec<Piece> {
         points.push(dot);
     }
     let way = |at: usize| (points[at + 1] - points[at]).normalize_or_zero();
-    // Halfway between the two directions; a curve that turns back by itself is not parted.
+    // Halfway between the two directions; none where a curve turns back on itself.
     let joint = |at: usize| match at {
         0 => Vec2::ZERO,
         at if at + 1 >= points.len() => Vec2::ZERO,

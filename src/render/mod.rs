@@ -53,7 +53,7 @@ fn alarm_shader(samples: u32) -> &'static str {
     if samples > 1 { ALARM_MULTISAMPLED_SHADER } else { ALARM_SINGLE_SHADER }
 }
 
-/// The part of shaders that knows where samples lie.
+/// The part of shaders with the positions of samples.
 fn samples_shader(samples: u32) -> &'static str {
     if samples > 1 { FOUR_SAMPLES_SHADER } else { ONE_SAMPLE_SHADER }
 }
@@ -194,7 +194,8 @@ impl Renderer {
         }
         let gpu = self.gpu.clone();
         let (places, needed) = panel::place(picture);
-        // Where nothing lies behind any surface, nobody asks for it but lines of turned-over elements without faces.
+        // What lies behind surfaces is drawn only where it is read: by clear surfaces, over turned-over elements, and by
+        // the lines of turned-over elements without faces.
         let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
         let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
@@ -313,7 +314,7 @@ impl Renderer {
     }
 }
 
-/// Nothing there: transparent, and infinitely far away.
+/// Empty: transparent, and infinitely far away.
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
 
 fn begin<'a>(

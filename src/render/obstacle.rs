@@ -1,4 +1,5 @@
-//! Solid obstacles among the bodies, and transparent ones below and above them. Made when the first one is drawn.
+//! Solid obstacles, drawn with the bodies, and transparent ones, drawn below and above them. The pipelines are made when
+//! they are first needed.
 
 use super::panel::{Panels, is_visible, limit, linear};
 use super::pipeline::{
@@ -24,7 +25,7 @@ struct SolidVertex {
     rim: [f32; 3],
     /// How far inside the outline it is (px).
     inward: f32,
-    /// How near the body is.
+    /// How much the body occludes the ambient light.
     near: f32,
 }
 
@@ -174,7 +175,7 @@ impl Solids {
     }
 }
 
-/// What is seen through in one picture.
+/// The transparent obstacles of one picture.
 #[derive(Debug)]
 pub(super) struct Slabs {
     /// Below and above the bodies.
@@ -234,7 +235,7 @@ impl Slabs {
         }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         let views = [(1, &bodies.depth), (2, &bodies.lines)];
         self.textures = Some(bind_textures(gpu, "pane", &self.layout, &views));

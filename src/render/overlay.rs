@@ -13,7 +13,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 /// size, and how many glyphs stand on each.
 const HALO: [(f32, u32); 2] = [(0.07, 8), (0.14, 16)];
 
-/// Whole pixels around a place, about evenly on a circle: what is read pixel by pixel is moved by pixels.
+/// Offsets of whole pixels, about evenly on a circle: glyphs are read pixel by pixel.
 fn ring(radius: f32, count: u32) -> impl Iterator<Item = [f32; 2]> {
     (0..count).map(move |at| {
         let (sine, cosine) = (at as f32 / count as f32 * std::f32::consts::TAU).sin_cos();

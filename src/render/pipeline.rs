@@ -1,4 +1,4 @@
-//! Building pipelines and bindings with few words.
+//! Short forms for making pipelines and bindings.
 
 use crate::gpu::Gpu;
 
@@ -13,7 +13,7 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What makes one pipeline different from another.
+/// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
     pub(super) shader: &'a wgpu::ShaderModule,

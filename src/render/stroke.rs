@@ -69,7 +69,7 @@ impl Strokes {
         }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         self.depth = bind_textures(gpu, "depth of bodies", &self.layout, &[(1, &bodies.depth)]);
     }

@@ -16,11 +16,11 @@ pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
     for_vertices::<Vertex>(&ATTRIBUTES)
 }
 
-/// What light knows of obstacles near a body, where there are none and where there are some.
+/// The part of the shader about the occlusion by obstacles near a body, without any and with some.
 const ALONE_SHADER: &str = include_str!("../../shaders/light_alone.wgsl");
 const AMONG_SHADER: &str = include_str!("../../shaders/light_among.wgsl");
 
-/// How many obstacles there are. A shader that knows it need not count, which saves drawing on a processor much time.
+/// The number of obstacles as a constant, so that the loop is unrolled: much faster with a software driver.
 const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
     "",
     "const OCCLUDERS = 1u;\n",
@@ -37,13 +37,13 @@ pub(super) fn parts(samples: u32, occluders: usize) -> [&'static str; 6] {
     [super::PANEL_SHADER, samples, alarm, COUNTS[occluders], obstacles, SHADER]
 }
 
-/// How many obstacles take light away from a body of a picture at the most.
+/// The largest number of obstacles near one of the bodies of a picture.
 pub(super) fn occluders(picture: &Picture) -> usize {
     let counts = picture.panels.iter().map(|panel| panel.obstacles.occluders.len());
     counts.max().unwrap_or(0).min(MOST_OCCLUDERS)
 }
 
-/// A thing for each number of obstacles near a body, made when it is first needed.
+/// One for each number of obstacles near a body, made when it is first needed.
 pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 
 /// The pipelines that draw surfaces: turned-over ones by themselves, and both sets.
@@ -68,7 +68,7 @@ pub(super) struct Colouring<'a> {
     pub(super) shades: Option<&'a wgpu::Buffer>,
 }
 
-/// What surfaces read of what lies behind them.
+/// The textures with what lies behind sound surfaces.
 pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
     [texture_entry(2, true, samples), texture_entry(3, false, samples)]
 }
@@ -146,7 +146,7 @@ impl Surfaces {
         self.indices.write(gpu, &indices);
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         let views = [(2, &bodies.alarm_depth), (3, &bodies.alarm_colour)];
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));

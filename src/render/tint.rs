@@ -100,7 +100,7 @@ impl Tint {
         }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         self.sound_group = sound_group(gpu, &self.sound_layout, &self.ramp, bodies);
     }

@@ -57,7 +57,7 @@ impl Staging<'_> {
         Occluder {
             centre: narrow_point((centre - self.site.origin) / self.site.side),
             half: narrow_point(half / self.site.side),
-            turn: turn.to_array().map(narrow),
+            rotation: turn.to_array().map(narrow),
             radius: narrow(radius / self.site.side),
             is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
         }
