@@ -1,8 +1,8 @@
 //! Colours as numbers: luminance, mixing, contrast and colour difference, also for colour-blind eyes. Independent of
 //! scenes and pictures.
 //!
-//! CIEDE2000 and Oklab are written out here because thresholds and GIF palettes need the same bits on every machine: the
-//! small crates for them compute in single precision, and `palette` with other constants and a library sine.
+//! CIEDE2000 and Oklab are written out here, 60 lines tested against published numbers: the small crates for them compute in
+//! single precision, and `palette` adds four crates and some 5 s to a clean build.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -23,8 +23,8 @@ const DISTANCE: f64 = 8.5;
 /// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
 const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 
-/// The camera of a scene: what is asked of it, and for the rest what shows the body and what comes near it. Elements may
-/// be drawn `apart`, in parts of their distance from the body's middle.
+/// The camera of a scene: as typed, and where nothing is typed so that it shows the body and what comes near it. Elements
+/// may be drawn `apart`, in parts of their distance from the body's middle.
 pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Subject<'_>) -> Camera {
     let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
     let (azimuth, elevation) = match dimension {
@@ -47,7 +47,7 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
     };
     match target {
         Some(target) => chosen.target = target,
-        // A camera that follows shows by itself how high a body is.
+        // A camera that follows shows the height of a body anyway.
         None if chosen.follow != Follow::Nothing => {}
         None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
     }
@@ -117,7 +117,7 @@ fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Sub
         return;
     }
     shown.extend(start.iter().flat_map(|&at| is_shown_at_start.then_some(at).into_iter().chain([at + drop])));
-    // Each distance shows another middle, but hardly.
+    // The middle depends a little on the distance, so iterate.
     for _ in 0..4 {
         let step = middle_of(camera, &shown, dimension);
         camera.target += step;

@@ -1,5 +1,5 @@
-//! What pictures look like: view, colours, fonts, scales, and where cameras stand. A scene keeps a [`View`] that has been
-//! made here of its `[view]` table and of the body, the models and the surroundings that it shows; nothing here draws.
+//! What pictures look like: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from its
+//! `[view]` table and from the body, models and surroundings that it shows. Nothing here draws.
 
 mod contrast;
 pub(crate) mod file;

@@ -1,4 +1,4 @@
-//! What comes near the body in the course of a scene, so that the picture can show it.
+//! The obstacles and grips that come near the body at any time of a scene, so that the camera can show them.
 
 use super::subject::Subject;
 use crate::sim::body::{Dimension, bounds};
@@ -6,8 +6,7 @@ use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use glam::DVec3;
 
-/// What is farther from the body than this (body sizes) moves no camera: bodies stay large however far away the
-/// obstacles come from.
+/// What is farther from the body than this (body sizes) does not affect the camera, so that bodies stay large.
 const NEAR: f64 = 1.25;
 /// Half the side of what is shown of a plate (body sizes).
 const PLATE: f64 = 0.85;
@@ -52,7 +51,7 @@ impl Neighbourhood<'_> {
         for time in times(&obstacle.motion, [0.0, self.scene.duration]) {
             let pose = obstacle.pose(time);
             outermost.iter().for_each(|&point| self.add(pose.apply(pivot, point), points));
-            // Of something large the part that is nearest may be all that there is to see.
+            // Of a large obstacle only the nearest part may be in the picture.
             let nearest = nearest(&obstacle.shape, pose.undo(pivot, self.middle));
             nearest.into_iter().for_each(|point| self.add(pose.apply(pivot, point), points));
         }

@@ -1,4 +1,4 @@
-//! What a `[view]` table means, for the body, the runs and the surroundings that it shows.
+//! Resolves a `[view]` table for the body, the runs and the surroundings that it shows.
 
 use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};

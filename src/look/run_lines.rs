@@ -3,7 +3,7 @@
 use super::palette::Palette;
 use crate::colour::{Colour, LINE_CONTRAST, least_difference, readable};
 
-/// How different the colours of two runs look at the least, to anybody (CIEDE2000).
+/// The least difference of the colours of two runs, to anybody (CIEDE2000).
 const RUNS_APART: f64 = 15.0;
 /// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They tell
 /// runs apart where colours do not: in grey print, and where there are more runs than colours.
@@ -18,8 +18,7 @@ const DASHES: [&[f64]; 8] = [
     &[4.0, 8.0],
 ];
 
-/// What the line looks like that stands for a run: curves in charts, and samples of them beside names. Its arrows have
-/// the same colour.
+/// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStyle {
     /// Its colour.

@@ -1,4 +1,4 @@
-//! The colours of a scene: those that it gives take the place of the theme's, and whatever belongs to them follows.
+//! The colours of a scene: those that it gives replace the theme's, and related colours follow them.
 
 use super::palette::{Palette, Theme};
 use super::typed::{ColoursFile, TypedColour};
@@ -6,7 +6,7 @@ use crate::colour::{
     Colour, LEAST_CONTRAST, LINE_CONTRAST, Oklab, best_of, contrast, from_oklab, mixed, oklab, readable,
 };
 
-/// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
+/// The contrast of text whose colour is chosen here, with some reserve for a floor below it.
 const GOOD_CONTRAST: f64 = 5.0;
 /// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
 const DARK_ALARM: f64 = 0.48;
@@ -21,7 +21,7 @@ impl Palette {
         if own >= LEAST_CONTRAST || own >= others { theme } else { other }
     }
 
-    /// The colours of a theme with those that a scene gives, and all that belongs to these.
+    /// The colours of a theme with those that a scene gives, and with related colours that follow these.
     pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &ColoursFile) -> Self {
         let theme = Self::of(theme);
         let mut own = theme;
@@ -36,7 +36,7 @@ impl Palette {
         let typed = |role: &Option<TypedColour>| role.as_ref().map(|typed| typed.0);
         own.text = typed(&given.text).unwrap_or(own.text);
         if own.text != theme.text || own.background != theme.background {
-            own.follow_text(&theme);
+            own.set_secondary_colours(&theme);
         }
         if let Some(body) = typed(&given.body) {
             own.sound = body;
@@ -88,9 +88,9 @@ impl Palette {
         own
     }
 
-    /// What is written and ruled besides names and numbers stands between the text and the background, as far from
-    /// each as in the theme; words remain readable.
-    fn follow_text(&mut self, theme: &Self) {
+    /// Sets the colours of secondary text and of lines: between the text and the background, as far from each as in the
+    /// theme, and legible.
+    fn set_secondary_colours(&mut self, theme: &Self) {
         let (text, ground) = (self.text, self.background);
         let between = |colour: Colour| mixed(text, ground, share(theme.text, theme.background, colour));
         let least = LEAST_CONTRAST.min(contrast(text, ground));
@@ -102,13 +102,13 @@ impl Palette {
     }
 }
 
-/// What is to a colour of the scene as another colour of a theme is to that colour's counterpart there: as much lighter
-/// or darker, and as much more or less colourful.
+/// A colour related to one of the scene as `other` is to `counterpart` in the theme: as much lighter or darker, and as much
+/// more or less colourful.
 fn like(own: Colour, counterpart: Colour, other: Colour) -> Colour {
     let [own, counterpart, other] = [own, counterpart, other].map(oklab);
     let Oklab([lightness, a, b]) = own;
     let lightness = (lightness + other.0[0] - counterpart.0[0]).clamp(0.0, 1.0);
-    // Greys have hardly any colour to compare with.
+    // The chroma of greys is nearly zero.
     let times = ((other.chroma() + 0.01) / (counterpart.chroma() + 0.01)).min(1.5);
     from_oklab(Oklab([lightness, times * a, times * b]))
 }
@@ -122,7 +122,7 @@ fn hatch(alarm: Colour, theme: &Palette) -> Colour {
     like(alarm, theme.alarm, theme.alarm_line)
 }
 
-/// The contrast of black or white, whichever has more, with a ground; never less than 4.58.
+/// The contrast of black or white, whichever is larger, with a ground; never less than 4.58.
 fn most_contrast(ground: Colour) -> f64 {
     contrast([0; 3], ground).max(contrast([255; 3], ground))
 }

@@ -1,4 +1,4 @@
-//! What is looked at: a body, its runs and what is around it.
+//! The subject of a view: a body, its runs and what is around it.
 
 use crate::sim::body::{Body, bounds};
 use crate::sim::contact::{self, Obstacle};
@@ -9,7 +9,7 @@ use crate::sim::state::State;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// What the parts of a view that a scene leaves out follow from.
+/// What default values of a view depend on.
 pub(crate) struct Subject<'a> {
     pub(crate) body: &'a Body,
     pub(crate) initial: &'a State,
@@ -27,7 +27,7 @@ pub(crate) struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// The largest value of a field that the scene lets expect.
+    /// The largest expected value of a field in the scene.
     pub(super) fn largest(&self, field: Field) -> f64 {
         /// The strain, and the displacement in edges of an element, that count as large.
         const LARGE: f64 = 0.5;
@@ -46,7 +46,7 @@ impl Subject<'_> {
                 let fall = (2.0 * self.gravity.length() * drop).sqrt();
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
-                // A body that nothing moves swings by itself at the most.
+                // A body that nothing else moves swings at its own frequency.
                 let periods = self.models.iter().map(|model| model.shortest_period(self.body));
                 let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
                 if fastest > 0.0 { fastest } else { swing }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// What it looks like: colours, type, lines and margins.
+    /// Colours, type, lines and margins.
     pub look: Look,
     /// From where; the same for all panels.
     pub camera: Camera,
@@ -25,7 +25,7 @@ pub struct View {
     pub columns: usize,
     /// What is drawn of the body.
     pub visible: Visible,
-    /// What its surface is coloured by, if not by what it is.
+    /// The field that colours its surface, if any.
     pub colour: Option<ColourScale>,
     /// How many times longer than the displacements their arrows are drawn.
     pub arrow_scale: f64,
@@ -211,7 +211,7 @@ pub enum ColourMap {
     PurpleGreen,
 }
 
-/// What a picture looks like besides what it shows: colours, type, lines and margins.
+/// The appearance of a picture apart from its content: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// What the colours come from: the theme asked for, unless its text could not be read on the background.
@@ -257,7 +257,7 @@ pub struct FontFiles {
 
 impl fmt::Debug for FontFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Millions of bytes tell nobody anything.
+        // Their lengths instead of millions of bytes.
         let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
         let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
         f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()

@@ -1,4 +1,4 @@
-//! Marks on nodes that a hand holds or drags: nothing where no hand is at work.
+//! Marks on nodes that grips hold or drag.
 
 use super::layout::{Rectangle, Scale};
 use super::palette::Palette;
@@ -13,7 +13,7 @@ use glam::DVec3;
 /// in the plane, where nodes are discs.
 const PIN: [f64; 2] = [6.5, 9.0];
 const HAND: [f64; 2] = [9.5, 12.0];
-/// Of more nodes than this that are dragged together, the arrow says enough: they are marked as if they were held.
+/// More nodes than this that are dragged together are marked like held ones; the arrow shows the motion.
 const FEW: usize = 4;
 /// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
 const SHARE: f64 = 0.45;
@@ -64,7 +64,7 @@ impl Hands<'_> {
         }
     }
 
-    /// How the middle of what a hand drags goes.
+    /// The motion of the middle of dragged nodes.
     fn going(&self, grip: &Grip) -> Going {
         let half = 0.25 * self.frame;
         let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;

@@ -1,5 +1,4 @@
-//! What bodies in the plane have besides their surface: nodes, arrows that say which way round elements are, and a
-//! floor seen from its side.
+//! Marks of bodies in the plane: nodes, ring arrows for the orientation of elements, and floors seen from the side.
 
 use super::camera::Lens;
 use super::ears::Ears;
@@ -45,8 +44,8 @@ const WALL_MARGIN: f64 = 4.0;
 /// Depth of the soft shadow on the floor (px in the reference picture).
 const SHADOW_DEPTH: f64 = 16.0;
 
-/// A pixel, and how far it is from the sides around it (px).
-type Place = (DVec2, f64);
+/// The centre and radius of a circle inside a polygon (px).
+type Circle = (DVec2, f64);
 
 /// One panel in the plane.
 pub(super) struct Flat<'a> {
@@ -89,7 +88,7 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let mut clear = self.clear.map(f64::from);
         if normal.y.abs() < STEEP {
-            // Beside the words there is room for walls, too.
+            // Walls may stand beside the text.
             (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
         }
         let Some([from, to]) = within(start, along, clear) else { return };
@@ -126,8 +125,8 @@ impl Flat<'_> {
         mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
     }
 
-    /// How far a level floor is drawn below its place (px), so that it is sharp as long as neither it nor the camera
-    /// moves. Always as far: what moves shall move evenly.
+    /// The offset at which a level floor is drawn (px), so that it lies on whole pixels while neither it nor the camera
+    /// moves. It is the same in all frames, so that motion stays even.
     fn alignment(&self, obstacle: &Obstacle) -> f64 {
         let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL);
         let pixel = start.and_then(|(_, level)| self.still.project(DVec3::new(self.still.eye.x, level, 0.0)));
@@ -140,7 +139,7 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (sharpened(pixel[1] + alignment), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
-        // Below the captions it would underline them.
+        // Below the captions it would look like an underline.
         let [_, clear, _, room] = self.clear.map(f64::from);
         if y < top || y > clear + room || length <= 0.0 {
             return;
@@ -173,7 +172,7 @@ impl Flat<'_> {
         marks.push(Mark::upright(line, MarkShape::Smooth, self.palette.axis));
     }
 
-    /// Arrows that say which way round elements are, above the body.
+    /// Ring arrows for the orientation of elements, above the body.
     pub(super) fn signs(&self, marks: &mut Vec<Mark>) {
         if self.body.elements.len() > MOST_SIGNS || self.position.is_empty() {
             return;
@@ -208,21 +207,21 @@ impl Flat<'_> {
     }
 
     /// Where an element's arrow stands: in the roomiest of its triangles if it is not convex.
-    fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Place {
+    fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Circle {
         let Some(ears) = self.ears.of(nodes) else { return roomiest(corners) };
         let places = ears.iter().map(|ear| roomiest(&ear.map(|at| corners[at as usize])));
         places.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((DVec2::ZERO, 0.0))
     }
 
     /// The arrow of a sound element, unless a turned-over one covers it.
-    fn sound_arrow(&self, (middle, room): Place, turned_over: &[(Vec<DVec2>, Place)], marks: &mut Vec<Mark>) {
+    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
-        // Neither one that lies over it nor the disc of its arrow.
-        let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
+        // The distance to any such element and to the disc of its arrow.
+        let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Circle)| {
             outside(polygon, middle).min(disc.distance(middle) - (RING[0] + RING[1]) * unit)
         };
         let free = turned_over.iter().map(beside).fold(f64::INFINITY, f64::min) / (FADING_BESIDE * unit);
-        // Where there is less room it is smaller, so that it does not come at once when the camera draws near.
+        // Where there is less room it is smaller, so that it grows gradually as the camera draws near.
         let size = (room / (ROOMY * unit)).min(1.0);
         let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
         let radius = size * RING[0] * unit;
@@ -233,7 +232,7 @@ impl Flat<'_> {
     }
 
     /// The arrow of a turned-over element, on a disc of its own.
-    fn alarm_arrow(&self, (middle, room): Place, marks: &mut Vec<Mark>) {
+    fn alarm_arrow(&self, (middle, room): Circle, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
         // A disc must not hide the element that it stands on.
         let size = (room / (0.55 * disc)).min(1.0);
@@ -262,7 +261,7 @@ impl Flat<'_> {
     }
 }
 
-/// A place near one (px) that moves as steadily but stays longer where a line is sharp: on the borders of pixels.
+/// A place near a given one (px), attracted by the borders of pixels, where a line is sharp.
 fn sharpened(place: f64) -> f64 {
     place - libm::sin(TAU * place) / TAU
 }
@@ -314,7 +313,7 @@ fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
 }
 
 /// The point among a few inside a polygon that is farthest from all its sides, and how far it is.
-fn roomiest(corners: &[DVec2]) -> Place {
+fn roomiest(corners: &[DVec2]) -> Circle {
     let centroid = corners.iter().sum::<DVec2>() / corners.len() as f64;
     let next = corners.iter().cycle().skip(1);
     let room = corners

@@ -4,7 +4,7 @@ use crate::colour::Colour;
 use crate::look::ramp;
 pub(super) use crate::look::ramp::ramp;
 
-/// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
+/// The number of colours of a scale; linear interpolation between them is visually exact.
 pub const SHADES: usize = ramp::SHADES;
 
 /// The colour of a place on a scale, from 0 to 1.
