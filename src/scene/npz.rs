@@ -3,7 +3,6 @@
 //! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
 //! only with what is really there.
 
-use crate::reading::words::size;
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
 use std::fs::File;
@@ -273,11 +272,6 @@ impl Array {
     /// Length of the numbers (bytes), if 64 bits can say it.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))
-    }
-
-    /// The length of the numbers in words.
-    pub(crate) fn size_in_words(&self) -> String {
-        size(self.bytes().unwrap_or(u64::MAX).into())
     }
 
     /// The shape as NumPy writes it.

@@ -4,7 +4,6 @@
 
 pub mod alike;
 pub mod body;
-pub mod census;
 pub mod contact;
 pub mod diagnose;
 pub mod diagnostics;

@@ -3,7 +3,6 @@
 use super::vector;
 use crate::reading::beside::{missing, similar};
 use crate::reading::report::{Report, Way, written};
-use crate::reading::words::size;
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
@@ -138,7 +137,7 @@ impl Lists {
             }
         };
         let before = report.total();
-        let mut reader = Reader { npz, place: Place::File(name.to_owned()), limits, left: limits.memory, report };
+        let mut reader = Reader { npz, place: Place::File(name.to_owned()), limits, report };
         let lists = reader.lists();
         (report.total() == before).then_some(lists).flatten()
     }
@@ -205,8 +204,6 @@ struct Reader<'a, 't> {
     npz: Npz,
     place: Place,
     limits: &'a Limits,
-    /// What may still be read (bytes).
-    left: u64,
     report: &'a mut Report<'t>,
 }
 
@@ -233,15 +230,7 @@ impl Reader<'_, '_> {
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
-            [rows, 2 | 3] => {
-                if rows > self.limits.nodes {
-                    let (rows, most) = (count(rows.into()), count(self.limits.nodes.into()));
-                    let message = format!("`{}` has {rows} nodes; the limit is {most}", self.place.name("nodes", &[]));
-                    self.tell("nodes", &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
-                    return None;
-                }
-                self.numbers("nodes", &array)
-            }
+            [_, 2 | 3] => self.numbers("nodes", &array),
             _ => {
                 self.wrong_shape("nodes", &array, "one row for each node with 2 or 3 coordinates");
                 None
@@ -295,16 +284,21 @@ impl Reader<'_, '_> {
         self.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
     }
 
-    /// The numbers of an array with the length of its rows, unless all arrays together are too large.
+    /// The numbers of an array with the length of its rows, unless it is too large.
     fn numbers(&mut self, key: &str, array: &Array) -> Option<(u64, Numbers)> {
-        let bytes = array.bytes().unwrap_or(u64::MAX);
-        if bytes > self.left {
-            let (needed, most) = (array.size_in_words(), size(self.limits.memory.into()));
-            let message = format!("`{}` takes {needed}; the limit of all arrays is {most}", self.place.name(key, &[]));
+        let all: u64 = array.shape.iter().product();
+        let (length, limit, what) = match key {
+            "elements" | "faces" => (all, self.limits.corners, "entries"),
+            "springs" => (array.shape[0], self.limits.springs, "springs"),
+            "nodes" => (array.shape[0], self.limits.nodes, "nodes"),
+            _ => (array.shape[0], self.limits.nodes, "rows"),
+        };
+        if length > limit {
+            let (name, length, limit) = (self.place.name(key, &[]), count(length.into()), count(limit.into()));
+            let message = format!("`{name}` has {length} {what}; the limit is {limit}");
             self.tell(key, &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
             return None;
         }
-        self.left -= bytes;
         match self.npz.numbers(array) {
             Ok(numbers) => Some((array.shape.get(1).copied().unwrap_or(1), numbers)),
             Err(message) => {

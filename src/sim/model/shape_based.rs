@@ -9,9 +9,8 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, Share, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
-use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
 use crate::sim::state::Nodes;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -124,12 +123,6 @@ impl TypedModel for Parameters {
             }),
             damping_of: self.damping_of.unwrap_or_default(),
         }))
-    }
-
-    fn needs(&self, census: &Census) -> Needs {
-        /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
-        const CORNER: u128 = 70;
-        Needs { working: census.corners().saturating_mul(CORNER), ..Needs::default() }
     }
 }
 
