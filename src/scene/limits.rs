@@ -127,7 +127,8 @@ mod tests {
     use super::*;
 
     fn runs<const N: usize>(models: [&str; N]) -> Vec<Option<RunFile>> {
-        let run = |model| toml::from_str(&format!("name = 'a'\nmodel = {{ kind = {model}, stiffness = 1e4 }}")).unwrap();
+        let run =
+            |model| toml::from_str(&format!("name = 'a'\nmodel = {{ kind = {model}, stiffness = 1e4 }}")).unwrap();
         models.map(|model| Some(run(model))).into()
     }
 

@@ -166,7 +166,7 @@ fn listed(
         ("positions", lists.positions.as_ref().map(Vec::len)),
         ("velocities", lists.velocities.as_ref().map(Vec::len)),
     ] {
-        length.into_iter().for_each(|length| check_count(&lists.place, key, length, count, report));
+        length.into_iter().for_each(|length| check_count(&lists.source, key, length, count, report));
     }
     if file.file.is_some() {
         check_exclusive(&lists, lists.masses.is_some() && file.mass.is_some(), "mass", "masses", report);

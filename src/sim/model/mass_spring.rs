@@ -206,7 +206,10 @@ mod tests {
             for springs in named {
                 let typed = Parameters { stiffness: 1.0, damping: None, damping_ratio: None, springs: Some(springs) };
                 let made = body.topology().springs(springs).len() as u128;
-                assert!(made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None), "{dimension:?}, {nodes} nodes, {springs:?}: {made}");
+                assert!(
+                    made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None),
+                    "{dimension:?}, {nodes} nodes, {springs:?}: {made}"
+                );
             }
         }
     }
