@@ -8,6 +8,7 @@ pub mod contact;
 pub mod diagnose;
 pub mod diagnostics;
 mod dynamics;
+pub mod element;
 pub mod field;
 pub mod grip;
 pub mod hull;

@@ -69,7 +69,7 @@ mod tests {
     use crate::sim::body::Solids;
     use crate::sim::body::{Body, Dimension, ElementKind, bounds};
     use crate::sim::diagnose::volume_by_faces;
-    use crate::sim::topology::kind;
+    use crate::sim::element::kind;
     use glam::DVec3;
     use std::collections::BTreeMap;
 
@@ -163,7 +163,7 @@ mod tests {
             let count = nodes.len();
             if typed.cells.len() == 2 {
                 // Every side that only one element has lies on the outline.
-                let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::topology::around).collect();
+                let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::element::around).collect();
                 sides.sort_unstable();
                 assert!(sides.windows(2).all(|two| two[0] != two[1]), "{typed:?}");
                 for &[a, b] in sides.iter().filter(|&&[a, b]| sides.binary_search(&[b, a]).is_err()) {

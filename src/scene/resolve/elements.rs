@@ -6,7 +6,7 @@ use crate::reading::words::{count, list};
 use crate::sim::alike::Alike;
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
-use crate::sim::topology;
+use crate::sim::element::kind;
 use glam::DVec3;
 
 /// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
@@ -77,7 +77,7 @@ impl Lists {
             let point = point(low, self.dimension);
             return tell(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
         }
-        let kind = topology::kind(self.dimension, solids, element.len());
+        let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
             // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
             ElementKind::Segment => return,
