@@ -1,6 +1,7 @@
 //! Round numbers along the sides of a chart.
 
-use super::number::{prefix, times_ten, with_minus};
+use super::number::{times_ten, with_minus};
+use crate::sim::words::prefix;
 use crate::sim::words::rounded;
 
 /// What an axis shows, and how it may be divided.

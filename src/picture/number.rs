@@ -1,6 +1,6 @@
 //! Numbers as a picture writes them: few digits, a unit that suits them, a minus that is one.
 
-use crate::sim::words::rounded;
+use crate::sim::words::{prefix, rounded};
 
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.
 pub(super) fn time(seconds: f64) -> String {
@@ -65,16 +65,6 @@ pub(super) fn ratio(value: f64) -> String {
 pub(super) fn with_minus(text: String) -> String {
     let zero = text.strip_prefix('-').filter(|rest| !rest.contains(|c: char| ('1'..='9').contains(&c)));
     zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
-}
-
-/// Powers of a thousand that a unit's prefix stands for.
-const PREFIXES: [(f64, &str); 7] =
-    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
-
-/// The prefix that leaves one to three digits before the point, and what it stands for.
-pub(super) fn prefix(size: f64) -> (f64, &'static str) {
-    // A thousandth less than whole numbers still has their prefix, whatever was rounded.
-    PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.

@@ -6,7 +6,7 @@
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use zip::{CompressionMethod, ZipArchive};
 
@@ -149,9 +149,10 @@ impl Npz {
             return Err("is no regular file; expected a NumPy archive (.npz)".to_owned());
         }
         let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
-        let mut start = [0; 6];
-        let length = read_up_to(&mut file, &mut start).map_err(|error| format!("cannot be read: {error}"))?;
-        match &start[..length] {
+        let mut start = Vec::new();
+        let read = (&file).take(6).read_to_end(&mut start).and_then(|_| file.rewind());
+        read.map_err(|error| format!("cannot be read: {error}"))?;
+        match &start[..] {
             [] => return Err("is empty; expected a NumPy archive (.npz)".to_owned()),
             b"\x93NUMPY" => {
                 return Err(
@@ -279,19 +280,6 @@ impl Array {
         let lengths: Vec<_> = self.shape.iter().map(u64::to_string).collect();
         format!("({}{})", lengths.join(", "), if lengths.len() == 1 { "," } else { "" })
     }
-}
-
-/// Reads until a buffer is full or nothing more comes, and says how much came.
-fn read_up_to(file: &mut File, buffer: &mut [u8]) -> std::io::Result<usize> {
-    let mut length = 0;
-    while length < buffer.len() {
-        match file.read(&mut buffer[length..])? {
-            0 => break,
-            more => length += more,
-        }
-    }
-    std::io::Seek::rewind(file)?;
-    Ok(length)
 }
 
 /// What follows a key in the head of an array, which is a dictionary in Python's spelling.

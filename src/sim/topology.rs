@@ -41,13 +41,6 @@ impl Elements<'_> {
         }
     }
 
-    /// The faces of one element as lists of nodes.
-    pub fn faces_of(&self, element: usize) -> Vec<Vec<u32>> {
-        let mut faces = Vec::new();
-        self.for_each_face(element, |face| faces.push(face.to_vec()));
-        faces
-    }
-
     /// The edges of one element as pairs of nodes, smaller node first, in rising order.
     pub fn edges_of(&self, element: usize) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
@@ -231,19 +224,6 @@ pub enum Springs {
     All,
 }
 
-impl Springs {
-    /// The name that scenes use.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Edges => "edges",
-            Self::EdgesOneDiagonal => "edges+one-diagonal",
-            Self::EdgesFaceDiagonals => "edges+face-diagonals",
-            Self::EdgesBodyDiagonals => "edges+body-diagonals",
-            Self::All => "all",
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,19 +247,6 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_the_scene_format() {
-        for topology in [
-            Springs::Edges,
-            Springs::EdgesOneDiagonal,
-            Springs::EdgesFaceDiagonals,
-            Springs::EdgesBodyDiagonals,
-            Springs::All,
-        ] {
-            assert_eq!(serde_json::to_value(topology).expect("a name"), topology.name());
-        }
-    }
-
-    #[test]
     fn closed_elements_have_each_edge_in_both_directions() {
         for (kind, nodes) in [
             (ElementKind::Tetrahedron, 4),
@@ -291,7 +258,8 @@ mod tests {
             let lists = [own.as_slice()].into_iter().collect();
             let kinds = [kind];
             let element = elements(&lists, &kinds);
-            let faces = element.faces_of(0);
+            let mut faces: Vec<Vec<u32>> = Vec::new();
+            element.for_each_face(0, |face| faces.push(face.to_vec()));
             let directed: Vec<_> = faces.iter().flat_map(|face| around(face)).collect();
             for &[a, b] in &directed {
                 assert_eq!(directed.iter().filter(|&&edge| edge == [b, a]).count(), 1, "{kind:?} {a}-{b}");

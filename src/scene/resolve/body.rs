@@ -10,6 +10,7 @@ use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{BodySize, Excess, Limits};
 use crate::sim::body::{Body, Dimension, Solids};
 use crate::sim::state::State;
+use crate::sim::words::typed;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -268,7 +269,7 @@ fn check_use(shape: StartShape, report: &mut Report<'_>) {
     for (key, used, about) in about {
         let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
         if !used && report.is_typed(&path) {
-            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(shape.name()));
+            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
             report.at_key(&path, message, "leave it out, or take another shape".to_owned());
         }
     }

@@ -9,6 +9,7 @@ use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, Typ
 use crate::sim::body::Body;
 use crate::sim::state::Nodes;
 use crate::sim::topology::Springs;
+use crate::sim::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,7 +57,7 @@ impl TypedModel for Parameters {
         // The doubles that were taken out are several times as many.
         springs.shrink_to_fit();
         if springs.is_empty() {
-            let topology = self.springs.unwrap_or(DEFAULT).name();
+            let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
             let message = format!(
                 "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
             );

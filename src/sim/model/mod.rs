@@ -248,7 +248,6 @@ fn elements_in_words(body: &Body) -> String {
 
 /// A number of a unit with the prefix that leaves one to three digits before the point, such as `10 kN/m`.
 fn with_prefix(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
-    let (scale, prefix) = PREFIXES.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-3, "m"));
+    let (scale, prefix) = words::prefix(value);
     format!("{} {prefix}{unit}", words::rounded(value / scale, 3))
 }
