@@ -74,11 +74,11 @@ impl Neighbourhood<'_> {
             }
             Shape::Sphere { centre, radius } => around(centre, radius).collect(),
             Shape::Capsule { from, to, radius } => around(from, radius).chain(around(to, radius)).collect(),
-            Shape::Box { centre, half, turn } => {
+            Shape::Box { centre, half, rotation } => {
                 let half = DVec3::select(half.is_finite_mask(), half, DVec3::ZERO);
                 let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
                 let corner = |at: u32| half * DVec3::new(sign(at, 0), sign(at, 1), sign(at, 2));
-                (0..8).map(|at| centre + turn * corner(at)).collect()
+                (0..8).map(|at| centre + rotation * corner(at)).collect()
             }
         }
     }
@@ -111,9 +111,9 @@ fn nearest(shape: &Shape, to: DVec3) -> Option<DVec3> {
             let share = if squared > 0.0 { ((to - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
             Some(ball(from + share * along, radius))
         }
-        Shape::Box { centre, half, turn } => {
-            let local = turn.conjugate() * (to - centre);
-            Some(centre + turn * local.clamp(-half, half))
+        Shape::Box { centre, half, rotation } => {
+            let local = rotation.conjugate() * (to - centre);
+            Some(centre + rotation * local.clamp(-half, half))
         }
     }
 }

@@ -7,7 +7,7 @@ use super::narrow::{narrow, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::sim::body::Body;
-use crate::sim::topology::{around, ordered};
+use crate::sim::element::{around, ordered};
 use glam::DVec3;
 use std::collections::HashMap;
 

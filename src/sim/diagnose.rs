@@ -2,11 +2,11 @@
 
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy, Volumes};
+use super::element;
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
 use super::state::Nodes;
-use super::topology;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -164,7 +164,7 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     let origin = position[nodes[0] as usize];
     let at = |node: u32| position[node as usize] - origin;
     if kind == ElementKind::Polygon {
-        return 0.5 * topology::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
+        return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
     // Elements of a kind have eight corners at most, which their faces share.
     const CORNERS: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -174,7 +174,7 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     }
     let at = |corner: u32| corners[(corner & 7) as usize];
     let mut volume = 0.0;
-    topology::for_each_face(kind, &CORNERS[..nodes.len()], |face| {
+    element::for_each_face(kind, &CORNERS[..nodes.len()], |face| {
         volume += match *face {
             [a, b, c] => triple(at(a), at(b), at(c)) / 6.0,
             // Each of the four triangles of two corners that are next to each other and a third is in two fans.

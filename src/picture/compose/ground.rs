@@ -85,7 +85,7 @@ impl Draft<'_> {
             && let Shape::Floor { normal, .. } = moving.shape
         {
             let pose = moving.pose(time);
-            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
             anchor = pose.apply(moving.pivot, DVec3::ZERO);
         }
         (plane, anchor)

@@ -44,7 +44,7 @@ impl Staging<'_> {
         let Shape::Plate { normal, .. } = obstacle.shape else { return None };
         let pose = obstacle.pose(self.site.time);
         let (middle, half) = self.span(obstacle, &pose, normal);
-        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let corner = |[x, y]: [f64; 2]| middle + x * half.x * first + y * half.y * second;
         Some([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
     }
@@ -108,8 +108,8 @@ impl Staging<'_> {
     /// A plate: a thin box that ends where floors begin.
     pub(super) fn plate(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
         let (middle, half) = self.span(obstacle, pose, normal);
-        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
-        let out = pose.turn * normal;
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
+        let out = pose.rotation * normal;
         let thickness = THICKNESS * self.site.extent;
         // Right-handed, so that faces are turned as those of a box.
         let axes = [second, first, out];
@@ -170,7 +170,7 @@ impl Staging<'_> {
                 middle += depth / along.length_squared() * along;
             }
         }
-        let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let reach = WALL * self.site.extent * self.widening;
         // Circumscribed: the circle in which it fades lies within.
         let around = (0..CORNERS).map(|at| {

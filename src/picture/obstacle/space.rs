@@ -59,8 +59,8 @@ impl Staging<'_> {
                     let middle = ends[0].midpoint(ends[1]);
                     self.round(shape, radius, middle, &mut solids, lines, &mut staged);
                 }
-                Shape::Box { centre, half, turn } => {
-                    let axes = DVec3::AXES.map(|axis| pose.turn * (turn * axis));
+                Shape::Box { centre, half, rotation } => {
+                    let axes = DVec3::AXES.map(|axis| pose.rotation * (rotation * axis));
                     let corners = corners(pose.apply(centre, centre), axes, half);
                     self.block(&corners, axes, &mut solids, lines, &mut staged);
                 }

@@ -8,12 +8,12 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
-use super::census::Census;
 use super::state::{Nodes, State};
 use super::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -54,9 +54,10 @@ impl ModelParameters {
         self.typed().resolve(body, springs)
     }
 
-    /// What the model will need on a body, at most; asked before the body is made.
-    pub fn needs(&self, census: &Census) -> Needs {
-        self.typed().needs(census)
+    /// How many springs the model makes, at most, of so many elements of each number of nodes; `listed` is how many the
+    /// body lists, if it does.
+    pub(crate) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        self.typed().most_springs(elements, listed)
     }
 }
 
@@ -65,19 +66,10 @@ trait TypedModel {
     /// See [`ModelParameters::resolve`].
     fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit>;
 
-    /// See [`ModelParameters::needs`].
-    fn needs(&self, census: &Census) -> Needs;
-}
-
-/// What one run needs of memory besides the state of its nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Needs {
-    /// Springs, at most.
-    pub springs: u128,
-    /// While the model is resolved (bytes).
-    pub making: u128,
-    /// As long as the run lasts (bytes).
-    pub working: u128,
+    /// See [`ModelParameters::most_springs`].
+    fn most_springs(&self, _elements: &BTreeMap<usize, u128>, _listed: Option<u128>) -> u128 {
+        0
+    }
 }
 
 /// A parameter that does not fit, said about one key of the model's table.
