@@ -8,7 +8,7 @@ use super::options::processors;
 use super::render::size;
 use crate::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline, Written, resized};
 use crate::golden::{PictureError, Pixels};
-use crate::output::{FolderLock, Label, Tags, folder_of, frame_file_name, frame_files, read_frame};
+use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, read_tags};
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::ffi::OsString;
@@ -312,7 +312,8 @@ struct Folders {
 /// What the frames of one folder have in common, and when they are.
 struct Folder {
     size: [u32; 2],
-    scene: String,
+    scenes: Vec<String>,
+    runs: Vec<String>,
     frames: Vec<(u64, f64, PathBuf)>,
 }
 
@@ -356,9 +357,9 @@ impl Folders {
         let paths = (0..first.frames.len()).map(files).collect();
         let moments = first.frames.iter().map(|(number, time, _)| (*number, *time)).collect();
         let mut scenes: Vec<String> = Vec::new();
-        for folder in &folders {
-            if !scenes.contains(&folder.scene) {
-                scenes.push(folder.scene.clone());
+        for scene in folders.iter().flat_map(|folder| &folder.scenes) {
+            if !scenes.contains(scene) {
+                scenes.push(scene.clone());
             }
         }
         let (own, count) = (first.size, folders.len() as u32);
@@ -383,9 +384,8 @@ impl Folders {
     fn read(&self, path: &Path, number: u64) -> Result<Image, AnimationError> {
         let picture = |source| AnimationError::Picture { path: path.to_owned(), source };
         let found = Pixels::read(path).map_err(picture)?;
-        let is_it = matches!(&found.label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
-        let is_same = found.size == self.own && is_it;
-        if !is_same {
+        let shown = found.label.as_ref().and_then(Tags::frame);
+        if found.size != self.own || shown != Some(number) {
             let told =
                 format!("{} has become another picture meanwhile; try again when nobody writes there", path.display());
             return Err(AnimationError::Wrong(told));
@@ -462,43 +462,44 @@ impl Folder {
             );
             return Err(Failure::usage(told));
         }
-        let mut folder: Option<(Self, Vec<String>)> = None;
+        let mut folder: Option<Self> = None;
         for (number, file) in files {
-            let Some((size, tags)) = read_frame(&file)? else {
+            let found = read_tags(&file)?;
+            let Some((size, Tags { shows: Shown::Frame { frame, time }, scenes, states, .. })) = found else {
                 let told = format!(
                     "{} is damaged, or no frame of `localshape render`: it does not say what it shows",
                     file.display()
                 );
                 return Err(Failure::usage(told));
             };
-            let runs: Vec<String> = tags.states.iter().map(|(_, run)| run.clone()).collect();
-            let (all, first) = folder
-                .get_or_insert_with(|| (Self { size, scene: tags.scene.clone(), frames: Vec::new() }, runs.clone()));
+            let runs: Vec<String> = states.into_iter().map(|(_, run)| run).collect();
+            let first = || Self { size, scenes: scenes.clone(), runs: runs.clone(), frames: Vec::new() };
+            let all = folder.get_or_insert_with(first);
             let unlike = |what: String| Failure::usage(format!("{} {what}", file.display()));
             let before = all
                 .frames
                 .last()
                 .map(|(_, _, path)| path.file_name().unwrap_or_default().to_string_lossy().into_owned())
                 .unwrap_or_default();
-            if tags.frame != number {
-                return Err(unlike(format!("shows frame {}; a file was renamed", tags.frame)));
+            if frame != number {
+                return Err(unlike(format!("shows frame {frame}; a file was renamed")));
             }
             if size != all.size {
                 let [[w, h], [w2, h2]] = [size, all.size];
                 return Err(unlike(format!("has {w}×{h} pixels, {before} has {w2}×{h2}; render them in one size")));
             }
-            if tags.scene != all.scene {
+            if scenes != all.scenes {
                 return Err(unlike(format!("shows another scene than {before}; render all of one scene")));
             }
-            if runs != *first {
-                return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(first))));
+            if runs != all.runs {
+                return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(&all.runs))));
             }
-            if !tags.time.is_finite() || all.frames.last().is_some_and(|(_, time, _)| tags.time <= *time) {
-                return Err(unlike(format!("is at {} s, not after {before}", tags.time)));
+            if all.frames.last().is_some_and(|(_, last, _)| time <= *last) {
+                return Err(unlike(format!("is at {time} s, not after {before}")));
             }
-            all.frames.push((number, tags.time, file));
+            all.frames.push((number, time, file));
         }
-        Ok(folder.expect("at least one frame").0)
+        Ok(folder.expect("at least one frame"))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::artist::{FigureError, draw_figure};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::look::Theme;
 use crate::moments::{Forces, Moments, Taking};
-use crate::output::{self, AtomicFile, FolderLock, OutputError};
+use crate::output::{AtomicFile, Compression, FolderLock, OutputError, Tags, encode, is_folder, read_tags};
 use crate::reading::words::nearest;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene};
@@ -175,8 +175,9 @@ impl FigureCommand {
         if interrupt::requested() {
             return Ok(None);
         }
-        let tags = output::FigureTags::new(figure, &moments, &gpu.description().to_string());
-        file.append(&output::encode_figure(figure.size, image.as_raw(), &tags))?;
+        let tags = Tags::of_figure(figure, &moments, &gpu.description().to_string());
+        // A single picture may take its time.
+        file.append(&encode(figure.size, image.as_raw(), &tags.texts(), Compression::High))?;
         file.commit()?;
         Ok(Some(numbers(figure, &moments)))
     }
@@ -220,11 +221,12 @@ impl FigureCommand {
 
     /// Where each figure goes; nothing of others is replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
-        output::is_folder(&self.out)?;
+        is_folder(&self.out)?;
         let path = |figure: &Figure| {
             let name = format!("{}.png", figure.name);
             let path = self.out.join(&name);
-            if path.is_dir() || !self.overwrite && path.exists() && !output::is_figure(&path)? {
+            let is_figure = || Ok::<_, OutputError>(read_tags(&path)?.is_some_and(|(_, tags)| tags.frame().is_none()));
+            if path.is_dir() || !self.overwrite && path.exists() && !is_figure()? {
                 let what = format!("{name}, which is no figure of this program");
                 return Err(Failure::from(OutputError::Occupied { path: self.out.clone(), what }));
             }

@@ -323,8 +323,8 @@ impl Pictures for Drawing<'_> {
         let clock = Clock::thread();
         let pixels = self.artist.draw(&composed).map_err(failed)?;
         self.draw += clock.spent();
-        let tags = Tags::new(self.scene, frame, &self.adapter);
-        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, tags })?)
+        let tags = Tags::of_frame(self.scene, frame, &self.adapter);
+        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, frame: frame.index, tags })?)
     }
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {

@@ -254,7 +254,10 @@ fn it_works_by_keys(browser: &mut Browser) {
     let before = browser.number(shift);
     browser.press("d", PLAIN);
     assert!(browser.number(shift) < before);
-    assert_eq!(browser.value("new Set([...document.images].map((image) => getComputedStyle(image).transform)).size"), 1);
+    assert_eq!(
+        browser.value("new Set([...document.images].map((image) => getComputedStyle(image).transform)).size"),
+        1
+    );
     browser.press("-", PLAIN);
     assert_eq!(browser.text(scale), "1200 %");
     browser.press("0", PLAIN);
