@@ -1,4 +1,4 @@
-// The turned-over set by itself, drawn beforehand with one sample a pixel: lit colour with the brightness of the light in
+// The turned-over elements, drawn beforehand by themselves with one sample a pixel: lit colour, brightness of the light in
 // alpha, and depth.
 
 @group(1) @binding(2) var alarm_depth: texture_depth_2d;

@@ -1,4 +1,4 @@
-// The floor: quiet, with a grid of one cell a side and the body's soft shadow, fading without a horizon.
+// The floor with its grid and the soft shadows on it. It fades out before the horizon.
 
 struct Ground {
     // Unit vectors along the grid, and in w what to add to coordinates so that its lines are at whole cells.

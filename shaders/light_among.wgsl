@@ -1,23 +1,23 @@
-// Where `OCCLUDERS` obstacles are near a body: they take light away from it, so that one sees where they touch.
+// Occlusion of ambient light by `OCCLUDERS` obstacles near a body, which shows where they touch.
 
-// Nothing is taken from this distance on (soft units). A plate takes less: one sees through it.
+// There is no occlusion from this distance on (soft units). A plate, which is transparent, occludes less.
 const TAKEN_REACH = 1.3;
 const PLATE_TAKES = 0.37;
 
-// A vector turned by the inverse of a quaternion.
-fn turned_back(turn: vec4<f32>, vector: vec3<f32>) -> vec3<f32> {
-    return vector + 2.0 * cross(cross(vector, turn.xyz) + turn.w * vector, turn.xyz);
+// A vector rotated by the inverse of a quaternion.
+fn rotated_back(rotation: vec4<f32>, vector: vec3<f32>) -> vec3<f32> {
+    return vector + 2.0 * cross(cross(vector, rotation.xyz) + rotation.w * vector, rotation.xyz);
 }
 
-// The part of the light that an obstacle leaves to a point of a body with a normal. All kinds go the same way: drawing on
-// a processor, pixels beside each other would go all ways together.
+// The part of the ambient light that an obstacle leaves to a point of a body with a normal. All kinds of obstacles share
+// one path: a software driver would run every branch for each group of pixels.
 fn left_by(occluder: Occluder, position: vec3<f32>, facing: vec3<f32>) -> f32 {
-    let local = turned_back(occluder.turn, position - occluder.first.xyz);
+    let local = rotated_back(occluder.rotation, position - occluder.first.xyz);
     let out = sign(local) * max(abs(local) - occluder.second.xyz, vec3(0.0));
     let size = length(out);
     let apart = saturate((size - occluder.first.w) / (TAKEN_REACH * panel.soft));
-    let away = dot(turned_back(occluder.turn, facing), out) / max(size, 1e-9);
-    // As at the floor: what faces a plate touches it and is seen through it.
+    let away = dot(rotated_back(occluder.rotation, facing), out) / max(size, 1e-9);
+    // As at the floor: a face that touches a plate is seen through it and stays light.
     let turned = mix(0.5 - 0.5 * away, PLATE_TAKES * (1.0 - abs(away)), occluder.second.w);
     return 1.0 - TAKEN * turned * (1.0 - apart) * (1.0 - apart);
 }

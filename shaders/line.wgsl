@@ -34,11 +34,11 @@ const OFFSET = 0.0016;
 const STEP = 0.22;
 // By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
 const ROUND_STEP = 0.8;
-// Width of an element that is nothing but lines (px in the reference picture).
+// Width of the lines of an element without faces (px in the reference picture).
 const BAR_WIDTH = 2.2;
-// Elements smaller than this (px) get fainter edges, or there would be nothing but edges.
+// Elements smaller than this (px) get fainter edges, or edges would cover everything.
 const SMALL_ELEMENT = 26.0;
-// Towards this size (px) edges fade out: so close together they would only flicker.
+// Towards this size (px) edges fade out, because so close together they would flicker.
 const SMALLEST_ELEMENT = vec2<f32>(1.5, 4.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
@@ -80,15 +80,15 @@ fn covered(distance: f32, width: f32) -> f32 {
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
 }
 
-// How much is seen of an edge, and how much of it lies behind a body.
+// The visibility of an edge, and how much of it lies behind a body.
 fn edge_shares(at: Beside, kind: u32, sample: u32) -> vec2<f32> {
     let seen = visible_share(at.depth * (1.0 + OFFSET), sample_depth(at.middle, sample));
-    // Nothing is seen through an obstacle, and of an obstacle nothing through anything but clear surfaces.
+    // Obstacles hide all edges; their own edges are seen through clear surfaces only.
     let through = !(seen < 1.0 && is_obstacle(at.middle, sample));
     return vec2(seen, select(0.0, 1.0 - seen, through));
 }
 
-// How much of a contour is part of the outline, how much is a step of depth, and how much only shows through.
+// How much of a contour is outer outline, how much is a step of depth inside the body, and how much is hidden.
 fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
     let here = sample_depth(at.middle, sample);
     let normal = vec2(-at.along.y, at.along.x);
@@ -106,20 +106,20 @@ fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
         is_obstacle(at.middle - across, sample),
     );
     if kind == OBSTACLE_CONTOUR {
-        // Round ones come nearer still: only what is not of their kind hides them at once.
+        // Round obstacles come nearer still: only other things than obstacles hide their contours fully.
         let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
         let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
         let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
         shown = select(0.0, free.x * free.y, any(obstacles));
     }
-    // Nothing is seen through an obstacle.
+    // Obstacles hide all contours behind them.
     var clear = 1.0;
     if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, sample) {
         clear = visible_share(at.depth * (1.0 + OFFSET), here);
     }
     var outline = 0.0;
     if farther <= 0.0 {
-        // Nothing beside it: part of the outline. If a fold of the surface covers it by a hair, it must be very close.
+        // Background beside it: part of the outline. A fold of the surface that covers it slightly must be very close.
         let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
         outline = select(shown, 1.0, sample_depth(at.middle + close, sample) <= 0.0);
     }
@@ -149,8 +149,8 @@ fn beside(segment: Segment) -> Beside {
     return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
 }
 
-// Each sample of the pixel around the nearest point of the line answers for itself, so that lines end and change as
-// smoothly as surfaces do. Edges and contours have pipelines of their own: contours ask for much more.
+// Visibility is tested per sample of the pixel around the nearest point of the line, so that lines end as smoothly as
+// surfaces do. Edges and contours have separate pipelines, because contours need many more reads.
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);

@@ -1,4 +1,4 @@
-// Where there are no solid obstacles.
+// Lines in panels without solid obstacles.
 
 fn is_obstacle(place: vec2<f32>, sample: u32) -> bool {
     return false;

@@ -1,4 +1,4 @@
-// Where there are solid obstacles: they have left a mark of their own in the opacity.
+// Lines in panels with solid obstacles, which are marked by their opacity.
 
 const OBSTACLE = 254.0 / 255.0;
 

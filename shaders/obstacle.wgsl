@@ -10,7 +10,7 @@ struct SolidCorner {
     // How far inside the outline (px).
     @location(4) inward: f32,
     @location(5) above: f32,
-    // How near the body is.
+    // How much the body occludes the ambient light.
     @location(6) near: f32,
 }
 
@@ -22,7 +22,7 @@ struct SolidPixel {
 // Width of the rim (px in the reference picture).
 const RIM_WIDTH = 2.0;
 
-// What is stored as opacity where an obstacle is seen: the passes that follow know it by that, and no eye does.
+// The opacity stored for an obstacle, by which later passes recognise it. The difference to opaque is invisible.
 const OBSTACLE = 254.0 / 255.0;
 
 @vertex
@@ -39,7 +39,7 @@ fn solid_corner(
 }
 
 fn solid(corner: SolidCorner, opacity: f32) -> SolidPixel {
-    // Where it meets the floor, each sample decides for itself.
+    // The border with the floor is tested per sample.
     let rise = vec2(dpdx(corner.above), dpdy(corner.above));
     var samples = 0u;
     for (var sample = 0u; sample < SAMPLES; sample++) {

@@ -79,7 +79,7 @@ fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> ve
     let inner = saturate(0.5 - outside);
     let outer = HALO * saturate(0.5 + width - outside);
     let alpha = inner + outer * (1.0 - inner);
-    return vec4((colour.rgb * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha * colour.a);
+    return vec4((colour.rgb * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha);
 }
 
 // A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and the
@@ -149,6 +149,12 @@ fn corner(@builtin(vertex_index) index: u32, mark: Mark) -> Corner {
 
 @fragment
 fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
+    let opaque = opaque_colour(corner);
+    return vec4(opaque.rgb, opaque.a * corner.colour.a);
+}
+
+// The colour of a pixel of an opaque mark, and how much of the pixel it covers.
+fn opaque_colour(corner: Corner) -> vec4<f32> {
     let from_corner = corner.place.xy - corner.rectangle.xy;
     let at = vec2(dot(from_corner, corner.along), dot(from_corner, vec2(-corner.along.y, corner.along.x)));
     if corner.shape == GLYPH {
@@ -167,15 +173,13 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
         case NODE: {
             let inward = (1.0 - length(middle)) / pixel;
             let rim = 0.16 * corner.rectangle.z;
-            let alpha = saturate(inward + 0.5) * corner.colour.a;
-            return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), alpha);
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, saturate(inward - rim + 0.5)), saturate(inward + 0.5));
         }
         case COUNTER_CLOCKWISE: {
-            return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel) * corner.colour.a);
+            return vec4(corner.colour.rgb, ring_arrow(middle, THICKNESS.x, pixel));
         }
         case CLOCKWISE: {
-            let alpha = ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel) * corner.colour.a;
-            return vec4(corner.colour.rgb, alpha);
+            return vec4(corner.colour.rgb, ring_arrow(vec2(-middle.x, middle.y), THICKNESS.y, pixel));
         }
         case FADING: {
             let left = saturate(1.0 - at.y / corner.rectangle.w);
@@ -205,8 +209,7 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
             let arrow = off_arrow(at, corner.rectangle.zw);
             let inside = saturate(0.5 - arrow.x);
             let around = saturate(0.5 + arrow.y - arrow.x);
-            let alpha = max(inside, 0.92 * around) * corner.colour.a;
-            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), alpha);
+            return vec4(mix(corner.second.rgb, corner.colour.rgb, inside), max(inside, 0.92 * around));
         }
         case BLEND: {
             return vec4(mix(corner.colour.rgb, corner.second.rgb, at.x / corner.rectangle.z), 1.0);

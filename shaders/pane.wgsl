@@ -29,7 +29,7 @@ const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
 // Edges: thickness (px in the reference picture) and opacity.
 const EDGE = vec2<f32>(1.35, 0.86);
-// Before bodies a pane is this part as opaque: what they show matters more.
+// Before bodies a pane is this part as opaque, so that they stay visible.
 const OVER_BODIES = 0.6;
 // A wall that stands before bodies hides even less of them.
 const WALL_OVER_BODIES = 0.35;

@@ -1,12 +1,12 @@
-// What every pass knows of the panel it draws. Lengths are in sides from the panel's origin, colours are linear.
+// The data of a panel that every pass reads. Lengths are in sides from the panel's origin, colours are linear.
 
 struct Occluder {
     // The middle of a box, and how far around it the obstacle reaches.
     first: vec4<f32>,
-    // Half the sides of the box; 1 if one sees through the obstacle.
+    // Half the sides of the box; 1 if the obstacle is transparent.
     second: vec4<f32>,
-    // How the box is turned, as quaternion.
-    turn: vec4<f32>,
+    // The rotation of the box, as a quaternion.
+    rotation: vec4<f32>,
 }
 
 struct Panel {
@@ -51,7 +51,7 @@ struct Panel {
     line_share: f32,
     // How wide contours of bodies are, from 0 to 1.
     contour_share: f32,
-    // The obstacles near the body; what there is too much of reaches nothing.
+    // The obstacles near the body; unused entries reach nothing.
     occluders: array<Occluder, 5>,
 }
 

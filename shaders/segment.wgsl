@@ -38,7 +38,7 @@ fn strip_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: 
     return vec4((pixel / size - 0.5) / FLIP, 0.5, 1.0);
 }
 
-// Outside of everything.
+// Outside the target.
 const NOWHERE = vec4<f32>(0.0, 0.0, -1.0, 1.0);
 
 // The texel of a pixel in the textures that hold the bodies, and the depth of the bodies there.
@@ -58,11 +58,11 @@ fn sample_depth(place: vec2<f32>, sample: u32) -> f32 {
     return load_sample_depth(texel_around(place, sample), sample);
 }
 
-// Lines fade over this range of depths before and behind the surface, as a part of the distance: none of them
-// disappears at once.
+// Lines fade over this range of depths before and behind the surface, as a part of the distance, so that none appears or
+// disappears suddenly.
 const FADED_DEPTH = 0.0008;
 
-// How much is seen of a line at one depth of a surface at another.
+// The visibility of a line at one depth behind or before a surface at another.
 fn visible_share(line: f32, surface: f32) -> f32 {
     return saturate(0.5 + 0.5 * (line - surface) / (FADED_DEPTH * max(surface, 1e-9)));
 }

@@ -60,7 +60,7 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
 }
 
-// How much is seen of a disc, for one sample of the pixel around its middle and one of the pixel that is drawn.
+// The visibility of a disc, for one sample of the pixel around its middle and one of the pixel that is drawn.
 fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, sample: u32) -> f32 {
     // At an outline, the next pixel may be the background's.
     let beside = min(
@@ -73,8 +73,8 @@ fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, s
     return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
 
-// How much is seen of a line, and how much of it runs over a surface and not along an outline, where it stands out
-// against the ground.
+// The visibility of a line, and how much of it runs over a surface and not along an outline, where it is seen against
+// the ground.
 fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, sample: u32) -> vec2<f32> {
     let here = sample_depth(middle, sample);
     let inside = here > 0.0 && min(sample_depth(middle + across, sample), sample_depth(middle - across, sample)) > 0.0;

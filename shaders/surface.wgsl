@@ -20,7 +20,7 @@ const CONTACT_LIGHT = 0.72;
 // of the key light.
 const TAKEN = 0.75;
 const KEY_TAKEN = 0.8;
-// The turned-over set is drawn this much nearer (sides), so that faces shared with the sound one are its own.
+// The turned-over set is drawn this much nearer (sides), so that it wins where it shares faces with the sound one.
 const NEARER = 0.02;
 // A face turned away lies this much farther back, as a part of the distance.
 const BACK_FACE = 1e-5;
@@ -32,15 +32,15 @@ const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
-// The highest opacity stored of what one sees through: solid obstacles are told from surfaces by a higher one.
+// The highest opacity stored for a transparent surface; solid obstacles have a higher one.
 const MOST_OPACITY = 252.0 / 255.0;
 // What lies behind with a higher alpha is no turned-over element but a solid obstacle.
 const SOLID_BEHIND = 0.99;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
 
-// Where a corner of a face is drawn. Of two faces at the same place, as a body pressed flat has, the one that is turned
-// towards the viewer is always seen: the other lies behind it by a hair, some times what round-off makes of depths.
+// Where a corner of a face is drawn. Of two faces at the same place, as in a body pressed flat, the one towards the viewer
+// is always visible: the other is moved back by a few times the rounding error of depths.
 fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     var place = panel.clip * vec4(position, 1.0);
     if panel.flatness < 0.5 && dot(normal, panel.eye - position) < 0.0 {
@@ -75,7 +75,7 @@ struct Light {
 // A unit normal that is turned towards the viewer.
 fn facing_normal(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let view = normalize(panel.eye - position);
-    // A corner of a collapsed face has no normal; it shows the viewer what it can.
+    // A corner of a collapsed face has no normal; it is lit as if it faced the viewer.
     let size = length(normal);
     let facing = select(view, normal / size, size > 1e-12);
     return select(-facing, facing, dot(facing, view) >= 0.0);
@@ -128,7 +128,7 @@ fn alarm(corner: Corner) -> AlarmColour {
     return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
 }
 
-// The turned-over set by itself, for those who look through the body.
+// The turned-over set by itself, which is seen through the body.
 @fragment
 fn alarm_behind(corner: Corner) -> @location(0) vec4<f32> {
     let alarm = alarm(corner);
@@ -167,13 +167,13 @@ fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> v
     let lit = stored.rgb * stored.rgb;
     let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
     let alarm = mix(lit, unlit, 0.65 * deep);
-    // Blue-grey under vermilion would turn pink: most of its colour goes first.
+    // Blue-grey under vermilion would turn pink, so the surface is desaturated first.
     let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
     return vec4(saturate(mix(grey, alarm, 1.0 - 0.4 * deep)), 1.0);
 }
 
-// How deep every sample of what lies behind a pixel is, and the nearest of them; 0 where nothing is. Each counts, so that
-// borders of what lies behind are as smooth as those of the surface.
+// The depth of every sample behind a pixel, and the nearest of them; 0 where nothing is. All samples are used, so that
+// borders behind the surface are as smooth as its own.
 struct Behind {
     depths: array<f32, SAMPLES>,
     nearest: f32,
@@ -189,7 +189,7 @@ fn all_behind(place: vec4<f32>) -> Behind {
     return behind;
 }
 
-// What is stored of the mean of all samples: nothing that is seen through, be it a little, is as opaque as an obstacle.
+// What is stored of the mean of all samples. The opacity of anything transparent stays below that of an obstacle.
 fn stored_mean(sum: vec4<f32>) -> vec4<f32> {
     let mean = sum / f32(SAMPLES);
     return vec4(sqrt(mean.rgb), select(min(mean.a, MOST_OPACITY), 1.0, mean.a > 0.9999));

@@ -61,7 +61,7 @@ fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
     return vec4(panel.alarm * light.diffuse + light.gloss, 1.0);
 }
 
-// The hatch of the turned-over set by itself, for those who look through the body: how much of a pixel it covers.
+// The hatch of the turned-over set by itself, which is seen through the body: how much of a pixel it covers.
 @fragment
 fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
     let alarm = alarm_tint(corner);

@@ -3,6 +3,7 @@
 use super::order::in_order;
 use super::{Animation, AnimationError, Image, Written, resized};
 use crate::colour::{Colour, best_of, mixed};
+use crate::output::{Compression, encode};
 use crate::picture::{Fonts, Weight};
 
 /// How frames stand side by side.
@@ -107,7 +108,8 @@ impl Sheet {
             }
             animation.report((at + 1) as f64 / shots.len() as f64)
         })?;
-        let bytes = crate::output::encode_commented(sheet.size, &sheet.pixels, animation.comment);
+        let comment = [("comment", animation.comment.to_owned())];
+        let bytes = encode(sheet.size, &sheet.pixels, &comment, Compression::High);
         Ok((bytes, Written { pictures: shots.len(), duration: 0.0, size: self.size }))
     }
 }

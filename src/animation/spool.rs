@@ -91,12 +91,13 @@ impl Reel for Spool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::{Compression, encode};
 
     #[test]
     fn frames_are_waited_for_until_the_end() {
         let folder = tempfile::tempdir().unwrap();
         let spool = Spool::new(folder.path(), [2, 1]).unwrap();
-        let picture = |byte: u8| crate::output::encode_plain([2, 1], &[byte; 6]);
+        let picture = |byte: u8| encode([2, 1], &[byte; 6], &[], Compression::Fast);
         std::thread::scope(|scope| {
             let asked = scope.spawn(|| spool.image(1));
             spool.put(0, &picture(10)).unwrap();

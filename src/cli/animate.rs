@@ -1,19 +1,17 @@
 //! `animate`: frames of folders as an animation, or as a sheet of still pictures.
 
 use super::console;
-use super::failure::{Failure, Status, with_causes};
+use super::failure::{Failure, Status};
+use super::film::{comment, replaceable, summary};
 use super::frames::FrameRanges;
 use super::interrupt;
-use super::options::processors;
-use super::render::size;
+use super::options::{Telling, ThreadOptions, size};
 use crate::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline, Written, resized};
-use crate::golden::{PictureError, Pixels};
-use crate::output::{FolderLock, Label, Tags, folder_of, frame_file_name, frame_files, read_frame};
+use crate::golden::Pixels;
+use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, read_tags};
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::ffi::OsString;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -30,8 +28,8 @@ The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet a
 hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
 every second one. Transparent frames stand on white.";
 
-/// What stands at the beginning of each comment, by which a file is known as one of ours.
-const MARK: &str = "made by localshape ";
+/// Steps of a progress bar.
+const PARTS: u64 = 1000;
 /// The name of standard output.
 const STANDARD_OUTPUT: &str = "-";
 
@@ -87,17 +85,10 @@ pub(super) struct Animate {
     #[arg(long, value_name = "WxH", value_parser = size, conflicts_with = "width")]
     size: Option<[u32; 2]>,
 
-    /// Threads to work with [default: one for each processor]; the file is the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-
-    /// Neither progress nor summary; only errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    /// Print what was made as one JSON document
-    #[arg(long, conflicts_with = "quiet")]
-    json: bool,
+    #[command(flatten)]
+    threads: ThreadOptions,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Animate {
@@ -129,7 +120,7 @@ impl Animate {
         let comment = comment(words, &reel.scenes);
         let sheet = Sheet { times: reel.moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
         let sheet = Sheet { size: self.size.unwrap_or(sheet.size), ..sheet };
-        let bar = console::progress(&self.out.to_string_lossy(), PARTS, self.quiet || self.json);
+        let bar = self.telling.progress(&self.out.to_string_lossy(), PARTS);
         bar.set_message(format!("{} frames", reel.moments.len()));
         let progress = |done: f64| bar.set_position((done * PARTS as f64) as u64);
         let animation = Animation {
@@ -138,7 +129,7 @@ impl Animate {
             plays: self.plays.unwrap_or(0),
             sheet: &sheet,
             comment: &comment,
-            threads: self.threads.map_or_else(processors, usize::from),
+            threads: self.threads.count(),
             progress: &progress,
             go_on: &|| !interrupt::requested(),
         };
@@ -183,7 +174,7 @@ impl Animate {
                 .to_owned()
         } else if self.stack && self.folders.len() == 1 {
             "--stack puts several folders one above the other; expected more than one".to_owned()
-        } else if self.json && self.out == Path::new(STANDARD_OUTPUT) {
+        } else if self.telling.json && self.out == Path::new(STANDARD_OUTPUT) {
             "--json tells of a file, and with -o - standard output is for the pictures".to_owned()
         } else {
             return Ok(());
@@ -192,7 +183,7 @@ impl Animate {
     }
 
     fn tell(&self, frames: usize, written: &Written) -> Result<(), Failure> {
-        if self.json {
+        if self.telling.json {
             let bytes = self.out.metadata().map_or(0, |found| found.len());
             let Written { pictures, duration, size } = *written;
             let file = self.out.to_string_lossy();
@@ -200,97 +191,7 @@ impl Animate {
                 "file": file, "size": size, "frames": frames, "pictures": pictures, "duration": duration, "bytes": bytes,
             }));
         }
-        if self.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
-    }
-}
-
-/// What was made, on a line.
-pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
-    let bytes = path.metadata().map_or(0, |found| found.len());
-    let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
-    let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
-    let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
-    let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
-    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes))
-}
-
-/// Steps of a progress bar.
-pub(super) const PARTS: u64 = 1000;
-
-/// The size of a file for people.
-fn file_size(bytes: u64) -> String {
-    if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
-}
-
-/// What an animation says about itself.
-pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
-    let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
-    let version = env!("CARGO_PKG_VERSION");
-    format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
-}
-
-/// Refuses to replace what this program did not make.
-pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
-    /// Comments stand near the beginning, in films behind tables of all pictures.
-    const BEGINNING: u64 = 1 << 20;
-    let Ok(found) = path.metadata() else { return Ok(()) };
-    let name = path.display();
-    if !found.is_file() {
-        return Err(Failure::usage(format!("{name} is no file; choose another name with -o")));
-    }
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
-    read.map_err(|error| Failure::files(format!("cannot read {name}: {error}")))?;
-    if is_ours(&bytes) {
-        return Ok(());
-    }
-    let told = format!(
-        "{name} is there already, and was not made by this command; choose another name with -o, or replace it with --overwrite"
-    );
-    Err(Failure::usage(told))
-}
-
-/// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
-/// the comment.
-fn is_ours(beginning: &[u8]) -> bool {
-    /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
-    const KINDS: [(usize, &[u8], &[u8]); 6] = [
-        (0, b"GIF89a", b"\x21\xfe"),
-        (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
-        (0, b"\x89PNG\r\n\x1a\n", b"localshape:comment\0"),
-        (0, b"YUV4MPEG2 ", b" X"),
-        (4, b"ftyp", b"data\0\0\0\x01"),
-        (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
-    ];
-    /// Between that and the comment there is room for its length and language (bytes).
-    const BETWEEN: usize = 8;
-    let after = |at: usize| beginning.get(at..).unwrap_or_default();
-    KINDS.iter().any(|&(at, magic, before)| {
-        let mark = if magic == b"YUV4MPEG2 " { MARK.replace(' ', "_") } else { MARK.to_owned() };
-        let is_mark = |at: &usize| after(at + mark.len()).first().is_some_and(u8::is_ascii_digit);
-        let is_comment = |at: usize| {
-            let head = &beginning[at.saturating_sub(before.len() + BETWEEN)..at];
-            head.windows(before.len()).any(|part| part == before)
-        };
-        let places = beginning.windows(mark.len()).enumerate().filter(|(_, part)| *part == mark.as_bytes());
-        after(at).starts_with(magic) && places.map(|(at, _)| at).filter(is_mark).any(is_comment)
-    })
-}
-
-impl From<AnimationError> for Failure {
-    fn from(error: AnimationError) -> Self {
-        match error {
-            AnimationError::File(error) => error.into(),
-            AnimationError::Picture { source: PictureError::Read(_), .. }
-            | AnimationError::Ffmpeg { .. }
-            | AnimationError::Full(_) => Self::files(with_causes(&error)),
-            AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
-                Self::files("cannot write to standard output: its reader has ended before the animation has")
-            }
-            AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
-            AnimationError::Stopped => Self::silent(Status::Interrupted),
-            error => Self::usage(with_causes(&error)),
-        }
+        if self.telling.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
     }
 }
 
@@ -312,7 +213,8 @@ struct Folders {
 /// What the frames of one folder have in common, and when they are.
 struct Folder {
     size: [u32; 2],
-    scene: String,
+    scenes: Vec<String>,
+    runs: Vec<String>,
     frames: Vec<(u64, f64, PathBuf)>,
 }
 
@@ -356,9 +258,9 @@ impl Folders {
         let paths = (0..first.frames.len()).map(files).collect();
         let moments = first.frames.iter().map(|(number, time, _)| (*number, *time)).collect();
         let mut scenes: Vec<String> = Vec::new();
-        for folder in &folders {
-            if !scenes.contains(&folder.scene) {
-                scenes.push(folder.scene.clone());
+        for scene in folders.iter().flat_map(|folder| &folder.scenes) {
+            if !scenes.contains(scene) {
+                scenes.push(scene.clone());
             }
         }
         let (own, count) = (first.size, folders.len() as u32);
@@ -383,9 +285,8 @@ impl Folders {
     fn read(&self, path: &Path, number: u64) -> Result<Image, AnimationError> {
         let picture = |source| AnimationError::Picture { path: path.to_owned(), source };
         let found = Pixels::read(path).map_err(picture)?;
-        let is_it = matches!(&found.label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
-        let is_same = found.size == self.own && is_it;
-        if !is_same {
+        let shown = found.label.as_ref().and_then(Tags::frame);
+        if found.size != self.own || shown != Some(number) {
             let told =
                 format!("{} has become another picture meanwhile; try again when nobody writes there", path.display());
             return Err(AnimationError::Wrong(told));
@@ -462,43 +363,44 @@ impl Folder {
             );
             return Err(Failure::usage(told));
         }
-        let mut folder: Option<(Self, Vec<String>)> = None;
+        let mut folder: Option<Self> = None;
         for (number, file) in files {
-            let Some((size, tags)) = read_frame(&file)? else {
+            let found = read_tags(&file)?;
+            let Some((size, Tags { shows: Shown::Frame { frame, time }, scenes, states, .. })) = found else {
                 let told = format!(
                     "{} is damaged, or no frame of `localshape render`: it does not say what it shows",
                     file.display()
                 );
                 return Err(Failure::usage(told));
             };
-            let runs: Vec<String> = tags.states.iter().map(|(_, run)| run.clone()).collect();
-            let (all, first) = folder
-                .get_or_insert_with(|| (Self { size, scene: tags.scene.clone(), frames: Vec::new() }, runs.clone()));
+            let runs: Vec<String> = states.into_iter().map(|(_, run)| run).collect();
+            let first = || Self { size, scenes: scenes.clone(), runs: runs.clone(), frames: Vec::new() };
+            let all = folder.get_or_insert_with(first);
             let unlike = |what: String| Failure::usage(format!("{} {what}", file.display()));
             let before = all
                 .frames
                 .last()
                 .map(|(_, _, path)| path.file_name().unwrap_or_default().to_string_lossy().into_owned())
                 .unwrap_or_default();
-            if tags.frame != number {
-                return Err(unlike(format!("shows frame {}; a file was renamed", tags.frame)));
+            if frame != number {
+                return Err(unlike(format!("shows frame {frame}; a file was renamed")));
             }
             if size != all.size {
                 let [[w, h], [w2, h2]] = [size, all.size];
                 return Err(unlike(format!("has {w}×{h} pixels, {before} has {w2}×{h2}; render them in one size")));
             }
-            if tags.scene != all.scene {
+            if scenes != all.scenes {
                 return Err(unlike(format!("shows another scene than {before}; render all of one scene")));
             }
-            if runs != *first {
-                return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(first))));
+            if runs != all.runs {
+                return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(&all.runs))));
             }
-            if !tags.time.is_finite() || all.frames.last().is_some_and(|(_, time, _)| tags.time <= *time) {
-                return Err(unlike(format!("is at {} s, not after {before}", tags.time)));
+            if all.frames.last().is_some_and(|(_, last, _)| time <= *last) {
+                return Err(unlike(format!("is at {time} s, not after {before}")));
             }
-            all.frames.push((number, tags.time, file));
+            all.frames.push((number, time, file));
         }
-        Ok(folder.expect("at least one frame").0)
+        Ok(folder.expect("at least one frame"))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::options::SceneOptions;
+use super::options::{SceneOptions, Telling};
 use super::scenes::{status_of, worse};
 use clap::Args;
 use serde_json::{Value, json};
@@ -19,13 +19,8 @@ pub(super) struct Check {
     #[command(flatten)]
     scenes: SceneOptions,
 
-    /// Only mistakes, no warnings
-    #[arg(short, long)]
-    quiet: bool,
-
-    /// Print what was found as one JSON document
-    #[arg(long, conflicts_with = "quiet")]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Check {
@@ -35,11 +30,11 @@ impl Check {
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
             match self.scenes.load(path) {
-                Ok(scene) if self.json => {
+                Ok(scene) if self.telling.json => {
                     let (scene, warnings) = (scene.summary(), &scene.warnings);
                     documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
                 }
-                Ok(_) if self.quiet => {}
+                Ok(_) if self.telling.quiet => {}
                 Ok(scene) => {
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
@@ -47,7 +42,7 @@ impl Check {
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));
-                    if self.json {
+                    if self.telling.json {
                         let (message, mistakes) = (with_causes(&error), error.mistakes());
                         documents.push(json!({ "file": file, "ok": false, "error": message, "mistakes": mistakes }));
                     } else {
@@ -56,7 +51,7 @@ impl Check {
                 }
             }
         }
-        if self.json {
+        if self.telling.json {
             print_json(&json!({ "scenes": Value::from(documents) }))?;
         }
         Ok(failed.unwrap_or(Status::Done))

@@ -2,12 +2,13 @@
 
 use super::console;
 use super::failure::{Failure, Status, with_causes};
+use super::options::Telling;
 #[cfg(feature = "render")]
 use super::{
     failure::{warn, warn_of_figure},
     frames::FrameRanges,
     interrupt,
-    render::{samples, size},
+    options::{samples, size},
     scenes::status_of,
 };
 #[cfg(feature = "render")]
@@ -68,13 +69,8 @@ pub(super) struct Compare {
     #[command(flatten)]
     drawing: Drawing,
 
-    /// Only the exit status
-    #[arg(short, long)]
-    quiet: bool,
-
-    /// Print all verdicts as one JSON document
-    #[arg(long, conflicts_with = "quiet")]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 /// How a scene is drawn to be compared.
@@ -119,7 +115,7 @@ impl Compare {
         let blessed = blesses.then(|| comparison.bless(self.bless_state)).transpose();
         let is_changed = |blessed: &Blessed| !blessed.written.is_empty() || !blessed.removed.is_empty();
         let accepted = matches!(&blessed, Ok(Some(blessed)) if is_changed(blessed) && blessed.left.is_empty());
-        if self.json {
+        if self.telling.json {
             let written = match &blessed {
                 Ok(Some(blessed)) => {
                     json!({ "written": blessed.written, "removed": blessed.removed, "left": blessed.left })
@@ -127,7 +123,7 @@ impl Compare {
                 _ => Value::Null,
             };
             console::print_json(&document(&comparison, &written))?;
-        } else if !self.quiet {
+        } else if !self.telling.quiet {
             console::print(&comparison.told(!blesses))?;
             if let Ok(Some(blessed)) = &blessed {
                 let nothing = comparison.passes().then(|| "nothing to accept\n".to_owned());
@@ -215,7 +211,7 @@ impl Compare {
             _ => Failure::usage(error.to_string()),
         })?;
         match &subject {
-            _ if self.quiet => {}
+            _ if self.telling.quiet => {}
             Subject::Scene(scene) => warn(path, scene),
             Subject::Figure(figure) => warn_of_figure(figure),
         }
@@ -236,7 +232,7 @@ impl Compare {
         interrupt::listen();
         let drawn = draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested());
         let drawn = drawn.map_err(|error| match error {
-            DrawError::Render(error) => super::render::failed(error),
+            DrawError::Render(error) => error.into(),
             DrawError::Disk(_) => Failure::files(error.to_string()),
             DrawError::Wish(message) => Failure::usage(message),
         })?;

@@ -1,7 +1,6 @@
-//! Results on standard output, progress on standard error.
+//! Results on standard output.
 
 use super::failure::Failure;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
@@ -19,17 +18,6 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value).expect("plain data");
     print(&(text + "\n"))
-}
-
-/// A bar that counts steps, estimates the time left, and shows frames in its message. Invisible when `quiet` or when
-/// nobody sits at a terminal.
-pub(super) fn progress(title: &str, steps: u64, quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {msg}, {eta} left");
-    let bar = ProgressBar::with_draw_target(Some(steps), target);
-    bar.set_style(style.expect("a template of known keys"));
-    bar.set_prefix(title.to_owned());
-    bar
 }
 
 /// A number for people: three significant digits.

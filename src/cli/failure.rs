@@ -2,6 +2,8 @@
 
 use crate::output::OutputError;
 #[cfg(feature = "render")]
+use crate::render::RenderError;
+#[cfg(feature = "render")]
 use crate::scene::figure::Figure;
 use crate::scene::{Mistakes, Scene};
 use std::error::Error;
@@ -80,6 +82,14 @@ impl From<OutputError> for Failure {
             OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
         Self { status, message: Some(with_causes(&error)) }
+    }
+}
+
+/// The device stopped working or refused.
+#[cfg(feature = "render")]
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        Self::adapter(&error)
     }
 }
 

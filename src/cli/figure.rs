@@ -3,14 +3,13 @@
 use super::console;
 use super::failure::{Failure, Status, warn_of_figure, with_causes};
 use super::interrupt;
-use super::options::processors;
+use super::options::{DeviceOptions, Telling, ThreadOptions, size};
 use super::record;
-use super::render::{failed, samples, size};
 use crate::artist::{FigureError, draw_figure};
-use crate::gpu::{AdapterChoice, Gpu};
+use crate::gpu::Gpu;
 use crate::look::Theme;
 use crate::moments::{Forces, Moments, Taking};
-use crate::output::{self, AtomicFile, FolderLock, OutputError};
+use crate::output::{AtomicFile, Compression, FolderLock, OutputError, Tags, encode, is_folder, read_tags};
 use crate::reading::words::nearest;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene};
@@ -64,25 +63,12 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "THEME")]
     theme: Option<ThemeOption>,
 
-    /// Samples per pixel: 4 for smooth edges, 1 for speed
-    #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
-    samples: u32,
-
-    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
-    #[arg(long, value_name = "ADAPTER", default_value = "auto")]
-    adapter: AdapterChoice,
-
-    /// Threads to work with [default: one for each processor]; the results are the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-
-    /// Neither progress nor summary nor warnings; only errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    /// Print what was made as one JSON document
-    #[arg(long, conflicts_with = "quiet")]
-    json: bool,
+    #[command(flatten)]
+    device: DeviceOptions,
+    #[command(flatten)]
+    threads: ThreadOptions,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 /// A theme by name.
@@ -95,7 +81,7 @@ enum ThemeOption {
 impl FigureCommand {
     pub(super) fn run(self) -> Result<Status, Failure> {
         if self.figures.is_empty() {
-            if self.json {
+            if self.telling.json {
                 console::print_json(&json!({ "names": NAMES }))?;
                 return Ok(Status::Done);
             }
@@ -103,21 +89,16 @@ impl FigureCommand {
             return Ok(Status::Done);
         }
         let mut figures = self.load()?;
-        if !self.quiet {
+        if !self.telling.quiet {
             figures.iter().for_each(warn_of_figure);
         }
         for figure in &mut figures {
             self.fit(figure)?;
         }
         let paths = self.paths(&figures)?;
-        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
-        if let Some(figure) = figures.iter().find(|figure| figure.size.iter().any(|&side| side > gpu.longest_side())) {
-            let ([width, height], adapter, longest) = (figure.size, gpu.description(), gpu.longest_side());
-            let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
-            return Err(Failure::usage(message));
-        }
+        let gpu = self.device.open(figures.iter().map(|figure| figure.size))?;
         interrupt::listen();
-        let pool = record::pool(self.threads.map_or_else(processors, usize::from))?;
+        let pool = record::pool(self.threads.count())?;
         std::fs::create_dir_all(&self.out).map_err(OutputError::writing(&self.out))?;
         let _lock = FolderLock::beside_others(&self.out);
         let mut made = Vec::new();
@@ -165,8 +146,8 @@ impl FigureCommand {
     fn make(&self, figure: &Figure, path: &Path, gpu: &Gpu) -> Result<Option<Value>, Failure> {
         let mut file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
-        let image = draw_figure(gpu, figure, &moments, self.samples).map_err(|error| match error {
-            FigureError::Render(error) => failed(error),
+        let image = draw_figure(gpu, figure, &moments, self.device.samples).map_err(|error| match error {
+            FigureError::Render(error) => error.into(),
             FigureError::NoRoom(error) => {
                 let [width, height] = figure.size;
                 Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
@@ -175,8 +156,9 @@ impl FigureCommand {
         if interrupt::requested() {
             return Ok(None);
         }
-        let tags = output::FigureTags::new(figure, &moments, &gpu.description().to_string());
-        file.append(&output::encode_figure(figure.size, image.as_raw(), &tags))?;
+        let tags = Tags::of_figure(figure, &moments, &gpu.description().to_string());
+        // A single picture may take its time.
+        file.append(&encode(figure.size, image.as_raw(), &tags.texts(), Compression::High))?;
         file.commit()?;
         Ok(Some(numbers(figure, &moments)))
     }
@@ -220,11 +202,12 @@ impl FigureCommand {
 
     /// Where each figure goes; nothing of others is replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
-        output::is_folder(&self.out)?;
+        is_folder(&self.out)?;
         let path = |figure: &Figure| {
             let name = format!("{}.png", figure.name);
             let path = self.out.join(&name);
-            if path.is_dir() || !self.overwrite && path.exists() && !output::is_figure(&path)? {
+            let is_figure = || Ok::<_, OutputError>(read_tags(&path)?.is_some_and(|(_, tags)| tags.frame().is_none()));
+            if path.is_dir() || !self.overwrite && path.exists() && !is_figure()? {
                 let what = format!("{name}, which is no figure of this program");
                 return Err(Failure::from(OutputError::Occupied { path: self.out.clone(), what }));
             }
@@ -237,7 +220,7 @@ impl FigureCommand {
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
-        let bar = console::progress(&figure.name, taking.steps()[1], self.quiet || self.json);
+        let bar = self.telling.progress(&figure.name, taking.steps()[1]);
         let mut is_there = false;
         while !is_there && !interrupt::requested() {
             is_there = taking.advance(slice);
@@ -249,7 +232,7 @@ impl FigureCommand {
 
     /// Tells what was made.
     fn tell(&self, made: &[(&Figure, &PathBuf, Value)]) -> Result<(), Failure> {
-        if self.json {
+        if self.telling.json {
             let entry = |(figure, path, numbers): &(&Figure, &PathBuf, Value)| {
                 let file = path.to_string_lossy();
                 json!({ "name": figure.name, "file": file, "size": figure.size, "numbers": numbers })
@@ -257,7 +240,7 @@ impl FigureCommand {
             let figures: Vec<_> = made.iter().map(entry).collect();
             return console::print_json(&json!({ "figures": figures }));
         }
-        if !self.quiet {
+        if !self.telling.quiet {
             for (figure, path, _) in made {
                 let [width, height] = figure.size;
                 console::print(&format!("{}  {width}×{height}\n", path.display()))?;

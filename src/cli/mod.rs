@@ -15,6 +15,8 @@ mod driver;
 mod failure;
 #[cfg(feature = "render")]
 mod figure;
+#[cfg(feature = "render")]
+mod film;
 mod frames;
 mod info;
 mod interrupt;

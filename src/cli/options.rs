@@ -1,7 +1,14 @@
 //! Options that several commands share.
 
+#[cfg(feature = "render")]
+use super::failure::Failure;
 use super::frames::FrameRanges;
+#[cfg(feature = "render")]
+use crate::gpu::{AdapterChoice, Gpu};
+#[cfg(feature = "render")]
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
 
 /// What is run.
@@ -43,27 +50,127 @@ pub(super) struct RunOptions {
     #[arg(long)]
     pub(super) states: bool,
 
+    #[command(flatten)]
+    pub(super) threads: ThreadOptions,
+    #[command(flatten)]
+    pub(super) telling: Telling,
+}
+
+/// How many threads to work with.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct ThreadOptions {
     /// Threads to work with [default: one for each processor]; the results are the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
+    threads: Option<u16>,
+}
 
-    /// Neither progress nor summary; only errors
+impl ThreadOptions {
+    /// As many as were asked for, or one for each processor.
+    pub(super) fn count(self) -> usize {
+        self.count_or(processors())
+    }
+
+    /// As many as were asked for, or so many.
+    pub(super) fn count_or(self, usual: usize) -> usize {
+        self.threads.map_or(usual, usize::from)
+    }
+}
+
+/// What is told, and how.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct Telling {
+    /// Neither progress nor results nor warnings; only errors
     #[arg(short, long)]
     pub(super) quiet: bool,
 
-    /// Print the summary as one JSON document
+    /// Print the results as one JSON document
     #[arg(long, conflicts_with = "quiet")]
     pub(super) json: bool,
 }
 
-impl RunOptions {
-    /// How many threads to work with.
-    pub(super) fn threads(&self) -> usize {
-        self.threads.map_or_else(processors, usize::from)
+impl Telling {
+    /// Whether results are told in words.
+    pub(super) fn is_in_words(self) -> bool {
+        !self.quiet && !self.json
     }
+
+    /// A bar that counts steps, estimates the time left, and shows frames in its message. Invisible when nothing is to be
+    /// told or nobody sits at a terminal.
+    pub(super) fn progress(self, title: &str, steps: u64) -> ProgressBar {
+        let target = if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {msg}, {eta} left");
+        let bar = ProgressBar::with_draw_target(Some(steps), target);
+        bar.set_style(style.expect("a template of known keys"));
+        bar.set_prefix(title.to_owned());
+        bar
+    }
+}
+
+/// What draws.
+#[cfg(feature = "render")]
+#[derive(Args, Debug)]
+pub(super) struct DeviceOptions {
+    /// Samples per pixel: 4 for smooth edges, 1 for speed
+    #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
+    pub(super) samples: u32,
+
+    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
+    #[arg(long, value_name = "ADAPTER", default_value = "auto")]
+    adapter: AdapterChoice,
+}
+
+#[cfg(feature = "render")]
+impl DeviceOptions {
+    /// Opens the device, on which pictures of these sizes (px) are to be drawn.
+    pub(super) fn open(&self, sizes: impl IntoIterator<Item = [u32; 2]>) -> Result<Gpu, Failure> {
+        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
+        let longest = gpu.longest_side();
+        if let Some([width, height]) = sizes.into_iter().find(|size| size.iter().any(|&side| side > longest)) {
+            let adapter = gpu.description();
+            let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
+            return Err(Failure::usage(message));
+        }
+        Ok(gpu)
+    }
+}
+
+#[cfg(feature = "render")]
+pub(super) fn samples() -> impl TypedValueParser<Value = u32> {
+    PossibleValuesParser::new(["1", "4"]).map(|typed| typed.parse().expect("one of the numbers above"))
+}
+
+/// Sides of a picture that a scene may have, too (px).
+#[cfg(feature = "render")]
+const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
+
+#[cfg(feature = "render")]
+pub(super) fn size(typed: &str) -> Result<[u32; 2], String> {
+    let sides = typed.split_once(['x', 'X', '×']).and_then(|(width, height)| {
+        let side = |digits: &str| digits.trim().parse::<u32>().ok();
+        Some([side(width)?, side(height)?])
+    });
+    let sides = sides.ok_or("expected width x height, such as 1280x720")?;
+    if sides.iter().any(|side| !SIDES.contains(side)) {
+        return Err(format!("a side has {} to {} pixels", SIDES.start(), SIDES.end()));
+    }
+    Ok(sides)
 }
 
 /// How many threads run at the same time on this machine.
 pub(super) fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+#[cfg(all(test, feature = "render"))]
+mod tests {
+    use super::size;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("1280x720"), Ok([1280, 720]));
+        assert_eq!(size("640×360"), Ok([640, 360]));
+        for wrong in ["", "x", "1280", "1280x", "0x5", "-1x4", "20000x100", "1280x720x3"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
 }

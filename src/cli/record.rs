@@ -3,7 +3,7 @@
 use super::console;
 use super::failure::{Failure, Status};
 use super::interrupt;
-use super::options::RunOptions;
+use super::options::{RunOptions, Telling};
 use super::report;
 use super::scenes::Job;
 use crate::history::History;
@@ -51,7 +51,7 @@ pub(super) fn run_all(
     studio: Option<&dyn Studio>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
-    let pool = pool(options.threads())?;
+    let pool = pool(options.threads.count())?;
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut documents: Vec<Value> = Vec::new();
     let mut interrupted = false;
@@ -63,17 +63,17 @@ pub(super) fn run_all(
         }
         let path = job.folder.path().to_owned();
         let mut blank = if number > 0 { "\n" } else { "" };
-        if let Some(earlier) = job.folder.earlier().filter(|_| !options.json && !options.quiet) {
+        if let Some(earlier) = job.folder.earlier().filter(|_| options.telling.is_in_words()) {
             console::print(&format!("{blank}{}: replacing {earlier}\n", path.display()))?;
             blank = "";
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         result = record(job, &mut summary, &pool, options, studio);
-        if options.json {
+        if options.telling.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
             merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
             documents.push(document);
-        } else if !options.quiet && result.is_ok() {
+        } else if !options.telling.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
         }
         if result.is_err() {
@@ -82,7 +82,7 @@ pub(super) fn run_all(
         interrupted = summary.outcome == Outcome::Interrupted;
     }
     // What was finished is told before the failure.
-    let printed = if options.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
+    let printed = if options.telling.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
     result.and(printed)?;
     Ok(if interrupted { Status::Interrupted } else { Status::Done })
 }
@@ -154,7 +154,7 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(self.folder, self.scene, &self.runs)).transpose()?;
 
-        let made = self.simulate(pool, options.quiet, pictures.as_deref_mut(), |frame, pictures| {
+        let made = self.simulate(pool, options.telling, pictures.as_deref_mut(), |frame, pictures| {
             diagnostics.write(frame)?;
             if let Some(states) = &mut states {
                 states.write(frame)?;
@@ -201,7 +201,7 @@ impl Recording<'_> {
     fn simulate<'p>(
         &mut self,
         pool: &ThreadPool,
-        quiet: bool,
+        telling: Telling,
         mut pictures: Option<&mut (dyn Pictures + 'p)>,
         mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
@@ -217,7 +217,7 @@ impl Recording<'_> {
             }
             Frames::new(runner, &self.frames, course.is_some(), self.folder)
         });
-        let bar = console::progress(&self.scene.title, frames.steps()[1], quiet);
+        let bar = telling.progress(&self.scene.title, frames.steps()[1]);
         if course.is_some() {
             bar.set_message("simulating ahead for the strips");
         }

@@ -1,21 +1,19 @@
 //! `render`: frames, diagnostics and a summary.
 
-use super::animate::{comment, replaceable, summary};
 use super::console;
 use super::failure::{Failure, Status};
+use super::film::{comment, replaceable, summary};
 use super::interrupt;
-use super::options::{RunOptions, SceneOptions};
+use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
 use crate::artist::Artist;
-use crate::gpu::{AdapterChoice, Gpu};
+use crate::gpu::Gpu;
 use crate::history::History;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
-use crate::render::RenderError;
 use crate::scene::Scene;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -55,13 +53,8 @@ pub(super) struct Render {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// Samples per pixel: 4 for smooth edges, 1 for speed
-    #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
-    samples: u32,
-
-    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
-    #[arg(long, value_name = "ADAPTER", default_value = "auto")]
-    adapter: AdapterChoice,
+    #[command(flatten)]
+    device: DeviceOptions,
 
     /// Also make an animation of the frames, or a sheet of them; the ending of FILE chooses the format, as with `localshape
     /// animate`, which knows more options. May be given several times
@@ -79,35 +72,32 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let mut scenes = self.scenes.load_all(self.options.quiet)?;
+        let mut scenes = self.scenes.load_all(self.options.telling.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }
         let films = self.films(scenes.len())?;
         let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
         // Opened when all else is known to be right, and before the first folder is touched.
-        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
-        for job in &jobs {
-            let [width, height] = job.scene.view.size;
-            let longest = gpu.longest_side();
-            if width.max(height) > longest {
-                let adapter = gpu.description();
-                let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
-                return Err(Failure::usage(message));
-            }
-        }
-        let writers = self.options.threads().min(MOST_WRITERS);
+        let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
+        let threads = self.options.threads.count();
         let shared = (!films.is_empty()).then(|| Shared {
             films,
             words: words.to_vec(),
-            threads: self.options.threads(),
+            threads,
             run: jobs.first().and_then(|job| job.runs.first().copied()),
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
-        let device =
-            Device { gpu, samples: self.samples, writers, keep: !self.no_frames, shared, made: Mutex::default() };
+        let device = Device {
+            gpu,
+            samples: self.device.samples,
+            writers: threads.min(MOST_WRITERS),
+            keep: !self.no_frames,
+            shared,
+            made: Mutex::default(),
+        };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
-        if !self.options.quiet && !self.options.json {
+        if self.options.telling.is_in_words() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
             made.iter().try_for_each(|line| console::print(line))?;
         }
@@ -271,7 +261,7 @@ impl Studio for Device {
         });
         Ok(Box::new(Drawing {
             scene,
-            artist: Artist::new(&self.gpu, scene, self.samples).map_err(failed)?,
+            artist: Artist::new(&self.gpu, scene, self.samples)?,
             writer: FrameWriter::start_with(self.keep.then_some(folder), self.writers, tap),
             films,
             keep: self.keep,
@@ -321,10 +311,10 @@ impl Pictures for Drawing<'_> {
         let composed = self.artist.compose(frame);
         self.compose += clock.spent();
         let clock = Clock::thread();
-        let pixels = self.artist.draw(&composed).map_err(failed)?;
+        let pixels = self.artist.draw(&composed)?;
         self.draw += clock.spent();
-        let tags = Tags::new(self.scene, frame, &self.adapter);
-        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, tags })?)
+        let tags = Tags::of_frame(self.scene, frame, &self.adapter);
+        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, frame: frame.index, tags })?)
     }
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
@@ -334,43 +324,5 @@ impl Pictures for Drawing<'_> {
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
         result?;
         filmed
-    }
-}
-
-/// The device stopped working or refused.
-pub(super) fn failed(error: RenderError) -> Failure {
-    Failure::adapter(&error)
-}
-
-pub(super) fn samples() -> impl TypedValueParser<Value = u32> {
-    PossibleValuesParser::new(["1", "4"]).map(|typed| typed.parse().expect("one of the numbers above"))
-}
-
-/// Sides of a picture that a scene may have, too (px).
-const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
-
-pub(super) fn size(typed: &str) -> Result<[u32; 2], String> {
-    let sides = typed.split_once(['x', 'X', '×']).and_then(|(width, height)| {
-        let side = |digits: &str| digits.trim().parse::<u32>().ok();
-        Some([side(width)?, side(height)?])
-    });
-    let sides = sides.ok_or("expected width x height, such as 1280x720")?;
-    if sides.iter().any(|side| !SIDES.contains(side)) {
-        return Err(format!("a side has {} to {} pixels", SIDES.start(), SIDES.end()));
-    }
-    Ok(sides)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::size;
-
-    #[test]
-    fn sizes() {
-        assert_eq!(size("1280x720"), Ok([1280, 720]));
-        assert_eq!(size("640×360"), Ok([640, 360]));
-        for wrong in ["", "x", "1280", "1280x", "0x5", "-1x4", "20000x100", "1280x720x3"] {
-            assert!(size(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -1,8 +1,8 @@
 //! `table`: the paper's numbers beside ours.
 
-use super::console::{self, print, print_json};
+use super::console::{print, print_json};
 use super::failure::{Failure, Status};
-use super::options::processors;
+use super::options::{Telling, ThreadOptions};
 use super::{interrupt, record};
 use crate::output::SheetFiles;
 use crate::table::{Watch, ratio, table1};
@@ -41,17 +41,11 @@ pub(super) struct Table {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     orientations: u32,
 
-    /// Threads to work with [default: one for each processor, and one for the ratio]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-
-    /// Neither progress nor the tables; only errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    /// Print the tables as one JSON document
-    #[arg(long, conflicts_with = "quiet")]
-    json: bool,
+    // The ratio is measured on one thread if nobody asks for more.
+    #[command(flatten)]
+    threads: ThreadOptions,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 /// What can be asked for.
@@ -92,24 +86,24 @@ impl Table {
             let files = SheetFiles::begin(&folder, name.files(), &self.mark(name), self.overwrite)?;
             let Some(made) = self.measure(name)? else {
                 status = Status::Interrupted;
-                if !self.quiet && !self.json {
+                if self.telling.is_in_words() {
                     print(&format!("interrupted; {} was not made\n", name.word()))?;
                 }
                 break;
             };
             files.finish(&made.texts)?;
-            if self.json {
+            if self.telling.json {
                 let mut document = json!({ "table": name.word(), "folder": folder.to_string_lossy() });
                 document["files"] = json!(name.files());
                 record::merge(&mut document, made.json);
                 documents.push(document);
-            } else if !self.quiet {
+            } else if !self.telling.quiet {
                 let blank = if number > 0 { "\n" } else { "" };
                 let (table, names) = (&made.texts[0], name.files().join(", "));
                 print(&format!("{blank}{table}\nIn {}: {names}\n", folder.display()))?;
             }
         }
-        if self.json {
+        if self.telling.json {
             print_json(&json!({ "tables": documents }))?;
         }
         Ok(status)
@@ -118,7 +112,7 @@ impl Table {
     /// How a table is made, by which its files are known again.
     fn mark(&self, name: Name) -> String {
         match name {
-            Name::Ratio => ratio::mark(self.threads.map_or(1, usize::from)),
+            Name::Ratio => ratio::mark(self.threads.count_or(1)),
             _ => self.table1().mark(),
         }
     }
@@ -131,11 +125,11 @@ impl Table {
     fn measure(&self, name: Name) -> Result<Option<Made>, Failure> {
         let (protocol, timing) = (self.table1(), ratio::Protocol::default());
         let (work, threads) = match name {
-            Name::Ratio => (timing.work(), 1),
-            _ => (protocol.work(), processors()),
+            Name::Ratio => (timing.work(), self.threads.count_or(1)),
+            _ => (protocol.work(), self.threads.count()),
         };
-        let pool = record::pool(self.threads.map_or(threads, usize::from))?;
-        let bar = console::progress(name.word(), work, self.quiet);
+        let pool = record::pool(threads)?;
+        let bar = self.telling.progress(name.word(), work);
         let watch: &Watch<'_> = &|more| {
             bar.inc(more);
             !interrupt::requested()

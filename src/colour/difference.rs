@@ -1,9 +1,9 @@
-//! How different two colours look, also to eyes that lack a kind of cones.
+//! Colour difference (CIEDE2000), also for colour-blind eyes.
 
 use super::{Colour, linear};
 use std::f64::consts::{PI, TAU};
 
-/// Whose eyes look at a colour.
+/// Normal colour vision and two kinds of colour blindness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sight {
     /// Those with three kinds of cones.
@@ -14,7 +14,7 @@ pub enum Sight {
     Protanopia,
 }
 
-/// What takes linear light to the light that looks the same to eyes without a kind of cones.
+/// A matrix that simulates colour blindness on linear light.
 type Loss = [[f64; 3]; 3];
 
 /// Without green and without red cones, by G. M. Machado, M. M. Oliveira, L. A. F. Fernandes: *A Physiologically-based
@@ -45,8 +45,7 @@ impl Sight {
     }
 }
 
-/// What linear light looks like to somebody, as light that looks the same to all, once for each of two models of the loss
-/// of cones: Machado 2009 and Viénot 1999.
+/// Linear light as somebody sees it, simulated by each of two models of colour blindness: Machado 2009 and Viénot 1999.
 pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
     match sight {
@@ -56,11 +55,16 @@ pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
     }
 }
 
-/// How different two colours look to somebody: the smaller CIEDE2000 of both models of that sight. Some 1 can just be
-/// told when the colours touch; 20 nobody takes for one another.
+/// The difference of two colours to somebody: the smaller CIEDE2000 of both models of that vision. A difference of about 1
+/// is just noticeable between colours that touch; colours that differ by 20 are not confused.
 pub fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
     let [one, other] = [one, other].map(|colour| seen_by(sight, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
+}
+
+/// The smallest difference of two colours to anybody (CIEDE2000).
+pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
+    Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
 }
 
 /// A colour in CIELAB: lightness from 0 to 100, how red rather than green, how yellow rather than blue.
@@ -98,13 +102,13 @@ pub fn ciede2000(Lab([l1, a1, b1]): Lab, Lab([l2, a2, b2]): Lab) -> f64 {
     let hue = |a: f64, b: f64| if a == 0.0 && b == 0.0 { 0.0 } else { libm::atan2(b, a).rem_euclid(TAU) };
     let [h1, h2] = [hue(a1, b1), hue(a2, b2)];
     let grey = c1 * c2 == 0.0;
-    let turn = match h2 - h1 {
+    let hue_difference = match h2 - h1 {
         _ if grey => 0.0,
-        turn if turn > PI => turn - TAU,
-        turn if turn < -PI => turn + TAU,
-        turn => turn,
+        angle if angle > PI => angle - TAU,
+        angle if angle < -PI => angle + TAU,
+        angle => angle,
     };
-    let (dl, dc, dh) = (l2 - l1, c2 - c1, 2.0 * (c1 * c2).sqrt() * libm::sin(turn / 2.0));
+    let (dl, dc, dh) = (l2 - l1, c2 - c1, 2.0 * (c1 * c2).sqrt() * libm::sin(hue_difference / 2.0));
     let (l, c) = ((l1 + l2) / 2.0, (c1 + c2) / 2.0);
     let h = match h1 + h2 {
         sum if grey => sum,

@@ -19,7 +19,7 @@ pub fn oklab(colour: Colour) -> Oklab {
     ])
 }
 
-/// An Oklab colour as sRGB bytes. Channels that no byte can say come to their nearest end.
+/// An Oklab colour as sRGB bytes. Channels out of range are clamped.
 pub fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
     let cube = |x: f64| x * x * x;
     let l = cube(lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b);

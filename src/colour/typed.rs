@@ -1,9 +1,9 @@
-//! Colours as people type them.
+//! Colours as typed.
 
 use super::Colour;
 use csscolorparser::NAMED_COLORS;
 
-/// Why a text is no colour.
+/// Why a text is not a colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UnknownColour {
     /// It is neither a name nor digits.
@@ -12,7 +12,7 @@ pub enum UnknownColour {
     WithoutHash,
     /// It begins like digits or numbers of a colour, but has others than a colour can have.
     Digits,
-    /// It is a colour that something shows through.
+    /// It is a colour that is not opaque.
     Transparent,
 }
 

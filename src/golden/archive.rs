@@ -66,7 +66,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
             return Err(format!("{STATES_FILE}: “{run}” has not as many velocities as positions"));
         }
         for (at, (row, numbers)) in frames.iter().enumerate() {
-            let vectors = |numbers: &crate::scene::npz::Numbers| -> Vec<DVec3> {
+            let vectors = |numbers: &crate::scene::npz::Values| -> Vec<DVec3> {
                 let vector = |node: usize| DVec3::from_array([0, 1, 2].map(|axis| numbers.double(at, 3 * node + axis)));
                 (0..numbers.columns() / 3).map(vector).collect()
             };

@@ -6,7 +6,8 @@ use super::side::{Kind, Source};
 use super::states::States;
 use super::{Comparison, Verdict};
 use crate::output::{
-    AtomicFile, DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, folder_of, read_file,
+    AtomicFile, Compression, DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, encode, folder_of,
+    read_file,
 };
 use std::borrow::Cow;
 use std::fmt;
@@ -310,7 +311,7 @@ fn bytes(source: &Source, is_golden: bool) -> io::Result<Cow<'_, [u8]>> {
     })?;
     let small = || {
         let pixels = Pixels::from_bytes(&bytes).ok()?;
-        Some(pixels.label?.encode(pixels.size, &pixels.bytes))
+        Some(encode(pixels.size, &pixels.bytes, &pixels.label?.texts(), Compression::High))
     };
     match (is_golden, source) {
         (true, Source::File(_)) => Ok(small().map_or(bytes, Cow::Owned)),

@@ -6,7 +6,7 @@
 
 use super::picture::Pixels;
 use super::silhouettes::{CONTRAST, Finder, Place};
-use crate::output::Label;
+use crate::output::Tags;
 use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
@@ -175,8 +175,8 @@ struct Counts {
 
 impl Tally {
     /// For pictures of one size, by what they say of themselves.
-    pub(super) fn new(size: [u32; 2], channels: usize, labels: [Option<&Label>; 2]) -> Self {
-        let [expected, actual] = labels.map(|label| label.map(Label::adapter));
+    pub(super) fn new(size: [u32; 2], channels: usize, labels: [Option<&Tags>; 2]) -> Self {
+        let [expected, actual] = labels.map(|label| label.map(|label| label.adapter.as_str()));
         let machines = Machines::of(expected, actual);
         let finder = (machines == Machines::OtherKind).then(|| Finder::new(size[0] as usize, channels));
         Self { machines, size, channels, given: 0, counts: Counts::default(), of_silhouettes: 0, finder }

@@ -7,7 +7,7 @@ use super::states::{State, States, Step};
 use crate::artist::{Artist, FigureError, draw_figure as draw_figure_on};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
 use crate::moments::Taking;
-use crate::output::{FigureTags, Label, Tags, frame_file_name};
+use crate::output::{Compression, Tags, encode, frame_file_name};
 use crate::render::RenderError;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
@@ -207,8 +207,8 @@ fn draw_scene(
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
             let pixels = artist.draw(&artist.compose(&frame))?;
-            let label = Label::Frame(Tags::new(&scene, &frame, &adapter));
-            let bytes = label.encode(size, &pixels);
+            let label = Tags::of_frame(&scene, &frame, &adapter);
+            let bytes = encode(size, &pixels, &label.texts(), Compression::High);
             let file = frame_file_name(index);
             drawn.push(Drawn::new(&file, &label));
             pictures.insert(file, bytes);
@@ -255,10 +255,10 @@ fn draw_figure(
                 DrawError::Wish(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
             }
         })?;
-        let label = Label::Figure(FigureTags::new(&figure, &moments, &gpu.description().to_string()));
+        let label = Tags::of_figure(&figure, &moments, &gpu.description().to_string());
         let file = format!("{}.png", figure.name);
         drawn.push(Drawn::new(&file, &label));
-        pictures.insert(file, label.encode(figure.size, image.as_raw()));
+        pictures.insert(file, encode(figure.size, image.as_raw(), &label.texts(), Compression::High));
     }
     let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
     let record = Record { subject: String::new(), scenes, size: figure.size, samples, pictures: drawn, states };

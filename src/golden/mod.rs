@@ -54,12 +54,12 @@ pub use states::{Change, Course, Displacement, Moment, Moved, StepChange};
 pub use suite::Suite;
 pub use verdict::{MovedHere, Verdict};
 
-use crate::output::Label;
+use crate::output::{Shown, Tags};
 use crate::sim::words::rounded;
 use pair::Pair;
 use rayon::prelude::*;
 use serde::Serialize;
-use side::{Kind, Source, frame_of, states_of};
+use side::{Kind, Source, states_of};
 use states::{States, courses, moved};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -168,7 +168,7 @@ impl Comparison {
         };
         // Frames beside those of a golden tell of states, too.
         let beside = beside(&expected, &actual);
-        let labels = [0, 1].map(|side| -> Vec<&Label> {
+        let labels = [0, 1].map(|side| -> Vec<&Tags> {
             let more = beside.iter().filter_map(|(_, label)| label.as_ref().ok()?.as_ref()).filter(|_| side == 1);
             read.iter().filter_map(|read| read.labels[side].as_ref()).chain(more).collect()
         });
@@ -234,7 +234,7 @@ impl Comparison {
     }
 
     /// What is known of the states of both sides.
-    fn states(sides: [&Side; 2], labels: &[Vec<&Label>; 2], notes: &mut Vec<String>) -> [States; 2] {
+    fn states(sides: [&Side; 2], labels: &[Vec<&Tags>; 2], notes: &mut Vec<String>) -> [States; 2] {
         let has_record = sides.iter().any(|side| side.record.is_some());
         let of_labels = [0, 1].map(|side| states_of(&labels[side], has_record));
         let differs = !moved(&of_labels[0], &of_labels[1], &courses(&of_labels[0], &of_labels[1])).is_empty();
@@ -368,7 +368,7 @@ fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
 }
 
 /// Frames of a folder that are not among the pictures of a golden, with what they say about themselves.
-fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Label>, PictureError>)> {
+fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Tags>, PictureError>)> {
     if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
         return Vec::new();
     }
@@ -385,18 +385,18 @@ fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Label>, 
 }
 
 /// What is wrong with a frame that has no picture in the golden; `None` if nothing is.
-fn judge(name: &str, label: &Result<Option<Label>, PictureError>, expected: &Side) -> Option<Compared> {
+fn judge(name: &str, label: &Result<Option<Tags>, PictureError>, expected: &Side) -> Option<Compared> {
     let verdict = match label {
         Err(error) => Verdict::Unreadable { message: format!("{name}: {error}") },
         Ok(None) => Verdict::Extra,
         Ok(Some(label)) => {
-            let frame = frame_of(label).unwrap_or(0);
+            let frame = label.frame().unwrap_or(0);
             let runs = &expected.record.as_ref()?.states.runs;
             let is_other = |(digest, run): &&(String, String)| {
                 let state = runs.iter().find(|known| known.name == *run).and_then(|run| run.states.get(&frame));
                 state.is_some_and(|state| !digest.starts_with(&state.digest))
             };
-            let moved = label.states().iter().filter(is_other);
+            let moved = label.states.iter().filter(is_other);
             let runs: Vec<_> = moved.map(|(_, run)| MovedHere { run: run.clone(), displacement: None }).collect();
             if runs.is_empty() {
                 return None;
@@ -404,12 +404,12 @@ fn judge(name: &str, label: &Result<Option<Label>, PictureError>, expected: &Sid
             Verdict::StateMoved { runs, distance: None }
         }
     };
-    let frame = label.as_ref().ok().and_then(|label| label.as_ref()).and_then(frame_of);
+    let frame = label.as_ref().ok().and_then(|label| label.as_ref()?.frame());
     Some(Compared { name: name.to_owned(), frame, verdict })
 }
 
 /// Adds what is known besides the two pictures: by how much a state moved, and whether a golden contradicts itself.
-fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, courses: &[Course]) {
+fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, courses: &[Course]) {
     if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
         for here in runs {
             let course = courses.iter().find(|course| course.run == here.run);
@@ -427,13 +427,13 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
         (None, _) => Some("does not know this picture"),
         (Some(_), None) => Some("knows its state, this picture has lost what it said of itself"),
         (Some(drawn), Some(label)) => {
-            let is_other = label.states().iter().any(|(digest, run)| {
+            let is_other = label.states.iter().any(|(digest, run)| {
                 let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
                 state.is_none_or(|state| !digest.starts_with(&state.digest))
             });
-            if is_other || frame_of(label).unwrap_or(0) != drawn.frame {
+            if is_other || label.frame().unwrap_or(0) != drawn.frame {
                 Some("records another state than this picture shows")
-            } else if label.adapter() != drawn.adapter {
+            } else if label.adapter != drawn.adapter {
                 Some("records that another adapter drew this picture")
             } else {
                 None
@@ -450,16 +450,20 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
 /// That pictures of one name show different frames or times, in words.
 fn other_moments(pairs: &[Pair]) -> Option<String> {
     let told = |pair: &Pair| {
-        let [Some(Label::Frame(expected)), Some(Label::Frame(actual))] = &pair.labels else { return None };
+        let shown = |label: &Option<Tags>| match label.as_ref()?.shows {
+            Shown::Frame { frame, time } => Some((frame, time)),
+            Shown::Figure(_) => None,
+        };
+        let ((recorded, was), (frame, is)) = (shown(&pair.labels[0])?, shown(&pair.labels[1])?);
         let name = &pair.name;
-        if actual.frame != expected.frame {
-            return Some(format!("{name} shows frame {} instead of frame {}", actual.frame, expected.frame));
+        if frame != recorded {
+            return Some(format!("{name} shows frame {frame} instead of frame {recorded}"));
         }
         // Scenes whose steps are not alike have frames at slightly different times.
-        let is_other = (actual.time - expected.time).abs() > 0.01 * actual.time.abs().max(expected.time.abs());
+        let is_other = (is - was).abs() > 0.01 * is.abs().max(was.abs());
         is_other.then(|| {
-            let [was, is] = [expected.time, actual.time].map(|time| rounded(time, 4));
-            format!("{name} shows frame {} at {is} s instead of {was} s", actual.frame)
+            let [was, is] = [was, is].map(|time| rounded(time, 4));
+            format!("{name} shows frame {frame} at {is} s instead of {was} s")
         })
     };
     let mut all = pairs.iter().filter_map(told);
@@ -472,10 +476,10 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
 }
 
 /// Digests of the scenes of a side.
-fn scenes(side: &Side, labels: &[&Label]) -> BTreeSet<String> {
+fn scenes(side: &Side, labels: &[&Tags]) -> BTreeSet<String> {
     match &side.record {
         Some(record) => record.scenes.iter().cloned().collect(),
-        None => labels.iter().flat_map(|label| label.scenes()).map(str::to_owned).collect(),
+        None => labels.iter().flat_map(|label| label.scenes.iter().cloned()).collect(),
     }
 }
 

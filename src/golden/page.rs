@@ -3,9 +3,10 @@
 use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
 use super::report::{self, FAINT, INTERIOR, Report, SILHOUETTE, Sheet};
-use super::side::{Kind, frame_of};
+use super::side::Kind;
 use super::silhouettes::{Place, silhouettes};
 use super::{Compared, Comparison, Verdict};
+use crate::output::{Compression, encode};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -92,7 +93,7 @@ impl Comparison {
         let pixels = [0, 1].map(|at| source(at).filter(|_| is_shown).and_then(|source| source.pixels().ok()));
         let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| Some(source(at)?.bytes().ok()?.into_owned())));
         let label = |at: usize| pixels[at].as_ref().and_then(|pixels| pixels.label.as_ref());
-        let frame = picture.frame.or_else(|| [1, 0].into_iter().find_map(|at| label(at).and_then(frame_of)));
+        let frame = picture.frame.or_else(|| [1, 0].into_iter().find_map(|at| label(at)?.frame()));
         let time = frame.and_then(|frame| {
             let moments = self.courses.iter().flat_map(|course| &course.moments);
             moments.filter(|moment| moment.frame == frame).find_map(|moment| moment.time)
@@ -106,7 +107,7 @@ impl Comparison {
         let [expected, actual] = bytes;
         let is_identical = picture.verdict == Verdict::Identical;
         Drawing {
-            adapters: [0, 1].map(|at| label(at).map(|label| label.adapter().to_owned())),
+            adapters: [0, 1].map(|at| label(at).map(|label| label.adapter.clone())),
             sheet: Sheet {
                 name: picture.name.clone(),
                 frame,
@@ -168,5 +169,5 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
             bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
         });
     }
-    Some(crate::output::encode_plain(expected.size, &bytes))
+    Some(encode(expected.size, &bytes, &[], Compression::High))
 }

@@ -4,9 +4,9 @@
 use super::Compared;
 use super::distance::{Distance, Tally};
 use super::picture::{Header, PictureError, Rows};
-use super::side::{Source, frame_of};
+use super::side::Source;
 use super::verdict::Verdict;
-use crate::output::Label;
+use crate::output::Tags;
 use std::error::Error;
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(super) struct Pair {
     /// The name of the file, or of the actual one.
     pub(super) name: String,
     /// What both say of themselves.
-    pub(super) labels: [Option<Label>; 2],
+    pub(super) labels: [Option<Tags>; 2],
     verdict: Verdict,
 }
 
@@ -55,7 +55,7 @@ impl Pair {
 
     /// What is said of it.
     pub(super) fn compared(self) -> Compared {
-        let frame = self.labels.iter().flatten().find_map(frame_of);
+        let frame = self.labels.iter().flatten().find_map(Tags::frame);
         Compared { name: self.name, frame, verdict: self.verdict }
     }
 }
@@ -180,7 +180,7 @@ mod tests {
     use super::super::picture::Pixels;
     use super::super::silhouettes::CONTRAST;
     use super::*;
-    use crate::output::Tags;
+    use crate::output::{Compression, Shown, encode};
 
     /// Numbers below 256 that look random.
     struct Numbers(u32);
@@ -194,14 +194,13 @@ mod tests {
 
     fn file(size: [u32; 2], adapter: &str, pixels: &[u8]) -> Vec<u8> {
         let tags = Tags {
-            scene: "1".repeat(64),
+            shows: Shown::Frame { frame: 3, time: 0.05 },
+            scenes: vec!["1".repeat(64)],
             states: vec![("0".repeat(64), "run".to_owned())],
-            frame: 3,
-            time: 0.05,
             version: "0".to_owned(),
             adapter: adapter.to_owned(),
         };
-        Label::Frame(tags).encode(size, pixels)
+        encode(size, pixels, &tags.texts(), Compression::High)
     }
 
     /// A picture of smooth ground with spots, as a PNG file of an adapter.

@@ -1,6 +1,6 @@
 //! Pictures as they are read to be compared: 8-bit red, green and blue, with or without opacities, and nothing else.
 
-use crate::output::Label;
+use crate::output::Tags;
 use std::fs::File;
 use std::io::{self, BufRead, Cursor, Read, Seek};
 use std::path::Path;
@@ -64,7 +64,7 @@ pub struct Pixels {
     /// Row after row from the top left.
     pub bytes: Vec<u8>,
     /// What it shows, if it says so.
-    pub label: Option<Label>,
+    pub label: Option<Tags>,
 }
 
 impl Pixels {
@@ -93,9 +93,9 @@ impl Pixels {
     ///
     /// # Errors
     /// As [`Self::read`], as far as that can be told from the header.
-    pub(super) fn read_label(path: &Path) -> Result<Option<Label>, PictureError> {
+    pub(super) fn read_label(path: &Path) -> Result<Option<Tags>, PictureError> {
         let reader = decoder(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
-        Label::of(reader.info()).map_err(PictureError::Label)
+        Tags::of(reader.info()).map_err(PictureError::Label)
     }
 }
 
@@ -159,7 +159,7 @@ pub(super) struct Header {
     /// Bytes of each pixel.
     pub(super) channels: usize,
     /// What it shows, if it says so.
-    pub(super) label: Option<Label>,
+    pub(super) label: Option<Tags>,
 }
 
 impl Header {
@@ -210,7 +210,7 @@ impl<'a> Rows<'a> {
             png::ColorType::Indexed => return kind("has a palette".to_owned()),
             png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => return kind("is grey".to_owned()),
         };
-        let label = Label::of(info).map_err(PictureError::Label)?;
+        let label = Tags::of(info).map_err(PictureError::Label)?;
         Ok(Self { header: Header { size: [width, height], channels, label }, reader })
     }
 
@@ -226,7 +226,7 @@ impl<'a> Rows<'a> {
     /// Reads what follows the pixels up to the end of the picture, with its checksums.
     pub(super) fn finish(&mut self) -> Result<(), PictureError> {
         self.reader.finish().map_err(broken)?;
-        let label = Label::of(self.reader.info()).map_err(PictureError::Label)?;
+        let label = Tags::of(self.reader.info()).map_err(PictureError::Label)?;
         if label == self.header.label { Ok(()) } else { Err(PictureError::Late) }
     }
 }

@@ -5,9 +5,8 @@
 //! kilobytes, however large the scene is: of long scenes every second frame is recorded or fewer, of large bodies every
 //! second node or fewer.
 
-use super::side::frame_of;
 use super::states::{Places, Run, State, States, Step};
-use crate::output::Label;
+use crate::output::Tags;
 use crate::sim::diagnostics::{Chosen, Reach, Value};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -69,9 +68,9 @@ pub(super) struct Drawn {
 
 impl Drawn {
     /// A picture and who drew it, as it says itself.
-    pub(super) fn new(file: &str, label: &Label) -> Self {
-        let (adapter, version) = (label.adapter().to_owned(), label.version().to_owned());
-        Self { file: file.to_owned(), frame: frame_of(label).unwrap_or(0), adapter, version }
+    pub(super) fn new(file: &str, label: &Tags) -> Self {
+        let (adapter, version) = (label.adapter.clone(), label.version.clone());
+        Self { file: file.to_owned(), frame: label.frame().unwrap_or(0), adapter, version }
     }
 }
 

@@ -5,7 +5,7 @@ use super::archive;
 use super::picture::{self, PictureError, Pixels};
 use super::record::{RECORD_FILE, Record};
 use super::states::{State, States, Step};
-use crate::output::{Label, SUMMARY_FILE};
+use crate::output::{SUMMARY_FILE, Shown, Tags};
 use crate::shell;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -132,18 +132,17 @@ impl Side {
     }
 
     /// The exact states in the folder's archive, if there is one of these pictures.
-    pub(super) fn archive(&self, labels: &[&Label]) -> Result<Option<States>, String> {
+    pub(super) fn archive(&self, labels: &[&Tags]) -> Result<Option<States>, String> {
         if !matches!(self.kind, Kind::Picture | Kind::Folder) {
             return Ok(None);
         }
         let told = |what: String| format!("{}: {what}", self.folder().display());
         let Some(mut states) = archive::read(self.folder()).map_err(told)? else { return Ok(None) };
         for label in labels {
-            let Label::Frame(tags) = label else { continue };
-            for (digest, run) in &tags.states {
-                let state = states.run(run).and_then(|run| run.states.get(&tags.frame));
+            let Some(frame) = label.frame() else { continue };
+            for (digest, run) in &label.states {
+                let state = states.run(run).and_then(|run| run.states.get(&frame));
                 if state.is_some_and(|state| state.digest != *digest) {
-                    let frame = tags.frame;
                     return Err(told(format!(
                         "states.npz is not of these pictures; frame {frame} shows another state"
                     )));
@@ -152,14 +151,14 @@ impl Side {
         }
         if self.kind == Kind::Picture {
             // The picture alone is asked about, not what else its folder holds.
-            let frames: BTreeSet<u64> = labels.iter().filter_map(|label| frame_of(label)).collect();
+            let frames: BTreeSet<u64> = labels.iter().filter_map(|label| label.frame()).collect();
             states.runs.iter_mut().for_each(|run| run.states.retain(|frame, _| frames.contains(frame)));
         }
         Ok(Some(states))
     }
 
     /// How the time of each run was stepped, from the folder's summary, if there is one of these pictures.
-    pub(super) fn steps(&self, labels: &[&Label]) -> Vec<(String, Step)> {
+    pub(super) fn steps(&self, labels: &[&Tags]) -> Vec<(String, Step)> {
         let read = || -> Option<Vec<(String, Step)>> {
             let path = self.folder().join(SUMMARY_FILE);
             let found = path.metadata().ok()?;
@@ -169,7 +168,7 @@ impl Side {
             let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
             let scene = &summary["scene"];
             let digest = scene["digest"].as_str()?;
-            if labels.iter().flat_map(|label| label.scenes()).any(|other| other != digest) {
+            if labels.iter().flat_map(|label| &label.scenes).any(|other| other != digest) {
                 return None;
             }
             let cycle = scene["cycle"].as_f64()?;
@@ -198,28 +197,20 @@ impl Side {
 
 /// What pictures tell of states. Unless they stand `beside_golden`, nothing if they are not of one scene: then frames of one
 /// number have nothing in common.
-pub(super) fn states_of(labels: &[&Label], beside_golden: bool) -> States {
+pub(super) fn states_of(labels: &[&Tags], beside_golden: bool) -> States {
     let mut states = States::default();
-    let scenes: BTreeSet<_> = labels.iter().flat_map(|label| label.scenes()).collect();
+    let scenes: BTreeSet<_> = labels.iter().flat_map(|label| &label.scenes).collect();
     if scenes.len() > 1 && !beside_golden {
         return states;
     }
     for label in labels {
-        let Label::Frame(tags) = label else { continue };
-        for (digest, run) in &tags.states {
-            let state = State { time: Some(tags.time), digest: digest.clone(), ..State::default() };
-            states.add(run, tags.frame, state);
+        let Shown::Frame { frame, time } = label.shows else { continue };
+        for (digest, run) in &label.states {
+            let state = State { time: Some(time), digest: digest.clone(), ..State::default() };
+            states.add(run, frame, state);
         }
     }
     states
-}
-
-/// The number of the frame that a picture shows.
-pub(super) fn frame_of(label: &Label) -> Option<u64> {
-    match label {
-        Label::Frame(tags) => Some(tags.frame),
-        Label::Figure(_) => None,
-    }
 }
 
 /// The PNG files in a folder by name.

@@ -3,7 +3,7 @@
 use super::distance::Distance;
 use super::picture::Pixels;
 use super::states::Displacement;
-use crate::output::Label;
+use crate::output::Tags;
 use serde::Serialize;
 use std::fmt;
 
@@ -72,7 +72,7 @@ impl Verdict {
     }
 
     /// The verdict on two pictures by what they say of themselves, their widths and heights (px), and how far apart they are.
-    pub(super) fn of(labels: [Option<&Label>; 2], sizes: [[u32; 2]; 2], distance: Option<Distance>) -> Self {
+    pub(super) fn of(labels: [Option<&Tags>; 2], sizes: [[u32; 2]; 2], distance: Option<Distance>) -> Self {
         let [Some(before), Some(after)] = labels else {
             return Self::NoState { distance, sizes };
         };
@@ -125,10 +125,10 @@ impl Verdict {
 }
 
 /// The runs that differ, or are in one of the pictures only.
-fn moved(before: &Label, after: &Label) -> Vec<MovedHere> {
-    let absent = |from: &Label, state: &(String, String)| !from.states().contains(state);
-    let gone = before.states().iter().filter(|state| absent(after, state));
-    let come = after.states().iter().filter(|state| absent(before, state));
+fn moved(before: &Tags, after: &Tags) -> Vec<MovedHere> {
+    let absent = |from: &Tags, state: &(String, String)| !from.states.contains(state);
+    let gone = before.states.iter().filter(|state| absent(after, state));
+    let come = after.states.iter().filter(|state| absent(before, state));
     let mut runs: Vec<String> = Vec::new();
     for (_, run) in gone.chain(come) {
         if !runs.contains(run) {
@@ -174,20 +174,19 @@ impl fmt::Display for Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Tags;
+    use crate::output::Shown;
 
     fn pixels(adapter: &str, state: &str, change: impl FnOnce(&mut [u8])) -> Pixels {
         let mut bytes = vec![100; 40 * 30 * 3];
         change(&mut bytes);
         let tags = Tags {
-            scene: "s".into(),
+            shows: Shown::Frame { frame: 3, time: 0.05 },
+            scenes: vec!["s".into()],
             states: vec![("0".into(), "other".into()), (state.into(), "run".into())],
-            frame: 3,
-            time: 0.05,
             version: "0".into(),
             adapter: adapter.into(),
         };
-        Pixels { size: [40, 30], channels: 3, bytes, label: Some(Label::Frame(tags)) }
+        Pixels { size: [40, 30], channels: 3, bytes, label: Some(tags) }
     }
 
     #[test]
@@ -223,7 +222,7 @@ mod tests {
         assert!(!of(&pixels("hard", "2", |bytes| bytes.fill(0))).passes());
         // A run that only the new picture has, and one that it lacks, are other states, too.
         let mut more = golden.clone();
-        let Some(Label::Frame(tags)) = &mut more.label else { panic!("a frame") };
+        let Some(tags) = &mut more.label else { panic!("a frame") };
         tags.states.push(("2".into(), "new run".into()));
         assert_eq!((of(&more).to_string().as_str(), of(&more).passes()), ("state moved: new run", false));
         assert_eq!(Verdict::new(&more, &golden).to_string(), "state moved: new run");

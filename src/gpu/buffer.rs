@@ -1,9 +1,9 @@
-//! A buffer that knows the type of its elements and grows.
+//! A typed device buffer that grows.
 
 use super::Gpu;
 use std::marker::PhantomData;
 
-/// A device buffer of elements of one type, which is written anew for each frame and grows when it must.
+/// A device buffer of elements of one type, which is rewritten for each frame and grows as needed.
 #[derive(Debug)]
 pub struct GrowingBuffer<T> {
     label: &'static str,
@@ -58,7 +58,7 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
         self.length == 0
     }
 
-    /// A number that changes whenever the device buffer is another one and bindings to it must be made anew.
+    /// A number that changes whenever the device buffer is replaced and bindings to it must be made anew.
     pub fn generation(&self) -> u64 {
         self.generation
     }

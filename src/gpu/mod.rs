@@ -1,4 +1,4 @@
-//! The graphics device: one handle, typed buffers and the way back of pixels. It knows nothing about what is drawn.
+//! The graphics device: one handle, typed buffers and reading back pixels. Independent of what is drawn.
 
 mod buffer;
 mod noise;
@@ -49,20 +49,20 @@ impl fmt::Display for AdapterChoice {
     }
 }
 
-/// What is known of a graphics adapter, for reports and for people who choose one.
+/// A graphics adapter, described for reports and for choosing one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterDescription {
     /// Name, such as `llvmpipe (LLVM 15.0.6, 256 bits)`.
     pub name: String,
     /// The interface it is reached through: `vulkan`, `metal` or `dx12`.
     pub backend: String,
-    /// Name of the driver; empty if it does not say.
+    /// Name of the driver; empty if unknown.
     pub driver: String,
-    /// Version of the driver as it says it; empty if it does not.
+    /// Version of the driver in its own words; empty if unknown.
     pub driver_info: String,
     /// `cpu`, `integrated gpu`, `discrete gpu`, `virtual gpu` or `other`.
     pub device_type: String,
-    /// For `cpu` the processor, which decides about the last bit of a pixel; empty if the system does not say.
+    /// For `cpu` the processor, on which the last bit of a pixel depends; empty if unknown.
     pub processor: String,
 }
 
@@ -147,7 +147,7 @@ pub enum GpuError {
     Refused(String),
 }
 
-/// A graphics device with its queue, cheap to clone. Everything that draws gets it handed; there is no global one.
+/// A graphics device with its queue, cheap to clone. It is passed to everything that draws; there is no global one.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     device: wgpu::Device,
@@ -159,7 +159,7 @@ pub struct Gpu {
 impl Gpu {
     /// Opens a device on the adapter that fits `choice`.
     ///
-    /// On Unix, standard error is held back meanwhile, for the whole process: what any thread says there is said once the
+    /// On Unix, standard error of the whole process is buffered meanwhile: what any thread writes there appears once the
     /// device is open, without the complaints of drivers about the lack of a window. [`adapters`] does the same.
     ///
     /// # Errors
@@ -216,8 +216,8 @@ impl Gpu {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// What went wrong on the device since it was last asked, if anything did. Commands fail later than they are
-    /// given; whoever needs their result asks here first.
+    /// The first error of the device since the last call, if any. Commands fail asynchronously, so check before using
+    /// their results.
     ///
     /// # Errors
     /// The first thing that went wrong.
@@ -253,7 +253,7 @@ pub fn adapters() -> (Vec<AdapterDescription>, Option<usize>) {
 }
 
 fn enumerate() -> Vec<wgpu::Adapter> {
-    // Validation layers would only slow down what the tests have checked, and talk on the error stream.
+    // Without validation layers, which are slow and write to standard error; the tests check the shaders.
     let descriptor = wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         flags: wgpu::InstanceFlags::empty(),

@@ -1,28 +1,29 @@
-//! What graphics drivers say on standard error is not said by this crate, and mostly says nothing to its user.
+//! Filters messages of graphics drivers on standard error that mean nothing to the user.
 
-/// Lines that mean nothing to a program without a window: those of libwayland, which Vulkan drivers of Mesa load.
+/// Lines that are dropped, as they mean nothing to a program without a window: those of libwayland, which Vulkan drivers
+/// of Mesa load.
 #[cfg(unix)]
 const NOISE: [&str; 2] = [
     "error: XDG_RUNTIME_DIR is invalid or not set in the environment.",
     "error: XDG_RUNTIME_DIR not set in the environment.",
 ];
 
-/// Opens a device, or looks for some, while the noise that drivers make on standard error is held back. Whatever else is
-/// said meanwhile, also by other threads, is said right afterwards.
+/// Runs something while standard error is buffered, then writes what arrived without the noise of drivers. That includes
+/// what other threads wrote.
 ///
-/// Standard error belongs to the whole process, so only one thread does this at a time, and as shortly as can be.
+/// Standard error belongs to the whole process, so only one thread does this at a time, and briefly.
 #[cfg(unix)]
 pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     use std::io::{Read, Seek, Write};
     use std::sync::{Mutex, PoisonError};
     static ALONE: Mutex<()> = Mutex::new(());
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // Where this cannot be done, the noise does no harm.
-    let Some((mut words, ears)) = Held::take() else { return open() };
+    // Where buffering fails, the noise is harmless.
+    let Some((mut buffer, held)) = Held::take() else { return open() };
     let result = open();
-    drop(ears);
+    drop(held);
     let mut text = Vec::new();
-    if words.rewind().and_then(|()| words.read_to_end(&mut text)).is_ok() {
+    if buffer.rewind().and_then(|()| buffer.read_to_end(&mut text)).is_ok() {
         let is_noise = |line: &[u8]| NOISE.iter().any(|noise| line.trim_ascii_end() == noise.as_bytes());
         let kept: Vec<u8> =
             text.split_inclusive(|&byte| byte == b'\n').filter(|line| !is_noise(line)).flatten().copied().collect();
@@ -31,19 +32,19 @@ pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Opens a device, or looks for some.
+/// Runs something; there is no noise on this system.
 #[cfg(not(unix))]
 pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     open()
 }
 
-/// Standard error as it was; put back when dropped, also by a panic.
+/// The original standard error; restored when dropped, also by a panic.
 #[cfg(unix)]
 struct Held(std::os::fd::OwnedFd);
 
 #[cfg(unix)]
 impl Held {
-    /// Leads standard error into a file without a name.
+    /// Redirects standard error to an unnamed temporary file.
     fn take() -> Option<(std::fs::File, Self)> {
         use std::os::fd::AsFd;
         let before = std::io::stderr().as_fd().try_clone_to_owned().ok()?;
@@ -70,7 +71,7 @@ mod tests {
         let _ = writeln!(std::io::stderr(), "{line}");
     }
 
-    /// Ends this process after a time that says that it hangs, so that nobody waits for it for ever.
+    /// Ends this process if it hangs.
     fn end_in_time() {
         std::thread::spawn(|| {
             std::thread::sleep(std::time::Duration::from_secs(300));

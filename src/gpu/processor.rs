@@ -1,5 +1,5 @@
-//! Which processor draws where there is no GPU. Software drivers compile their shaders for it, and square roots and
-//! quotients that they approximate come out otherwise on another one: some pixels differ by 1 of 255.
+//! The processor that a software driver draws with. Shaders are compiled for it, and approximate square roots and
+//! quotients differ between processors: some pixels differ by 1 of 255.
 
 /// The processor in a few words, such as `GenuineIntel 6 167 avx512f`; empty where the system does not say.
 pub(super) fn processor() -> String {
@@ -10,7 +10,7 @@ pub(super) fn processor() -> String {
 fn described(text: &str) -> String {
     /// Maker and type on x86, and on Arm.
     const KEYS: [&str; 6] = ["vendor_id", "cpu family", "model", "CPU implementer", "CPU architecture", "CPU part"];
-    /// Of these the widest set counts: a virtual machine may hide what the processor has.
+    /// The widest of these is named: a virtual machine may hide some.
     const VECTORS: [&str; 4] = ["avx512f", "avx2", "avx", "sve"];
     let first = text.split("\n\n").next().unwrap_or_default();
     let value = |wanted: &str| {

@@ -1,4 +1,4 @@
-//! The way of pixels from a texture on the device to memory.
+//! Reading back pixels from a texture on the device to memory.
 
 use super::{Gpu, GpuError};
 use std::sync::mpsc;
@@ -23,7 +23,7 @@ fn without_padding(rows: &[u8], width: u32, height: u32) -> Vec<u8> {
     colours
 }
 
-/// A buffer through which one texture after the other comes back.
+/// A buffer for reading back one texture after the other.
 #[derive(Debug)]
 pub struct ReadBack {
     buffer: wgpu::Buffer,
@@ -31,7 +31,7 @@ pub struct ReadBack {
     height: u32,
 }
 
-/// A copy under way, which [`ReadBack::collect`] ends.
+/// A copy in progress, which [`ReadBack::collect`] completes.
 #[derive(Debug)]
 pub struct Pending {
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
@@ -39,7 +39,7 @@ pub struct Pending {
 }
 
 impl ReadBack {
-    /// A way back for textures of one size (px).
+    /// A buffer for textures of one size (px).
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
@@ -66,7 +66,7 @@ impl ReadBack {
         );
         let (sender, mapped) = mpsc::channel();
         commands.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more when a frame was given up.
+            // The receiver is gone when a frame was abandoned.
             let _ = sender.send(result);
         });
         Pending { mapped, submission: gpu.queue().submit([commands.finish()]) }

@@ -1,14 +1,14 @@
-//! What the scene looks like: colours, type, lines and margins.
+//! Resolves the look of a scene, and checks that its colours can be read and told apart.
 
 use super::file::{ShowFile, ViewFile};
-use super::palette::{LEAST_CONTRAST, LINE_CONTRAST, Palette};
+use super::palette::{Palette, Theme};
 use super::ramp::ramp;
 use super::typed::{BackgroundFile, ColoursFile};
-use super::view::{FloorStyle, FontFiles, Look, Theme};
-use crate::colour::{Colour, Sight, contrast, difference, readable, written};
+use super::view::{FloorStyle, FontFiles, Look};
+use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Sight, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
 
-/// How different turned-over elements look from sound ones, at least, to anybody (CIEDE2000).
+/// The least difference of turned-over elements from sound ones, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// The look, or `None` if there is a mistake in it.
@@ -36,7 +36,7 @@ fn way(role: &str) -> [Way<'_>; 3] {
     [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
 }
 
-/// Words must be readable, on the floor, too.
+/// Checks the contrast of text with the background and the floor.
 fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, report: &mut Report<'_>) {
     if let Some(floor) = floor {
         let texts = [palette.text, palette.second_text, palette.alarm_text];
@@ -66,7 +66,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
     }
 }
 
-/// The colours that runs have of their own must be seen on the background, and not be taken for that of turned-over
+/// Checks the colours that a scene gives runs: their contrast with the background, and their difference from turned-over
 /// elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Report<'_>) {
     let like_alarm = |colour: Colour| {
@@ -105,7 +105,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     }
 }
 
-/// Nobody may take a turned-over element for a sound one.
+/// Checks the difference of turned-over elements from sound ones.
 fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
     let (key, other) = match (typed.turned_over, typed.body) {
         (Some(_), _) => ("turned_over", "the body's"),
@@ -128,7 +128,7 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
 }
 
-/// Nor for one that a field colours, where no hatch tells them apart.
+/// Checks the difference of turned-over elements from those coloured by a field, where no hatch marks them.
 fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut Report<'_>) {
     let shows_surfaces = typed.show.as_ref().is_none_or(|shown| shown.contains(&ShowFile::Surfaces));
     let Some(colour) = typed.colour.as_ref().filter(|_| !typed.hatch && shows_surfaces) else { return };
@@ -149,7 +149,7 @@ fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut R
     report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 
-/// A number with one digit behind the point, never more than it is: what falls short by a little must not look enough.
+/// A number rounded down to one decimal, so that a value just below a limit does not look as if it met it.
 fn rounded_down(number: f64) -> f64 {
     (number * 10.0).floor() / 10.0
 }

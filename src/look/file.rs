@@ -1,7 +1,8 @@
 //! The view as typed.
 
+use super::palette::Theme;
 use super::typed::{BackgroundFile, ColoursFile, FontFile};
-use super::view::{ColourMap, FloorStyle, Follow, Light, Theme};
+use super::view::{ColourMap, FloorStyle, Follow, Light};
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;

@@ -45,7 +45,7 @@ fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
     if path.is_dir() {
         return Err(plain(format!("is a folder; {EXPECTED}")));
     }
-    // A pipe would keep everybody waiting.
+    // Reading a pipe could block for ever.
     if !path.is_file() {
         return Err(plain(format!("is no regular file; {EXPECTED}")));
     }
@@ -59,7 +59,7 @@ fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
     Ok(bytes.into())
 }
 
-/// Why bytes are no font to write a picture with.
+/// Why bytes are not a usable font.
 fn check(bytes: &[u8]) -> Result<(), String> {
     match bytes.get(..4) {
         Some([0, 1, 0, 0] | b"true" | b"OTTO" | b"ttcf") => letters(bytes),
@@ -69,7 +69,7 @@ fn check(bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Why bytes that begin like a font are none that words can be written with.
+/// Why bytes that begin like a font are not a usable one.
 #[cfg(feature = "render")]
 fn letters(bytes: &[u8]) -> Result<(), String> {
     use ab_glyph::{Font, FontRef};
@@ -90,7 +90,7 @@ fn letters(bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Builds that cannot draw leave it at the beginning of the file.
+/// Builds that cannot draw check only the beginning of the file.
 #[cfg(not(feature = "render"))]
 fn letters(_: &[u8]) -> Result<(), String> {
     Ok(())

@@ -2,12 +2,10 @@
 
 use super::file::CameraFile;
 use super::reach;
-use super::view::{Camera, Follow};
-use crate::sim::body::{Body, Dimension, bounds};
+use super::subject::Subject;
+use super::view::{Camera, Follow, axes};
+use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
-use crate::sim::grip::Grip;
-use crate::sim::model::ElasticModel;
-use crate::sim::state::State;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -25,9 +23,9 @@ const DISTANCE: f64 = 8.5;
 /// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
 const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 
-/// The camera of a scene: what is asked of it, and for the rest what shows the body and what comes near it. Elements may
-/// be drawn `apart`, in parts of their distance from the body's middle.
-pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Around<'_>) -> Camera {
+/// The camera of a scene: as typed, and where nothing is typed so that it shows the body and what comes near it. Elements
+/// may be drawn `apart`, in parts of their distance from the body's middle.
+pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Subject<'_>) -> Camera {
     let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
     let (azimuth, elevation) = match dimension {
         Dimension::Plane => (0.0, 0.0),
@@ -49,7 +47,7 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
     };
     match target {
         Some(target) => chosen.target = target,
-        // A camera that follows shows by itself how high a body is.
+        // A camera that follows shows the height of a body anyway.
         None if chosen.follow != Follow::Nothing => {}
         None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
     }
@@ -59,25 +57,8 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
     chosen
 }
 
-/// What a view follows from.
-pub(crate) struct Around<'a> {
-    pub(crate) body: &'a Body,
-    pub(crate) initial: &'a State,
-    /// Mean length of the elements' edges (m).
-    pub(crate) side: f64,
-    /// Whether that is the side of a lattice's cells.
-    pub(crate) has_cells: bool,
-    pub(crate) gravity: DVec3,
-    pub(crate) obstacles: &'a [Obstacle],
-    pub(crate) grips: &'a [Grip],
-    /// Simulated time (s).
-    pub(crate) duration: f64,
-    /// The model of each run.
-    pub(crate) models: Vec<&'a dyn ElasticModel>,
-}
-
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
-fn size(scene: &Around<'_>) -> f64 {
+fn size(scene: &Subject<'_>) -> f64 {
     let (low, high) = bounds(&scene.initial.position);
     let start = (high - low).max_element();
     if start > 0.0 { start } else { scene.body.extent() }
@@ -123,7 +104,7 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 
 /// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
 /// already, or if there is nothing, nothing changes.
-fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Around<'_>) {
+fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Subject<'_>) {
     let (low, high) = bounds(start);
     let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
     let is_shown_at_start = camera.follow == Follow::Nothing;
@@ -136,7 +117,7 @@ fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Aro
         return;
     }
     shown.extend(start.iter().flat_map(|&at| is_shown_at_start.then_some(at).into_iter().chain([at + drop])));
-    // Each distance shows another middle, but hardly.
+    // The middle depends a little on the distance, so iterate.
     for _ in 0..4 {
         let step = middle_of(camera, &shown, dimension);
         camera.target += step;
@@ -146,10 +127,7 @@ fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Aro
 
 /// The way (m) from the point that a camera looks at to the one in whose picture points stand in the middle of the room.
 fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
-    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
-    let towards = DVec3::new(across * level, rise, along * level);
-    let right = DVec3::new(along, 0.0, -across);
-    let up = towards.cross(right);
+    let [right, up, towards] = axes(camera.azimuth, camera.elevation);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for from_target in points.iter().map(|&point| point - camera.target) {
         let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };
@@ -160,6 +138,7 @@ fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
     let [_, above, below] = ROOM;
     let aside = 0.5 * (low.x + high.x);
     let upward = (low.y * above + high.y * below) / (above + below);
+    let (_, level) = libm::sincos(camera.elevation);
     // Upwards in the world, unless that is hardly to be seen.
     let upward = if level > 0.3 { upward / level * DVec3::Y } else { upward * up };
     aside * right + upward
@@ -173,10 +152,7 @@ fn is_under_plate(obstacles: &[Obstacle]) -> bool {
 
 /// The least distance at which a camera has points in the picture (m).
 fn least_distance(camera: &Camera, points: impl Iterator<Item = DVec3>, dimension: Dimension) -> f64 {
-    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
-    let towards = DVec3::new(across * level, rise, along * level);
-    let right = DVec3::new(along, 0.0, -across);
-    let up = towards.cross(right);
+    let [right, up, towards] = axes(camera.azimuth, camera.elevation);
     let [aside, above, below] = ROOM.map(|share| share * 2.0 * libm::tan(camera.field_of_view / 2.0));
     let least = points.map(|point| {
         let from_target = point - camera.target;

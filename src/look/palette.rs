@@ -1,9 +1,19 @@
-//! The colours of a picture. Those of a theme come from here; what a scene gives takes their place, and whatever belongs
-//! to it follows. Vermilion means "turned over" and nothing else.
+//! The colours of a picture, and those of the two themes. Vermilion means "turned over" and nothing else.
 
-use super::typed::{ColoursFile, TypedColour};
-use super::view::Theme;
-use crate::colour::{Colour, Oklab, Sight, best_of, contrast, difference, from_oklab, mixed, oklab, readable};
+use crate::colour::{Colour, LEAST_CONTRAST, contrast, readable};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The colours of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Theme {
+    /// Near-white ground, for papers.
+    #[default]
+    Light,
+    /// Near-black ground, for talks.
+    Dark,
+}
 
 /// The colours of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,29 +84,6 @@ pub struct Palette {
     pub runs: [Colour; 8],
 }
 
-/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They tell
-/// runs apart where colours do not: in grey print, and where there are more runs than colours.
-const DASHES: [&[f64]; 8] = [
-    &[],
-    &[7.0, 4.0],
-    &[18.0, 4.0],
-    &[2.2, 3.2],
-    &[11.0, 3.0, 2.5, 3.0],
-    &[18.0, 4.0, 6.0, 4.0],
-    &[7.0, 3.0, 2.5, 3.0, 2.5, 3.0],
-    &[4.0, 8.0],
-];
-
-/// What the line looks like that stands for a run: curves in charts, and samples of them beside names. Its arrows have
-/// the same colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStyle {
-    /// Its colour.
-    pub colour: Colour,
-    /// Lengths of its dashes and of the gaps after them, by turns (px in the reference picture); empty for a solid line.
-    pub dash: &'static [f64],
-}
-
 impl Palette {
     /// The colours of a theme.
     pub fn of(theme: Theme) -> Self {
@@ -121,41 +108,6 @@ impl Palette {
         contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])
     }
 
-    /// The line of a run, the same in every picture of its scene. Eight runs differ in colour and in dashes, more of them,
-    /// up to 64, in one of both. Colours are made lighter or darker where they could not be seen on the background.
-    /// `place` is that of the run ([`Self::places`]), `chosen` a colour of its own.
-    pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
-        let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let colour = chosen.unwrap_or(self.runs[place % colours]);
-        LineStyle {
-            // The halo's colour is that of the background, whatever ground a picture is laid on.
-            colour: readable(colour, self.halo, LINE_CONTRAST),
-            dash: DASHES[(place + place / colours) % dashes],
-        }
-    }
-
-    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others leave out
-    /// colours that look like a chosen one, as far as there are any left.
-    pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
-        let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let seen = |colour| readable(colour, self.halo, LINE_CONTRAST);
-        let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
-        let is_free = self.runs.map(|own| !chosen.iter().flatten().any(|other| is_like(own, other)));
-        let keeps = |at: usize| chosen[at].is_some() || is_free[at % colours];
-        let is_taken = |colour: usize| (colour..chosen.len()).step_by(colours).any(|at| chosen[at].is_none());
-        let free = || (0..colours).filter(|&colour| is_free[colour]);
-        let mut others = free().filter(|&colour| !is_taken(colour)).chain(free().cycle());
-        let place = |at: usize| {
-            if keeps(at) {
-                return at;
-            }
-            let dash = (at + at / colours) % dashes;
-            // The place of this colour that has these dashes.
-            others.next().map_or(at, |colour| colour + colours * ((dash + dashes - colour) % dashes))
-        };
-        (0..chosen.len()).map(place).collect()
-    }
-
     /// A colour in which words can be read on the background: the nearest to a given one.
     pub fn text_like(&self, colour: Colour) -> Colour {
         readable(colour, self.halo, LEAST_CONTRAST)
@@ -165,142 +117,6 @@ impl Palette {
     pub fn on_ground(&self, ground: Colour) -> Self {
         Self { background: ground, floor: ground, ..*self }
     }
-
-    /// The theme whose text can be read on a background: the one asked for, or else the better one.
-    pub(crate) fn theme_on(background: Option<Colour>, theme: Theme) -> Theme {
-        let Some(ground) = background else { return theme };
-        let other = if theme == Theme::Light { Theme::Dark } else { Theme::Light };
-        let [own, others] = [theme, other].map(|theme| contrast(Self::of(theme).text, ground));
-        if own >= LEAST_CONTRAST || own >= others { theme } else { other }
-    }
-
-    /// The colours of a theme with those that a scene gives, and all that belongs to these.
-    pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &ColoursFile) -> Self {
-        let theme = Self::of(theme);
-        let mut own = theme;
-        if let Some(ground) = background {
-            (own.background, own.halo) = (ground, ground);
-            own.floor = like(ground, theme.background, theme.floor);
-            own.grid = like(ground, theme.background, theme.grid);
-            if contrast(own.text, ground) < LEAST_CONTRAST {
-                own.text = best_of(&[own.text, [0; 3], [255; 3]], ground);
-            }
-        }
-        let typed = |role: &Option<TypedColour>| role.as_ref().map(|typed| typed.0);
-        own.text = typed(&given.text).unwrap_or(own.text);
-        if own.text != theme.text || own.background != theme.background {
-            own.follow_text(&theme);
-        }
-        if let Some(body) = typed(&given.body) {
-            own.sound = body;
-            own.sound_flat = like(body, theme.sound, theme.sound_flat);
-            own.tally = like(body, theme.sound, theme.tally);
-            own.edge = readable(own.edge, body, LINE_CONTRAST);
-            own.spring_on_body = readable(own.spring_on_body, body, LINE_CONTRAST);
-        }
-        if let Some(alarm) = typed(&given.turned_over) {
-            own.alarm = alarm;
-            own.alarm_line = hatch(alarm, &theme);
-            own.alarm_text = alarm;
-            own.alarm_on_white = readable(alarm, [255; 3], GOOD_CONTRAST);
-        }
-        own.alarm_text = readable(own.alarm_text, own.background, GOOD_CONTRAST.min(most_contrast(own.background)));
-        if let Some(edge) = typed(&given.edge) {
-            (own.edge, own.casing) = (edge, edge);
-        }
-        if let Some(outline) = typed(&given.outline) {
-            (own.outline, own.outline_alpha) = (outline, 1.0);
-        }
-        if let Some(obstacle) = typed(&given.obstacle) {
-            own.obstacle = obstacle;
-            own.obstacle_flat = theme.obstacle_flat.map(|flat| like(obstacle, theme.obstacle, flat));
-        }
-        if let Some(plate) = typed(&given.plate) {
-            own.plate = plate;
-            own.plate_side = like(plate, theme.plate, theme.plate_side);
-            own.wall = like(plate, theme.plate, theme.wall);
-            own.pane_edge = like(plate, theme.plate, theme.pane_edge);
-        }
-        if let Some(spring) = typed(&given.spring) {
-            own.spring = spring;
-            own.spring_on_body = readable(spring, own.sound, LINE_CONTRAST);
-        }
-        let one_to_one = [
-            (&mut own.floor, &given.floor),
-            (&mut own.grid, &given.grid),
-            (&mut own.shadow, &given.shadow),
-            (&mut own.node, &given.node),
-            (&mut own.pointer, &given.pointer),
-        ];
-        for (own, given) in one_to_one {
-            *own = typed(given).unwrap_or(*own);
-        }
-        if let Some(arrow) = typed(&given.arrow) {
-            own.runs = [arrow; 8];
-        }
-        own
-    }
-
-    /// What is written and ruled besides names and numbers stands between the text and the background, as far from
-    /// each as in the theme; words remain readable.
-    fn follow_text(&mut self, theme: &Self) {
-        let (text, ground) = (self.text, self.background);
-        let between = |colour: Colour| mixed(text, ground, share(theme.text, theme.background, colour));
-        let least = LEAST_CONTRAST.min(contrast(text, ground));
-        let own = share(theme.text, theme.background, theme.second_text);
-        let fainter = (0..=20).map(|step| mixed(text, ground, own * f64::from(20 - step) / 20.0));
-        self.second_text = { fainter }.find(|&second| contrast(second, ground) >= least).unwrap_or(text);
-        self.axis = between(theme.axis);
-        self.hairline = between(theme.hairline);
-    }
-}
-
-/// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
-pub(crate) const LEAST_CONTRAST: f64 = 4.5;
-/// How different the colours of two runs look at the least, to anybody (CIEDE2000).
-const RUNS_APART: f64 = 15.0;
-/// The contrast of words whose colour is chosen here, which leaves something for a floor below them.
-const GOOD_CONTRAST: f64 = 5.0;
-/// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
-pub(crate) const LINE_CONTRAST: f64 = 3.0;
-/// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
-const DARK_ALARM: f64 = 0.48;
-const LIGHTER_HATCH: f64 = 0.36;
-
-/// What is to a colour of the scene as another colour of a theme is to that colour's counterpart there: as much lighter
-/// or darker, and as much more or less colourful.
-fn like(own: Colour, counterpart: Colour, other: Colour) -> Colour {
-    let [own, counterpart, other] = [own, counterpart, other].map(oklab);
-    let Oklab([lightness, a, b]) = own;
-    let lightness = (lightness + other.0[0] - counterpart.0[0]).clamp(0.0, 1.0);
-    // Greys have hardly any colour to compare with.
-    let times = ((other.chroma() + 0.01) / (counterpart.chroma() + 0.01)).min(1.5);
-    from_oklab(Oklab([lightness, times * a, times * b]))
-}
-
-/// The hatch on turned-over elements of a colour: darker as in the theme, or lighter on dark ones.
-fn hatch(alarm: Colour, theme: &Palette) -> Colour {
-    let Oklab([lightness, a, b]) = oklab(alarm);
-    if lightness < DARK_ALARM {
-        return from_oklab(Oklab([lightness + LIGHTER_HATCH, a, b]));
-    }
-    like(alarm, theme.alarm, theme.alarm_line)
-}
-
-/// How different two colours look at the least, to all eyes.
-fn least_difference(one: Colour, other: Colour) -> f64 {
-    Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
-}
-
-/// The contrast of black or white, whichever has more, with a ground; never less than 4.58.
-fn most_contrast(ground: Colour) -> f64 {
-    contrast([0; 3], ground).max(contrast([255; 3], ground))
-}
-
-/// How far a colour is on the way from one to another.
-fn share(from: Colour, to: Colour, colour: Colour) -> f64 {
-    let sum = |colour: Colour| f64::from(colour.map(u32::from).iter().sum::<u32>());
-    ((sum(colour) - sum(from)) / (sum(to) - sum(from))).clamp(0.0, 1.0)
 }
 
 const LIGHT: Palette = Palette {
@@ -392,18 +208,14 @@ const DARK: Palette = Palette {
 };
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::colour::{Lab, cie76, ciede2000, encoded, lab, linear, seen_by};
+    use crate::colour::{Lab, Sight, cie76, ciede2000, encoded, lab, linear, seen_by};
 
     const WHITE: Colour = [255; 3];
 
-    fn typed(text: &str) -> Option<TypedColour> {
-        Some(text.parse().unwrap_or_else(|error| panic!("{text}: {error}")))
-    }
-
-    /// All that words stand on.
-    fn words(palette: &Palette) -> Vec<(Colour, Colour)> {
+    /// Each colour of words with each colour of their ground.
+    pub(in crate::look) fn words(palette: &Palette) -> Vec<(Colour, Colour)> {
         let texts = [palette.text, palette.second_text, palette.alarm_text];
         let grounds = [palette.background, palette.floor];
         let mut pairs: Vec<_> = texts.iter().flat_map(|&text| grounds.map(|ground| (text, ground))).collect();
@@ -493,81 +305,5 @@ mod tests {
             }
         }
         println!("as they are, lit, just behind, deep inside: {least:.1?}");
-    }
-
-    #[test]
-    fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
-        for theme in [LIGHT, DARK] {
-            for (at, &colour) in theme.runs.iter().enumerate() {
-                let found = contrast(colour, theme.background);
-                assert!(found >= LINE_CONTRAST, "{colour:x?} has a contrast of {found:.2} with the background");
-                let found = least_difference(colour, theme.alarm);
-                assert!(found >= 20.0, "{colour:x?} and turned-over elements differ by {found:.1}");
-                for other in &theme.runs[..at] {
-                    let found = least_difference(colour, *other);
-                    assert!(found >= RUNS_APART, "{colour:x?} and {other:x?} differ by {found:.1}");
-                }
-            }
-        }
-        // Where there are no colours, dashes say it.
-        for (at, dash) in DASHES.iter().enumerate() {
-            assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
-        }
-    }
-
-    #[test]
-    fn what_is_not_given_follows() {
-        let given = ColoursFile { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b"), ..ColoursFile::default() };
-        for theme in [Theme::Light, Theme::Dark] {
-            let (own, of_theme) = (Palette::with(theme, None, &given), Palette::of(theme));
-            assert_eq!((own.sound, own.alarm), ([0x8f, 0xbc, 0x8f], [0x7b, 0x2d, 0x8b]));
-            // Green, and lighter or darker than the body as in the theme.
-            for (colour, others) in [(own.sound_flat, of_theme.sound_flat), (own.tally, of_theme.tally)] {
-                assert!(colour[1] > colour[0] && colour[1] > colour[2], "{colour:x?}");
-                let lighter = |one: Colour, other: Colour| oklab(one).0[0] - oklab(other).0[0];
-                assert!((lighter(colour, own.sound) - lighter(others, of_theme.sound)).abs() < 0.02, "{colour:x?}");
-            }
-            assert!(contrast(own.alarm_line, own.alarm) > 1.5);
-            for (text, ground) in words(&own) {
-                assert!(contrast(text, ground) >= LEAST_CONTRAST, "{text:x?} on {ground:x?}");
-            }
-            let same = (own.background, own.text, own.grid, own.outline, own.second_text);
-            assert_eq!(
-                same,
-                (of_theme.background, of_theme.text, of_theme.grid, of_theme.outline, of_theme.second_text)
-            );
-        }
-        assert_eq!(Palette::with(Theme::Dark, None, &ColoursFile::default()), DARK);
-        assert_eq!(Palette::with(Theme::Light, None, &ColoursFile::default()), LIGHT);
-    }
-
-    #[test]
-    fn a_dark_body_gets_light_edges_and_a_dark_alarm_a_light_hatch() {
-        let given = ColoursFile { body: typed("#202830"), turned_over: typed("#603000"), ..ColoursFile::default() };
-        let own = Palette::with(Theme::Light, None, &given);
-        assert!(oklab(own.edge).0[0] > oklab(own.sound).0[0] && contrast(own.edge, own.sound) >= LINE_CONTRAST);
-        assert!(oklab(own.alarm_line).0[0] > oklab(own.alarm).0[0] + 0.2);
-    }
-
-    #[test]
-    fn any_background_has_words_that_can_be_read() {
-        for red in [0, 60, 120, 128, 150, 200, 255] {
-            for green in [0, 60, 110, 120, 128, 180, 255] {
-                for blue in [0, 120, 255] {
-                    let ground = [red, green, blue];
-                    for theme in [Theme::Light, Theme::Dark] {
-                        let theme = Palette::theme_on(Some(ground), theme);
-                        let own = Palette::with(theme, Some(ground), &ColoursFile::default());
-                        for text in [own.text, own.second_text, own.alarm_text] {
-                            assert!(contrast(text, ground) >= LEAST_CONTRAST, "{text:x?} on {ground:x?}");
-                        }
-                    }
-                }
-            }
-        }
-        assert_eq!(Palette::theme_on(Some([0; 3]), Theme::Light), Theme::Dark);
-        assert_eq!(Palette::theme_on(Some([255; 3]), Theme::Dark), Theme::Light);
-        assert_eq!(Palette::theme_on(Some([0xff, 0xf8, 0xe8]), Theme::Light), Theme::Light);
-        assert_eq!(Palette::theme_on(None, Theme::Dark), Theme::Dark);
     }
 }

@@ -1,10 +1,11 @@
-//! The colours of scalar fields: named scales.
+//! Colour scales of scalar fields, by name.
 
-use super::view::{ColourMap, Theme};
+use super::palette::Theme;
+use super::view::ColourMap;
 use crate::colour::{Colour, Oklab, from_oklab};
 use colorous::Gradient;
 
-/// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
+/// The number of colours of a scale; linear interpolation between them is visually exact.
 pub(crate) const SHADES: usize = 64;
 
 /// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent

@@ -1,13 +1,12 @@
-//! What comes near the body in the course of a scene, so that the picture can show it.
+//! The obstacles and grips that come near the body at any time of a scene, so that the camera can show them.
 
-use super::framing::Around;
+use super::subject::Subject;
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use glam::DVec3;
 
-/// What is farther from the body than this (body sizes) moves no camera: bodies stay large however far away the
-/// obstacles come from.
+/// What is farther from the body than this (body sizes) does not affect the camera, so that bodies stay large.
 const NEAR: f64 = 1.25;
 /// Half the side of what is shown of a plate (body sizes).
 const PLATE: f64 = 0.85;
@@ -17,7 +16,7 @@ const PARTS: usize = 24;
 const MANY_KEYS: usize = 500;
 
 /// The points (m) of obstacles and grips that are at any time near the box around a body of a size (m).
-pub(crate) fn near(scene: &Around<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
+pub(crate) fn near(scene: &Subject<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
     let (low, high) = (low - NEAR * size, high + NEAR * size);
     let around = Neighbourhood { scene, size, middle: (low + high) / 2.0, corners: [low, high] };
     let mut points = Vec::new();
@@ -27,7 +26,7 @@ pub(crate) fn near(scene: &Around<'_>, [low, high]: [DVec3; 2], size: f64) -> Ve
 }
 
 struct Neighbourhood<'a> {
-    scene: &'a Around<'a>,
+    scene: &'a Subject<'a>,
     size: f64,
     middle: DVec3,
     corners: [DVec3; 2],
@@ -52,7 +51,7 @@ impl Neighbourhood<'_> {
         for time in times(&obstacle.motion, [0.0, self.scene.duration]) {
             let pose = obstacle.pose(time);
             outermost.iter().for_each(|&point| self.add(pose.apply(pivot, point), points));
-            // Of something large the part that is nearest may be all that there is to see.
+            // Of a large obstacle only the nearest part may be in the picture.
             let nearest = nearest(&obstacle.shape, pose.undo(pivot, self.middle));
             nearest.into_iter().for_each(|point| self.add(pose.apply(pivot, point), points));
         }
@@ -75,11 +74,11 @@ impl Neighbourhood<'_> {
             }
             Shape::Sphere { centre, radius } => around(centre, radius).collect(),
             Shape::Capsule { from, to, radius } => around(from, radius).chain(around(to, radius)).collect(),
-            Shape::Box { centre, half, turn } => {
+            Shape::Box { centre, half, rotation } => {
                 let half = DVec3::select(half.is_finite_mask(), half, DVec3::ZERO);
                 let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
                 let corner = |at: u32| half * DVec3::new(sign(at, 0), sign(at, 1), sign(at, 2));
-                (0..8).map(|at| centre + turn * corner(at)).collect()
+                (0..8).map(|at| centre + rotation * corner(at)).collect()
             }
         }
     }
@@ -112,9 +111,9 @@ fn nearest(shape: &Shape, to: DVec3) -> Option<DVec3> {
             let share = if squared > 0.0 { ((to - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
             Some(ball(from + share * along, radius))
         }
-        Shape::Box { centre, half, turn } => {
-            let local = turn.conjugate() * (to - centre);
-            Some(centre + turn * local.clamp(-half, half))
+        Shape::Box { centre, half, rotation } => {
+            let local = rotation.conjugate() * (to - centre);
+            Some(centre + rotation * local.clamp(-half, half))
         }
     }
 }

@@ -1,17 +1,15 @@
-//! What a `[view]` table means, for the body, the runs and the surroundings that it shows.
+//! Resolves a `[view]` table for the body, the runs and the surroundings that it shows.
 
 use super::contrast;
-use super::eye::{eye, is_inside};
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
-use super::framing::{self, Around};
+use super::framing;
+use super::inside::is_inside;
+use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, Light, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
 use crate::reading::report::{Report, Way};
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact;
-use crate::sim::field::Field;
+use crate::sim::body::Dimension;
 use crate::sim::words::rounded;
-use std::f64::consts::TAU;
 
 /// How many panels stand beside each other unless the scene says so.
 const COLUMNS: usize = 3;
@@ -19,7 +17,7 @@ const COLUMNS: usize = 3;
 /// The view, or `None` if there is a mistake in it.
 pub(crate) fn resolve(
     typed: &ViewFile,
-    scene: &Around<'_>,
+    scene: &Subject<'_>,
     font: Option<FontFiles>,
     report: &mut Report<'_>,
 ) -> Option<View> {
@@ -37,8 +35,8 @@ pub(crate) fn resolve(
         None => None,
     };
     let chosen = framing::camera(&typed.camera, target, typed.explode, scene);
-    if dimension == Dimension::Space && is_inside(eye(&chosen), body, &scene.initial.position) {
-        let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
+    if dimension == Dimension::Space && is_inside(chosen.eye(), body, &scene.initial.position) {
+        let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
         let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
@@ -144,7 +142,7 @@ const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 const NARROWEST: f64 = 1e-9;
 
 /// The colours of a field, over a range that follows from the scene if none is typed.
-fn colour(typed: &ColourFile, scene: &Around<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
+fn colour(typed: &ColourFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
     let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
     let range = match typed.range {
         Some(range) => rising(range, &way, report)?,
@@ -179,34 +177,5 @@ fn labels(typed: &ViewFile) -> Labels {
         clock: has(LabelFile::Clock),
         count: has(LabelFile::Count),
         number: has(LabelFile::Number),
-    }
-}
-
-impl Around<'_> {
-    /// The largest value of a field that the scene lets expect.
-    fn largest(&self, field: Field) -> f64 {
-        /// The strain, and the displacement in edges of an element, that count as large.
-        const LARGE: f64 = 0.5;
-        let side = self.side;
-        match field {
-            Field::Strain => LARGE,
-            Field::Displacement => LARGE * side,
-            Field::ElasticEnergy => {
-                let stiffness = self.models.iter().fold(0.0, |most: f64, model| most.max(model.stiffness()));
-                0.5 * stiffness * (LARGE * side) * (LARGE * side)
-            }
-            Field::Speed => {
-                let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
-                let (_, high) = bounds(&self.initial.position);
-                let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
-                let fall = (2.0 * self.gravity.length() * drop).sqrt();
-                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
-                let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
-                // A body that nothing moves swings by itself at the most.
-                let periods = self.models.iter().map(|model| model.shortest_period(self.body));
-                let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
-                if fastest > 0.0 { fastest } else { swing }
-            }
-        }
     }
 }

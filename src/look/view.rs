@@ -1,6 +1,6 @@
 //! How a scene is looked at, resolved.
 
-use super::palette::Palette;
+use super::palette::{Palette, Theme};
 use crate::sim::body::Dimension;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// What it looks like: colours, type, lines and margins.
+    /// Colours, type, lines and margins.
     pub look: Look,
     /// From where; the same for all panels.
     pub camera: Camera,
@@ -25,7 +25,7 @@ pub struct View {
     pub columns: usize,
     /// What is drawn of the body.
     pub visible: Visible,
-    /// What its surface is coloured by, if not by what it is.
+    /// The field that colours its surface, if any.
     pub colour: Option<ColourScale>,
     /// How many times longer than the displacements their arrows are drawn.
     pub arrow_scale: f64,
@@ -211,7 +211,7 @@ pub enum ColourMap {
     PurpleGreen,
 }
 
-/// What a picture looks like besides what it shows: colours, type, lines and margins.
+/// The appearance of a picture apart from its content: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// What the colours come from: the theme asked for, unless its text could not be read on the background.
@@ -257,7 +257,7 @@ pub struct FontFiles {
 
 impl fmt::Debug for FontFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Millions of bytes tell nobody anything.
+        // Their lengths instead of millions of bytes.
         let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
         let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
         f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
@@ -271,17 +271,6 @@ pub struct StrainScale {
     pub range: [f64; 2],
     /// Its colours.
     pub map: ColourMap,
-}
-
-/// The colours of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Theme {
-    /// Near-white ground, for papers.
-    #[default]
-    Light,
-    /// Near-black ground, for talks.
-    Dark,
 }
 
 /// A perspective camera that looks at a point.
@@ -301,6 +290,23 @@ pub struct Camera {
     pub rise: f64,
     /// How it goes along with the bodies shown, alike in all panels.
     pub follow: Follow,
+}
+
+impl Camera {
+    /// Where it stands before it follows anything (m).
+    pub(crate) fn eye(&self) -> DVec3 {
+        let [_, _, towards] = axes(self.azimuth, self.elevation);
+        self.target + self.distance * towards
+    }
+}
+
+/// The unit vectors to the right of a camera, up, and towards it from the point looked at, by its azimuth and elevation
+/// (rad).
+pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
+    let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    [right, towards.cross(right), towards]
 }
 
 /// How a camera goes along with the bodies shown. What it does is a function of the frame alone, so that any frame can

@@ -2,7 +2,7 @@
 
 use super::atomic::remove;
 use super::error::kind_of;
-use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_frame};
+use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_tags};
 use crate::scene::Scene;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -225,8 +225,8 @@ impl Found {
                 Err(error) => return Err(OutputError::reading(&path)(error)),
             }
             if !is_record {
-                match read_frame(&entry.path())? {
-                    Some((size, tags)) if is_own(&tags.scene) => {
+                match read_tags(&entry.path())?.filter(|(_, tags)| tags.frame().is_some()) {
+                    Some((size, tags)) if tags.scenes.iter().any(|scene| is_own(scene)) => {
                         let runs = tags.states.into_iter().map(|(_, run)| run).collect();
                         let own = Look { size, runs };
                         if look.is_some_and(|look| *look != own) {
@@ -234,7 +234,7 @@ impl Found {
                             found.unlike_look = own.describe();
                         }
                     }
-                    Some((_, tags)) if earlier.is_some_and(|earlier| earlier.digest == tags.scene) => {
+                    Some((_, tags)) if earlier.is_some_and(|earlier| tags.scenes.contains(&earlier.digest)) => {
                         found.earlier_frames.push(entry.path());
                     }
                     Some(_) => found.frames.push(entry.path()),

@@ -1,6 +1,6 @@
 //! Compressing and writing frames on threads of their own, so that drawing need not wait.
 
-use super::{Clock, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,7 +13,9 @@ pub struct PixelFrame {
     pub size: [u32; 2],
     /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
     pub pixels: Vec<u8>,
-    /// What it shows.
+    /// The number of the frame.
+    pub frame: u64,
+    /// What it says about itself.
     pub tags: Tags,
 }
 
@@ -96,8 +98,8 @@ fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let bytes = encode(frame.size, &frame.pixels, &frame.tags);
-        let index = frame.tags.frame;
+        let bytes = encode(frame.size, &frame.pixels, &frame.tags.texts(), Compression::Fast);
+        let index = frame.frame;
         let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
         let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
         written.spent += clock.spent();
@@ -114,18 +116,14 @@ fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>
 
 #[cfg(test)]
 mod tests {
+    use super::super::Shown;
     use super::*;
 
     fn frame(index: u64) -> PixelFrame {
-        let tags = Tags {
-            scene: String::new(),
-            states: Vec::new(),
-            frame: index,
-            time: 0.0,
-            version: String::new(),
-            adapter: String::new(),
-        };
-        PixelFrame { size: [2, 1], pixels: vec![0; 6], tags }
+        let [version, adapter] = [String::new(), String::new()];
+        let shows = Shown::Frame { frame: index, time: 0.0 };
+        let tags = Tags { shows, scenes: Vec::new(), states: Vec::new(), version, adapter };
+        PixelFrame { size: [2, 1], pixels: vec![0; 6], frame: index, tags }
     }
 
     #[test]

@@ -28,10 +28,7 @@ pub use folder::{Claimed, FRAME_FILES, Folder, Look, Replace, frame_file_name, f
 pub(crate) use frames::Tap;
 pub use frames::{FrameWriter, PixelFrame};
 pub use lock::FolderLock;
-#[cfg(feature = "render")]
-pub(crate) use png::encode_commented;
-pub(crate) use png::encode_plain;
-pub use png::{FigureTags, Label, Tags, encode, encode_figure, is_figure, read_frame, read_tags};
+pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub use sheets::SheetFiles;
 pub use states::{STATES_FILE, StatesWriter};
 pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};

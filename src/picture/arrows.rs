@@ -9,7 +9,7 @@ use super::{Mark, MarkShape};
 use crate::sim::snapshot::Placement;
 use glam::{DVec2, DVec3};
 
-/// An arrow's halo and the width of its head with it, in parts of the head's own width. The shader knows them, too.
+/// The widths of an arrow's halo and of its head with it, in parts of the head's own width. The shader has them, too.
 const HALO: f64 = 3.0 / 17.0;
 const HEIGHT: f64 = 1.0 + 2.0 * HALO;
 /// Width of the head of a long arrow (px in the reference picture).
@@ -59,6 +59,7 @@ pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Col
         along: [along.x, along.y].map(narrow),
         colour,
         second: halo,
+        opacity: u8::MAX,
         shape: MarkShape::Arrow,
     }
 }
@@ -100,14 +101,13 @@ impl Arrows<'_> {
         });
         let arrows = farthest_first(ends.collect()).filter_map(|(opacity, ends)| {
             let (ends, part) = self.inside(ends)?;
-            let whole = arrow(ends, self.size * self.thickness, self.colour, self.halo);
-            Some(Mark { shape: whole.shape.faint(opacity * part)?, ..whole })
+            arrow(ends, self.size * self.thickness, self.colour, self.halo).faded(opacity * part)
         });
         marks.extend(arrows);
     }
 
-    /// The part of an arrow that lies where arrows may be, and how opaque it is: the shortest fade. The largest reach
-    /// beyond that first, and without them the small ones would tell a wrong tale.
+    /// The part of an arrow inside the room, and its opacity: the shortest fade. Long arrows are cut, not left out, or the
+    /// remaining small ones would mislead.
     fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
         let [left, top, width, height] = self.room.map(f64::from);
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);

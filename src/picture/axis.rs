@@ -1,9 +1,9 @@
-//! Round numbers along the sides of a chart.
+//! Round numbers along an axis of a chart or a scale of colours.
 
-use super::number::{prefix, times_ten, with_minus};
-use crate::sim::words::rounded;
+use super::number::{times_ten, with_minus};
+use crate::sim::words::{prefix, rounded};
 
-/// What an axis shows, and how it may be divided.
+/// What an axis shows, which decides how it is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     /// Time (s), from end to end and no further.
@@ -12,6 +12,8 @@ pub(super) enum Kind {
     Count,
     /// Anything else.
     Value,
+    /// The values of a scale of colours, from end to end and no further.
+    Colour,
 }
 
 /// A range with round numbers on it.
@@ -21,9 +23,9 @@ pub(super) struct Axis {
     pub(super) range: [f64; 2],
     /// The round numbers, rising.
     pub(super) ticks: Vec<f64>,
-    /// What stands there.
+    /// The text at each of them.
     pub(super) texts: Vec<String>,
-    /// The unit of what stands there, with its prefix.
+    /// The unit of these texts, with its prefix.
     pub(super) unit: String,
 }
 
@@ -31,8 +33,8 @@ pub(super) struct Axis {
 /// part, so that no curve runs along its border.
 const NEAR: f64 = 0.13;
 const BEYOND: f64 = 0.05;
-/// Units that have prefixes: `kkg m/s` is none.
-const WITH_PREFIX: [&str; 2] = ["m", "J"];
+/// The units that take an SI prefix; `kkg m/s` would be wrong.
+const WITH_PREFIX: [&str; 3] = ["m", "m/s", "J"];
 
 impl Axis {
     /// An axis for values of a unit between two ends, with `most` ticks at most and two at least, if there are such
@@ -40,7 +42,7 @@ impl Axis {
     pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
-            // No one counts kiloseconds.
+            // Kiloseconds are not in use.
             Kind::Time if largest >= 1.0 => (1.0, ""),
             Kind::Time => prefix(largest),
             _ if WITH_PREFIX.contains(&unit) => prefix(largest),
@@ -50,13 +52,13 @@ impl Axis {
         let [low, high] = [low / factor, high / factor];
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
-            // Nothing ever happens.
+            // The value is constant.
             let (ticks, texts) = if low == 0.0 { (vec![0.0], vec!["0".to_owned()]) } else { Default::default() };
             return Self { range: [low * factor, low * factor + (low * factor).abs().max(1.0)], ticks, texts, unit };
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
-        let plain = division.decimals <= 4 && largest / factor < 99_999.5;
+        let plain = division.decimals <= if kind == Kind::Colour { 5 } else { 4 } && largest / factor < 99_999.5;
         let text = |value: f64| match plain {
             // Numbers beside each other need no decimals in common.
             _ if value == 0.0 && kind == Kind::Time => "0".to_owned(),
@@ -72,6 +74,12 @@ impl Axis {
         }
     }
 
+    /// Keeps every second tick, with the first.
+    pub(super) fn halve(&mut self) {
+        self.ticks = self.ticks.iter().copied().step_by(2).collect();
+        self.texts = self.texts.iter().step_by(2).cloned().collect();
+    }
+
     /// Where a value stands: 0 at the low end, 1 at the high one.
     pub(super) fn share(&self, value: f64) -> f64 {
         let [low, high] = self.range.map(|end| end / 2.0);
@@ -84,18 +92,19 @@ struct Division {
     range: [f64; 2],
     ticks: Vec<f64>,
     decimals: usize,
-    /// Ticks, and once more those that are ends.
+    /// The number of ticks, plus one for each end with a tick.
     worth: usize,
 }
 
-/// The division with most ticks, preferably with ticks at its ends.
+/// The division with most ticks, preferably with ticks at its ends. For colours, ticks at both ends matter more than many.
 fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     let highest = libm::floor(libm::log10(high - low));
     let digits: &[f64] = match kind {
         Kind::Count => &[5.0, 3.0, 2.0, 1.0],
         Kind::Time | Kind::Value => &[5.0, 2.0, 1.0],
+        Kind::Colour => &[5.0, 2.5, 2.0, 1.0],
     };
-    // Of whole things there are no parts.
+    // Counts have no fractions.
     let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
     let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
     // On to the next round number where that is near, or not.
@@ -107,7 +116,7 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let mut range = [low, high];
         let [below, above] = [from - (first - 1.0), last + 1.0 - to].map(|parts| parts % 1.0 * step / (high - low));
         let apart = |parts: f64| (1e-6..1.0 - 1e-6).contains(&parts.rem_euclid(1.0));
-        if kind != Kind::Time {
+        if matches!(kind, Kind::Count | Kind::Value) {
             if apart(from) {
                 let near = below <= near;
                 first -= f64::from(u8::from(near));
@@ -123,12 +132,20 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let at_end = |tick: f64, end: f64| usize::from((tick * step - end).abs() <= 1e-6 * (high - low));
         let worth = count + at_end(first, range[0]) + at_end(last, range[1]);
         let ticks = (0..count.min(2 * most + 1)).map(|at| (first + at as f64) * step).collect();
-        Division { range, ticks, decimals: (-power).clamp(0.0, 300.0) as usize, worth }
+        let decimals = (-power).clamp(0.0, 300.0) as usize + usize::from(digit == 2.5 && power <= 0.0);
+        Division { range, ticks, decimals, worth }
     });
     let mut all: Vec<_> = divisions.collect();
-    let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
-    // Of equals rather three ticks than two, then rather those at the ends: 0, 5, 10 and not 0, 3, 6, 9.
-    let rank = |&at: &usize| (all[at].worth, all[at].ticks.len().min(3), all[at].worth - all[at].ticks.len());
+    let fewest = if kind == Kind::Colour { 3 } else { 2 };
+    let best = (0..all.len()).filter(|&at| (fewest..=most).contains(&all[at].ticks.len()));
+    let rank = |&at: &usize| {
+        let (worth, count) = (all[at].worth, all[at].ticks.len());
+        match kind {
+            Kind::Colour => (usize::from(worth == count + 2), count, 0),
+            // Of equals rather three ticks than two, then rather those at the ends: 0, 5, 10 and not 0, 3, 6, 9.
+            _ => (worth, count.min(3), worth - count),
+        }
+    };
     let best = best.rev().max_by_key(rank);
     // Some ranges have too many ticks or too few, whatever the step: then every second of too many.
     let crowded = || (0..all.len()).filter(|&at| all[at].ticks.len() > most).min_by_key(|&at| all[at].ticks.len());
@@ -147,7 +164,7 @@ mod tests {
     #[test]
     fn ticks_are_few_and_round() {
         type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
-        let expected: [Case; 14] = [
+        let expected: [Case; 22] = [
             (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
             (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
             (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
@@ -162,6 +179,14 @@ mod tests {
             (Kind::Time, [0.0, 0.1], "s", 4, &["0", "50", "100"], "ms"),
             (Kind::Time, [0.0, 6.5], "s", 5, &["0", "2", "4", "6"], "s"),
             (Kind::Time, [0.0, 5000.0], "s", 4, &["0", "2000", "4000"], "s"),
+            (Kind::Colour, [0.0, 0.5], "", 5, &["0.00", "0.25", "0.50"], ""),
+            (Kind::Colour, [0.0, 1.0], "", 5, &["0.00", "0.25", "0.50", "0.75", "1.00"], ""),
+            (Kind::Colour, [0.0, 9.9], "m/s", 5, &["0", "2", "4", "6", "8"], "m/s"),
+            (Kind::Colour, [0.0, 0.05], "m", 5, &["0", "25", "50"], "mm"),
+            (Kind::Colour, [-0.02, 0.02], "m", 5, &["−20", "−10", "0", "10", "20"], "mm"),
+            (Kind::Colour, [0.0, 12.5], "J", 5, &["0", "5", "10"], "J"),
+            (Kind::Colour, [0.0, 2e6], "J", 5, &["0.0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
+            (Kind::Colour, [0.0, 3e-7], "", 5, &["0", "1e−7", "2e−7", "3e−7"], ""),
         ];
         for (kind, range, unit, most, texts, with_prefix) in expected {
             let axis = Axis::new(kind, range, unit, most);
@@ -175,11 +200,12 @@ mod tests {
         for step in 0..3000 {
             let high = 1e-9 * libm::pow(10.0, f64::from(step) * 0.006_13);
             for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high, 0.95 * high] {
-                for kind in [Kind::Time, Kind::Value] {
-                    for most in 2..=6 {
+                for kind in [Kind::Time, Kind::Value, Kind::Colour] {
+                    for most in if kind == Kind::Colour { 5..=5 } else { 2..=6 } {
                         let axis = Axis::new(kind, [low, high], "m", most);
                         let told = || format!("{kind:?} {low} {high} {most}: {axis:?}");
-                        assert!((2..=most).contains(&axis.ticks.len()), "{}", told());
+                        let fewest = if kind == Kind::Colour { 3 } else { 2 };
+                        assert!((fewest..=most).contains(&axis.ticks.len()), "{}", told());
                         assert!(axis.ticks.windows(2).all(|two| two[0] < two[1]), "{}", told());
                         assert!(axis.ticks.iter().all(|&tick| (-1e-6..=1.0 + 1e-6).contains(&axis.share(tick))));
                         assert!((-1e-6..=0.2).contains(&axis.share(low)), "{}", told());
@@ -200,7 +226,7 @@ mod tests {
     #[test]
     fn odd_ranges_do_no_harm() {
         for odd in [[0.0, 0.0], [3.0, 3.0], [-f64::MAX, f64::MAX], [0.0, 5e-324], [1.0, 1.0 + 1e-15]] {
-            for kind in [Kind::Time, Kind::Count, Kind::Value] {
+            for kind in [Kind::Time, Kind::Count, Kind::Value, Kind::Colour] {
                 let axis = Axis::new(kind, odd, "J", 4);
                 assert!(axis.ticks.len() <= 4 && axis.ticks.len() == axis.texts.len(), "{odd:?} {axis:?}");
             }

@@ -1,13 +1,13 @@
-//! From where a panel is seen: pure numbers, in double precision.
+//! The camera of a panel, in double precision.
 
 use super::layout;
 use super::narrow::narrow_row;
-use crate::look::{Camera, Follow, View};
+use crate::look::{Camera, Follow, View, axes};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
-/// How far below the middle of the room between them the point looked at stands, in parts of that room's height:
-/// bodies rise.
+/// How far below the middle of the room between the text the point looked at is, in parts of that room's height: bodies
+/// rise.
 const LOWERED: f64 = 0.037;
 /// Which part of a panel's height that room is in the reference picture.
 const REFERENCE_ROOM: f64 = 0.75;
@@ -19,7 +19,7 @@ const USABLE_HEIGHT: f64 = 0.70;
 const USABLE_WIDTH: f64 = 0.39;
 /// Below this rise, in distances of the camera, following hardly begins.
 const GENTLE_RISE: f64 = 0.045;
-/// The highest rise that is followed, in distances of the camera. What flies farther leaves the picture.
+/// The highest rise that is followed, in distances of the camera. Bodies that fly higher leave the picture.
 const HIGHEST_RISE: f64 = 40.0;
 /// So far does the camera lag behind a fall, in its own distances.
 const GENTLE_FALL: f64 = 0.025;
@@ -133,7 +133,7 @@ impl Lens {
         let camera = &view.camera;
         let [above, below] = layout::rooms(view);
         let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
-        // As if margins were as wide as usual in a panel that is larger or smaller.
+        // Narrower margins have the effect of a larger panel with usual ones.
         let gained = layout::gained(view);
         let [across, along] = [0, 1].map(|axis| (panel[2 + axis] + gained[axis] * unit).max(0.1 * panel[2 + axis]));
         let height = along.min(across / FULL_ASPECT).min(room / REFERENCE_ROOM);
@@ -144,14 +144,12 @@ impl Lens {
             Dimension::Space => (camera.azimuth, camera.elevation),
             Dimension::Plane => (0.0, 0.0),
         };
-        let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
-        let towards = DVec3::new(across * level, rise, along * level);
-        let right = DVec3::new(along, 0.0, -across);
+        let [right, up, towards] = axes(azimuth, elevation);
         let orthographic = dimension == Dimension::Plane;
         Self {
             eye: framing.target + framing.distance * towards,
             right,
-            up: towards.cross(right),
+            up,
             forward: -towards,
             focal: if orthographic { slope / framing.distance } else { slope },
             centre,

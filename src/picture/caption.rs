@@ -1,7 +1,6 @@
-//! The words of a picture: names, clock, counts and numbers, and the lines between panels.
+//! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
-use super::narrow::narrow;
 use super::palette::{Colour, LineStyle, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
@@ -9,7 +8,7 @@ use super::{Curve, Mark, MarkShape, number};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Divergence, Snapshot};
 
-/// What is said of a run that blew up.
+/// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
 /// The widest times that a clock shows: room is kept for them, so that nothing moves when the digits change.
 const WIDEST_TIME: &str = "8888.8 s";
@@ -29,7 +28,7 @@ const SAMPLE: [f64; 2] = [40.0, 2.6];
 const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
 
-/// Writes one panel after the other.
+/// Collects the text and the flat marks of a picture.
 pub(super) struct Writer<'a> {
     pub(super) palette: &'a Palette,
     pub(super) fonts: &'a Fonts,
@@ -66,7 +65,7 @@ pub(super) struct Heading<'a> {
     pub(super) letter: String,
     /// The run's name.
     pub(super) name: &'a str,
-    /// The line that stands for it elsewhere in the picture.
+    /// The style of its curves and arrows.
     pub(super) sample: Option<LineStyle>,
     /// The line below.
     pub(super) second: &'a str,
@@ -81,7 +80,7 @@ pub(super) struct Number {
     widest: String,
     /// What it is, in words and in fewer words.
     wordings: [String; 2],
-    /// Whether it is said as loudly as possible.
+    /// Whether it is semi-bold and written in any case.
     is_loud: bool,
 }
 
@@ -91,7 +90,7 @@ impl Writer<'_> {
         // Its left edge is that of the panels' words.
         let (margin, size) = (self.scale.margin(), TITLE * around.title());
         let title = self.fonts.shortened(title, Weight::SemiBold, size, width - 2.0 * margin);
-        // Its margin is no wider than theirs, either, where that gives way to bodies.
+        // Nor is its margin wider than theirs, where panels give up margins for bodies.
         let baseline = around.row(TITLE_BASELINE) - around.widened() * (around.unit - self.scale.unit);
         self.left(&title, Weight::SemiBold, size, self.palette.text, margin, baseline);
     }
@@ -128,16 +127,15 @@ impl Writer<'_> {
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
-    /// A piece of the line that stands for a run elsewhere, from a place on (px).
+    /// A sample of the line of a run, from a place on (px).
     pub(super) fn sample(&mut self, [left, middle]: [f64; 2], LineStyle { colour, dash }: LineStyle) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
         let thickness = thickness * self.scale.line_factor;
         let mut piece = |from: f64, to: f64| {
             let thickness = thickness.round().max(1.0);
-            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness].map(narrow);
-            let shape = MarkShape::Filled;
-            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness];
+            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, colour));
         };
         if dash.is_empty() {
             return piece(0.0, length.round());
@@ -176,7 +174,7 @@ impl Writer<'_> {
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
     }
 
-    /// Tally and count, lower left. Says where they end at the widest (px).
+    /// Tally and count, lower left. Returns where they end at the widest (px).
     pub(super) fn count(&mut self, panel: Rectangle, tally: &Tally, snapshot: &Snapshot) -> f64 {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -226,7 +224,7 @@ impl Writer<'_> {
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        // A number of which nobody says what it is says nothing.
+        // A number without its name means nothing.
         if !Scale::legible(caption) && !number.is_loud {
             return;
         }
@@ -264,9 +262,8 @@ impl Writer<'_> {
             [first, top - 0.5 * (tick - thickness), thickness, tick],
             [last, top - 0.5 * (tick - thickness), thickness, tick],
         ] {
-            let rectangle = [x, y.round(), width, height].map(narrow);
-            let (colour, shape) = (self.palette.second_text, MarkShape::Filled);
-            self.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second: colour, shape });
+            let rectangle = [x, y.round(), width, height];
+            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, self.palette.second_text));
         }
         let colour = self.palette.second_text;
         let baseline = room.top + lines.caption;
@@ -284,15 +281,7 @@ impl Writer<'_> {
         for place in &layout.panels {
             let [left, top, width, height] = place.viewport.map(f64::from);
             let height = height + place.strip.map_or(0.0, |strip| f64::from(strip[1] + strip[3]) - top - height);
-            let mut line = |rectangle: [f64; 4]| {
-                self.marks.push(Mark {
-                    rectangle: rectangle.map(narrow),
-                    along: Mark::UPRIGHT,
-                    colour: halved,
-                    second: halved,
-                    shape: MarkShape::Filled,
-                });
-            };
+            let mut line = |rectangle| self.marks.push(Mark::upright(rectangle, MarkShape::Filled, halved));
             // Beside strips it goes as far down as these.
             let above_bottom = if place.strip.is_some() { 0.0 } else { inset };
             if left > 0.0 && height > inset + above_bottom {
@@ -360,14 +349,14 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// What is said of a run that blew up.
+/// The number of a run that diverged: when.
 pub(super) fn divergence(divergence: &Divergence) -> Number {
     let at = format!("at {}", number::time(divergence.time));
     let value = DIVERGED.to_owned();
     Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true }
 }
 
-/// The number at the lower right of a run that goes on.
+/// The number at the lower right of a run that has not diverged.
 pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
     let words = |long: &str, short: &str| [long.to_owned(), short.to_owned()];
     if let Some(ratio) = area_ratio {

@@ -25,7 +25,7 @@ const MOST_TIMES: usize = 6;
 const MOMENT: f64 = 1.3;
 const MOMENT_ALPHA: f64 = 0.75;
 const AREA: f64 = 0.16;
-/// What leaves the chart is seen so far outside of it (px in the reference picture).
+/// Curves that leave the chart are drawn this far outside it (px in the reference picture).
 const OUTSIDE: f64 = 5.0;
 
 /// Where the chart is (px).
@@ -112,7 +112,7 @@ impl Chart {
             writer.marks.push(filled(line, hairline));
         }
         let mut free = f64::INFINITY;
-        // The last one, which has the unit, comes first: a number for which it leaves no room is not written.
+        // From the last one, which has the unit, backwards: numbers that would overlap the next one are left out.
         for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate().rev() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();
@@ -130,7 +130,7 @@ impl Chart {
         }
     }
 
-    /// What a count has covered, below its steps.
+    /// The area below the steps of a count.
     pub(super) fn area(self, writer: &mut Writer<'_>, [times, values]: [&Axis; 2], points: &[[f64; 2]]) {
         let colour = mixed(writer.palette.background, writer.palette.alarm, AREA);
         let until = points.last().map(|&[time, _]| time);
@@ -174,7 +174,7 @@ pub(super) fn wide(fonts: &Fonts, text: &str, unit: f64) -> f64 {
 }
 
 pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
-    Mark { rectangle: rectangle.map(narrow), along: Mark::UPRIGHT, colour, second: colour, shape: MarkShape::Filled }
+    Mark::upright(rectangle, MarkShape::Filled, colour)
 }
 
 /// A filled disc.

@@ -1,4 +1,4 @@
-//! A diagnostic of a run over time, as a curve in a chart.
+//! The time series of a diagnostic of one run, as a curve in a chart.
 
 use super::Curve;
 use super::axis::Axis;
@@ -18,26 +18,26 @@ const ARM: f64 = 4.0;
 /// Curves are simplified as long as no point moves by more than this (px).
 const EXACT: f64 = 0.08;
 
-/// What a run that blew up shows beyond this many times the largest value of the others sets no scale and leaves the chart.
+/// Values of a diverged run above this many times the largest value of the other runs do not set the scale.
 const BEYOND: f64 = 3.0;
 /// The range holds zero unless zero is farther away than this many times its width.
 const NEAR_ZERO: f64 = 1.5;
 /// A range is at least this part of its values, so that no rounding error fills a strip.
 const LEAST_RANGE: f64 = 0.02;
 
-/// The diagnostic of one run.
+/// The time series of a diagnostic of one run.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub(super) run: usize,
-    /// What a reader calls it.
+    /// The name beside its curve.
     pub(super) name: String,
-    /// What the curve looks like.
+    /// Colour and dashes of its curve.
     pub(super) style: LineStyle,
-    /// Whether it is a count, which goes in steps.
+    /// Whether it is a count, which is drawn in steps.
     pub(super) is_count: bool,
     /// Times (s) and values, as far as they are numbers.
     pub(super) points: Vec<[f64; 2]>,
-    /// When it blew up (s).
+    /// When the run diverged (s).
     pub(super) diverged: Option<f64>,
 }
 
@@ -79,7 +79,7 @@ impl Line {
         Some([chart.x(times, time), chart.y(values, value).clamp(chart.top, chart.bottom)])
     }
 
-    /// The curve at a width (px in the reference picture) and an opacity, with a cross where the run blew up.
+    /// The curve at a width (px in the reference picture) and an opacity, with a cross where the run diverged.
     pub(super) fn draw(
         &self,
         writer: &mut Writer<'_>,
@@ -116,7 +116,7 @@ impl Line {
     }
 }
 
-/// What a reader calls a diagnostic of a scene.
+/// The name of a diagnostic of a scene in a picture.
 pub(super) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
     match (diagnostic, scene.body.dimension) {
         (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
@@ -124,19 +124,19 @@ pub(super) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
     }
 }
 
-/// The largest size of values.
+/// The largest absolute value.
 fn peak(points: &[[f64; 2]]) -> f64 {
     points.iter().fold(0.0, |most, [_, value]| value.abs().max(most))
 }
 
-/// The values that strips show: all of runs that go on, and of those that blew up what is not far beyond those.
+/// The range of values to show: all values of runs that did not diverge, and those of diverged runs that are not far larger.
 pub(super) fn range(lines: &[Line], may_blow_up: bool) -> Option<[f64; 2]> {
     let with_values = || lines.iter().filter(|line| !line.points.is_empty());
     let is_wild = |line: &Line| may_blow_up && line.diverged.is_some();
     let calm = with_values().filter(|line| !is_wild(line)).map(|line| peak(&line.points)).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
-        // With nothing to compare with, half of what there is counts as ordinary.
+        // Without runs to compare with, the median is ordinary.
         _ => {
             let mut sizes: Vec<_> = with_values().flat_map(|line| &line.points).map(|[_, value]| value.abs()).collect();
             sizes.sort_by(f64::total_cmp);
@@ -154,7 +154,7 @@ pub(super) fn range(lines: &[Line], may_blow_up: bool) -> Option<[f64; 2]> {
     ends.map(widened)
 }
 
-/// A range with zero, unless that is far away, and not too narrow.
+/// A range that is not too narrow and holds zero unless that is far away.
 fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     let nearest = if low > 0.0 { low } else { (-high).max(0.0) };
     if nearest <= NEAR_ZERO * (high - low) {
@@ -165,7 +165,7 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     [low - missing, high + missing]
 }
 
-/// A count's course: level until it changes, and then straight up or down.
+/// A count as steps: level until it changes, then straight up or down.
 fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut steps: Vec<[f64; 2]> = Vec::new();
     for &[x, y] in points {
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn what_blows_up_flattens_nothing() {
+    fn diverged_runs_do_not_set_the_scale() {
         let calm = line(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
         let blown = line(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
         assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));

@@ -1,10 +1,10 @@
-//! Triangles for polygons that are not convex.
+//! Triangulation of polygons that are not convex, by ear clipping.
 
 use crate::sim::body::Body;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
-/// Polygons of more corners than this stay fans: looking for their triangles takes the cube of their number.
+/// Polygons of more corners than this stay fans: ear clipping takes the cube of their number.
 const MOST_CORNERS: usize = 256;
 
 /// Triangles of the faces of a body that are not convex at rest, as places in their lists of nodes. They are chosen from
@@ -44,9 +44,9 @@ fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
 /// The triangles of a polygon that is not convex and does not cross itself, by cutting off its ears; `None` for others.
 fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     let scale = corners.iter().fold(0.0, |scale: f64, at| scale.max(at.length_squared()));
-    let turn = |a: usize, b: usize, c: usize| (corners[b] - corners[a]).perp_dot(corners[c] - corners[b]);
+    let orientation = |a: usize, b: usize, c: usize| (corners[b] - corners[a]).perp_dot(corners[c] - corners[b]);
     let count = corners.len();
-    let is_concave = (0..count).any(|at| turn(at, (at + 1) % count, (at + 2) % count) < -1e-9 * scale);
+    let is_concave = (0..count).any(|at| orientation(at, (at + 1) % count, (at + 2) % count) < -1e-9 * scale);
     if !is_concave {
         return None;
     }
@@ -57,11 +57,12 @@ fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
         let ear = (0..left.len()).find(|&at| {
             let [a, b, c] = around(at);
             let outside = |point: usize| {
-                turn_to(corners, [a, b], point) < 0.0
-                    || turn_to(corners, [b, c], point) < 0.0
-                    || turn_to(corners, [c, a], point) < 0.0
+                side_of(corners, [a, b], point) < 0.0
+                    || side_of(corners, [b, c], point) < 0.0
+                    || side_of(corners, [c, a], point) < 0.0
             };
-            turn(a, b, c) > 0.0 && left.iter().filter(|point| ![a, b, c].contains(point)).all(|&point| outside(point))
+            orientation(a, b, c) > 0.0
+                && left.iter().filter(|point| ![a, b, c].contains(point)).all(|&point| outside(point))
         })?;
         triangles.push(around(ear).map(|at| at as u32));
         left.remove(ear);
@@ -71,11 +72,11 @@ fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
 }
 
 /// Positive where a point lies to the left of a line.
-fn turn_to(corners: &[DVec2], [from, to]: [usize; 2], point: usize) -> f64 {
+fn side_of(corners: &[DVec2], [from, to]: [usize; 2], point: usize) -> f64 {
     (corners[to] - corners[from]).perp_dot(corners[point] - corners[from])
 }
 
-/// Elements of which no face is in the picture, though nobody has said what to draw instead.
+/// Elements without a face, unless the body lists faces of its own to draw instead.
 pub(super) fn bare_elements(body: &Body) -> Vec<usize> {
     let mut has_face = vec![false; body.elements.len()];
     let owners = body.faces.inner.iter().chain(&body.faces.outer).flatten();

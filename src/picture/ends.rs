@@ -5,20 +5,18 @@ use super::Curve;
 use super::caption::Writer;
 use super::chart::{Chart, NUMBERS};
 use super::course::{Line, OWN};
-use super::layout::Scale;
+use super::layout::{CURVE_NAME, Scale};
 use super::narrow::narrow;
 use super::text::{Fonts, Weight};
 
-/// From the chart to the names: the mark of the present moment has room there. From one name to the next (px in the
-/// reference picture).
+/// From the chart to the names: the mark of the present moment has room there (px in the reference picture).
 const GAP: f64 = 14.0;
-pub(super) const APART: f64 = 15.0;
 /// Where there are more names than this, a sample of its line stands before each: its length, and the gap after it (px in
 /// the reference picture).
 const FEW: usize = 4;
 const SAMPLE: [f64; 2] = [30.0, 6.0];
-/// Free at both ends of a line that leads to a name, its width, its dots and gaps where it comes from a curve that ends
-/// early and must not look like its course (px in the reference picture), and its opacity.
+/// Free at both ends of a leader line, its width, its dots and gaps where its curve ends early (or it would look like a
+/// part of the curve; px in the reference picture), and its opacity.
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
 const DOTS: [f64; 2] = [1.0, 3.5];
@@ -31,17 +29,17 @@ const LEAST_ROOM: f64 = 3.0;
 /// The names of several curves.
 #[derive(Debug)]
 pub(super) struct Ends {
-    /// One for each curve, as far as it has room, and whether it is told from all others.
+    /// One for each curve, shortened to the room, and whether it differs from all others.
     names: Vec<(String, bool)>,
-    /// What a sample before each takes, with its gap (px).
+    /// The width of the sample before each, with its gap (px).
     sample: f64,
-    /// What they take right of the chart, with the gap (px).
+    /// Their width right of the chart, with the gap (px).
     pub(super) width: f64,
 }
 
 impl Ends {
     /// The names of curves in a room of a width and a height (px). `None` for a single curve, which needs no name, and if
-    /// no name could be read, or be told from others.
+    /// no name would be legible or unique.
     pub(super) fn new(fonts: &Fonts, lines: &[Line], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
         let size = NUMBERS * unit;
         let shown = lines.iter().filter(|line| !line.points.is_empty()).count();
@@ -78,8 +76,8 @@ impl Ends {
         let mut order = farthest(all, own, fitting(bottom - top, unit));
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
         let heights: Vec<_> = order.iter().map(|&(_, [_, y])| y).collect();
-        let half = 0.5 * APART * unit;
-        let places = spread(&heights, APART * unit, [top + half, bottom - half]);
+        let half = 0.5 * CURVE_NAME * unit;
+        let places = spread(&heights, CURVE_NAME * unit, [top + half, bottom - half]);
         let left = chart.right + GAP * unit;
         for (&(at, [x, y]), &place) in order.iter().zip(&places) {
             let line = &lines[at];
@@ -117,10 +115,10 @@ impl Ends {
 
 /// How many names fit above each other into a height (px).
 fn fitting(height: f64, unit: f64) -> usize {
-    (height / (APART * unit) + 1e-6) as usize
+    (height / (CURVE_NAME * unit) + 1e-6) as usize
 }
 
-/// So many ends of curves at most: an own one, and then by turns the one that is farthest above or below all before.
+/// At most so many ends of curves: the own one, then repeatedly the one farthest from all chosen ones.
 fn farthest(mut all: Vec<(usize, [f64; 2])>, own: Option<usize>, most: usize) -> Vec<(usize, [f64; 2])> {
     if all.len() <= most || most == 0 {
         all.truncate(most);
@@ -138,9 +136,9 @@ fn farthest(mut all: Vec<(usize, [f64; 2])>, own: Option<usize>, most: usize) ->
     chosen
 }
 
-/// Places as near as possible to the given ones, which rise, at least so far apart and within two ends.
+/// The places nearest to given rising ones that are at least so far apart and within two ends (isotonic regression).
 pub(super) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f64> {
-    // Neighbours that would be too near stand around their common middle (isotonic regression).
+    // Neighbours that would be too near are centred around their common mean.
     let mut groups: Vec<(f64, usize)> = Vec::new();
     for (at, place) in places.iter().enumerate() {
         let mut group = (place - at as f64 * apart, 1);

@@ -1,11 +1,11 @@
-//! A body whose elements are drawn apart, so that one sees what is inside.
+//! An exploded view: a body whose elements are drawn apart, to show the inside.
 
 use crate::sim::body::{Body, IndexLists};
 use crate::sim::hull::Hulls;
 use crate::sim::topology::Elements;
 use glam::DVec3;
 
-/// A body of which no two elements share a node: each has copies of its own. All that draws bodies draws this one, too.
+/// A body whose elements do not share nodes: each has its own copies. It is drawn like any other body.
 #[derive(Debug)]
 pub(super) struct Exploded {
     pub(super) body: Body,

@@ -1,11 +1,11 @@
-//! Where the numbers of a scalar field stand on their scale of colours.
+//! The values of a scalar field as places on their scale of colours.
 
 use super::narrow::narrow;
 use crate::look::ColourScale;
 use crate::sim::body::Body;
 use crate::sim::field::Support;
 
-/// The place of what has no number: such parts keep the body's own colour.
+/// The place of a value that is not a number: such parts keep the body's own colour.
 pub(super) const NOWHERE: f32 = -1.0;
 
 /// One run's field, as places on the scale: 0 at its low end, 1 at its high end, or [`NOWHERE`].
@@ -38,7 +38,7 @@ impl Shades {
         }
     }
 
-    /// The places of the corners of a face; all nowhere if one of them is, for nothing lies between nowhere and a place.
+    /// The places of the corners of a face; all are nowhere if one of them is, because places are interpolated.
     pub(super) fn corners(&self, nodes: &[u32], element: Option<u32>) -> Vec<f64> {
         let nowhere = f64::from(NOWHERE);
         let corners: Vec<_> = nodes.iter().map(|&node| f64::from(self.corner(node, element))).collect();
@@ -66,7 +66,7 @@ pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
     if value.is_nan() {
         return NOWHERE;
     }
-    // Halves, so that the widest range has a length.
+    // Halves, so that the width of the widest range is finite.
     let share = (value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0);
     narrow(share.clamp(0.0, 1.0))
 }

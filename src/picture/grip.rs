@@ -1,7 +1,6 @@
-//! Marks on nodes that a hand holds or drags: nothing where no hand is at work.
+//! Marks on nodes that grips hold or drag.
 
 use super::layout::{Rectangle, Scale};
-use super::narrow::narrow;
 use super::palette::Palette;
 use super::pointer::{Going, Pointers};
 use super::skin::Skin;
@@ -14,7 +13,7 @@ use glam::DVec3;
 /// in the plane, where nodes are discs.
 const PIN: [f64; 2] = [6.5, 9.0];
 const HAND: [f64; 2] = [9.5, 12.0];
-/// Of more nodes than this that are dragged together, the arrow says enough: they are marked as if they were held.
+/// More nodes than this that are dragged together are marked like held ones; the arrow shows the motion.
 const FEW: usize = 4;
 /// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
 const SHARE: f64 = 0.45;
@@ -65,7 +64,7 @@ impl Hands<'_> {
         }
     }
 
-    /// How the middle of what a hand drags goes.
+    /// The motion of the middle of dragged nodes.
     fn going(&self, grip: &Grip) -> Going {
         let half = 0.25 * self.frame;
         let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;
@@ -84,12 +83,7 @@ impl Hands<'_> {
             return;
         }
         let shape = if ringed { MarkShape::Hand } else { MarkShape::Pin };
-        marks.extend(shape.faint(opacity).map(|shape| Mark {
-            rectangle: [pixel[0] - radius, pixel[1] - radius, 2.0 * radius, 2.0 * radius].map(narrow),
-            along: Mark::UPRIGHT,
-            colour: self.palette.pointer,
-            second: self.palette.halo,
-            shape,
-        }));
+        let whole = Mark::around(pixel.into(), radius, shape, self.palette.pointer);
+        marks.extend(Mark { second: self.palette.halo, ..whole }.faded(opacity));
     }
 }

@@ -1,4 +1,4 @@
-//! Where panels and words stand. Nothing here depends on the frame, so that nothing jumps.
+//! The layout of a picture: panels and text. It does not depend on the frame, so nothing jumps.
 //!
 //! ```text
 //! title
@@ -12,8 +12,6 @@
 //! caption
 //! ```
 
-use super::ends::APART;
-use super::strip::{MOST_OTHERS, NAMES_HEIGHT};
 use crate::look::{Labels, View};
 
 /// Lengths of the layout hold for a picture of this height (px) and grow with it.
@@ -30,10 +28,9 @@ const MARGIN: f64 = 40.0;
 /// The narrowest margin, at type of the usual size: words keep off the picture's sides, and off those of the next panel
 /// (px in the reference picture).
 const LEAST_MARGIN: f64 = 10.0;
-/// Above a strip it is so many times as wide: what is above and below has names of the same size.
+/// Above a strip the margin is so many times as wide: there is text of the same size on both sides.
 const ABOVE_STRIP: f64 = 2.0;
-/// What margins lack that are narrower than usual comes between rows to this part, or the lowest words of panels would
-/// touch what is below.
+/// This part of what narrow margins lack is added between rows, or the lowest text of panels would touch what is below.
 const MADE_UP: f64 = 0.25;
 /// Height of the ground of the title, and of a strip with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
@@ -45,17 +42,23 @@ const BELOW_STRIP: f64 = 22.0;
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
-/// Strips are no smaller than this part of the reference: they are read by their numbers.
+/// Strips are no smaller than this part of the reference, so that their numbers stay legible.
 pub(super) const LEAST_STRIP_UNIT: f64 = 0.5;
-/// The words above and below a body take at most this part of its panel.
+/// The text above and below a body takes at most this part of its panel.
 const MOST_WORDS: f64 = 0.62;
 /// What a strip needs besides its chart (px in the reference picture), and the lowest chart (px).
 const LEAST_STRIP: f64 = 46.0;
 pub(super) const LEAST_CHART: f64 = 14.0;
-/// A strip takes at most this part of its panel, and where so many runs are shown, whose curves it names.
+/// A strip takes at most this part of its panel; the second part from so many runs on, whose curves it names.
 const STRIP_SHARE: f64 = 0.34;
 const STRIP_SHARE_OF_MANY: f64 = 0.42;
 const MANY: usize = 5;
+/// With more other runs than this, strips leave their curves out: they could not be told apart.
+pub(super) const MOST_OTHERS: usize = 15;
+/// From one name at the end of a curve to the next, and the height of the room for these names in strips of the usual
+/// height (px in the reference picture).
+pub(super) const CURVE_NAME: f64 = 15.0;
+const CURVE_NAMES: f64 = 86.0;
 
 /// Room above and below the body in a panel with and without words there (px in the reference picture).
 const WORDS_ABOVE: f64 = 95.0;
@@ -68,14 +71,14 @@ pub type Rectangle = [u32; 4];
 
 /// Where a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    /// Where its body and its words stand.
+pub(super) struct PanelRoom {
+    /// The part for its body and its text.
     pub(super) viewport: Rectangle,
-    /// Where its strip stands, below that.
+    /// The part for its strip, below that.
     pub(super) strip: Option<Rectangle>,
 }
 
-/// Where everything stands.
+/// The places of everything in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     /// Sizes of type and lines in panels.
@@ -83,7 +86,7 @@ pub(super) struct Layout {
     /// Sizes of type and lines around panels.
     pub(super) around: Scale,
     /// One for each run shown, row by row.
-    pub(super) panels: Vec<Place>,
+    pub(super) panels: Vec<PanelRoom>,
     /// The part of the picture that the panels cover.
     pub(super) ground: Rectangle,
     /// Whether there is room for the title, and for the keys of colours and arrows.
@@ -112,8 +115,7 @@ impl Layout {
                     + around.like_margin(BELOW_CAPTION),
             ),
         };
-        // Whatever stands around them, panels keep half of the picture: the title comes first, then the keys, and the
-        // caption has what is left.
+        // Panels keep at least half of the picture: of the rest, first the title gets room, then the keys, then the caption.
         let most = size[1] / 2;
         let title = if title <= most { title } else { 0 };
         let legend = if title + legend <= most { legend } else { 0 };
@@ -125,8 +127,8 @@ impl Layout {
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
         let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         // The names at the ends of curves have room above each other.
-        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * APART } else { 0.0 };
-        let strip_units = STRIP + (names - NAMES_HEIGHT).max(0.0);
+        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * CURVE_NAME } else { 0.0 };
+        let strip_units = STRIP + (names - CURVE_NAMES).max(0.0);
         let share = if runs < MANY { STRIP_SHARE } else { STRIP_SHARE_OF_MANY };
         let strip_height = |height: f64| match view.strip {
             Some(_) => {
@@ -158,7 +160,7 @@ impl Layout {
             if let Some([_, top, ..]) = strip {
                 panel[3] = top - panel[1];
             }
-            Place { viewport: panel, strip }
+            PanelRoom { viewport: panel, strip }
         };
         Self {
             scale,
@@ -317,7 +319,7 @@ impl Scale {
         (self.margin - MARGIN).max(0.0)
     }
 
-    /// What stands between rows instead of margins that are narrower than usual (px in the reference picture).
+    /// What is added between rows where margins are narrower than usual (px in the reference picture).
     pub(super) fn made_up(self) -> f64 {
         MADE_UP * (MARGIN - self.margin).max(0.0)
     }
@@ -433,7 +435,7 @@ mod tests {
             let [_, top, width, height] = layout.ground;
             assert!(width == size[0] && height >= size[1] / 2 && layout.legend == top + height);
             assert!(layout.caption >= f64::from(layout.legend));
-            for Place { viewport, strip } in &layout.panels {
+            for PanelRoom { viewport, strip } in &layout.panels {
                 // Where a strip could not be read, its room is the body's.
                 let Some(strip) = strip else {
                     assert!(size[1] <= 200 && viewport[1] + viewport[3] <= top + height);

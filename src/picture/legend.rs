@@ -1,11 +1,11 @@
-//! What colours and arrows mean: one key for all panels, below them on ground of its own, so that it collides with
-//! nothing.
+//! The key of colours and arrows: one for all panels, below them, so that it overlaps nothing.
 
 use super::arrows;
+use super::axis::{Axis, Kind};
 use super::caption::Writer;
+use super::chart::filled;
 use super::layout::Scale;
-use super::narrow::narrow;
-use super::number::{self, Ticks};
+use super::number;
 use super::palette::Colour;
 use super::text::Weight;
 use super::{Mark, MarkShape};
@@ -28,11 +28,13 @@ const LENGTHS: [f64; 2] = [190.0, 340.0];
 /// Numbers nearer to each other than this are thinned out (px in the reference picture).
 const NUMBERS_APART: f64 = 9.0;
 const TICK: f64 = 5.0;
+/// Ticks at the most.
+const MOST_TICKS: usize = 5;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
-/// How far a thick one stays from the words above, which stand half a margin above the ground or higher (px in the
+/// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
 /// reference picture).
 const CLEAR: f64 = 2.0;
 
@@ -102,7 +104,7 @@ impl Legend {
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some([metres, length, size]) = arrow {
-            // However thick lines are, it stays on its ground and clear of the words above.
+            // However thick lines are, the arrow stays inside the key and clear of the text above.
             let free = middle - ground + 0.5 * margin - CLEAR * writer.scale.unit;
             let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
             let size = size.min(most.max(size / writer.scale.line_factor));
@@ -124,7 +126,7 @@ impl Legend {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
         writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
-        // The words stand still when the camera moves.
+        // The text does not move with the camera.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(
             writer,
@@ -142,13 +144,13 @@ impl Legend {
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
         let &Bar { name, ramp, beyond, .. } = bar;
-        let mut ticks = Ticks::new(bar.range, bar.unit);
+        let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
         let wide = |text: &String| fonts.width(text, Weight::Regular, numbers);
-        let widths: Vec<_> = ticks.texts.iter().map(wide).collect();
+        let widths: Vec<_> = axis.texts.iter().map(wide).collect();
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
-        let unit_text = if ticks.unit.is_empty() { String::new() } else { format!("({})", ticks.unit) };
+        let unit_text = if axis.unit.is_empty() { String::new() } else { format!("({})", axis.unit) };
         let caption = 16.0 * unit;
         let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
         let named = writer.fonts.width(name, Weight::SemiBold, caption)
@@ -158,8 +160,8 @@ impl Legend {
         let free = right - left - named - gap - overhang;
         let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
         let room = widths.iter().sum::<f64>() + NUMBERS_APART * unit * widths.len() as f64;
-        if room > length && widths.len() == 5 {
-            ticks.halve();
+        if room > length && widths.len() == MOST_TICKS {
+            axis.halve();
         }
         let whole = named + gap + length;
         let centred = middle - whole / 2.0;
@@ -170,38 +172,31 @@ impl Legend {
         self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
         let bar_left = (left + named + gap).round();
         let rim = (unit * writer.scale.line_factor).round().max(1.0);
-        let mark = |rectangle: [f64; 4], colour, second, shape| Mark {
-            rectangle: rectangle.map(narrow),
-            along: Mark::UPRIGHT,
-            colour,
-            second,
-            shape,
-        };
-        // Values beyond the scale: the bar goes on in a point.
+        // Where values lie beyond the scale, the bar ends in a point.
         let cap = 0.8 * height;
         for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {
             let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];
             for (out, colour) in [(rim, palette.axis), (0.0, colour)] {
                 let [wide, high] = [cap + 1.6 * out, height + 2.0 * out];
-                let along = if end == 0 { [-1.0, 0.0] } else { Mark::UPRIGHT };
-                let y = if end == 0 { top + height + out } else { top - out };
-                let rectangle = [x, y, wide, high].map(narrow);
-                writer.marks.push(Mark { rectangle, along, colour, second: colour, shape: MarkShape::Point });
+                let (y, along) = if end == 0 { (top + height + out, [-1.0, 0.0]) } else { (top - out, Mark::UPRIGHT) };
+                let point = Mark::upright([x, y, wide, high], MarkShape::Point, colour);
+                writer.marks.push(Mark { along, ..point });
             }
         }
         let sides = |end: usize| if beyond[end] { 0.0 } else { rim };
         let framed = [bar_left - sides(0), top - rim, length + sides(0) + sides(1), height + 2.0 * rim];
-        writer.marks.push(mark(framed, palette.axis, palette.axis, MarkShape::Filled));
+        writer.marks.push(filled(framed, palette.axis));
         let pieces = ramp.len() - 1;
         let at = |piece: usize| bar_left + (length * piece as f64 / pieces as f64).round();
         for piece in 0..pieces {
             let rectangle = [at(piece), top, at(piece + 1) - at(piece), height];
-            writer.marks.push(mark(rectangle, ramp[piece], ramp[piece + 1], MarkShape::Blend));
+            let blend = Mark::upright(rectangle, MarkShape::Blend, ramp[piece]);
+            writer.marks.push(Mark { second: ramp[piece + 1], ..blend });
         }
-        for (&share, text) in ticks.places.iter().zip(&ticks.texts) {
-            let x = bar_left + share * length;
+        for (&tick, text) in axis.ticks.iter().zip(&axis.texts) {
+            let x = bar_left + axis.share(tick).clamp(0.0, 1.0) * length;
             let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
-            writer.marks.push(mark(line, palette.axis, palette.axis, MarkShape::Filled));
+            writer.marks.push(filled(line, palette.axis));
             let baseline = top + height + (TICK + 14.5) * unit;
             self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, baseline);
         }

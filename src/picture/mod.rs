@@ -1,13 +1,13 @@
-//! From a frame of the simulation to a [`Picture`]: triangles, lines, marks and words as plain numbers. Nothing here
-//! knows a graphics device, so that everything can be tested by numbers.
+//! Turns a frame of the simulation into a [`Picture`]: triangles, lines, marks and text as plain data. Nothing here needs
+//! a graphics device, so everything can be tested without one.
 //!
 //! ```text
 //! Scene ─▶ Composer ─ compose(Frame) ─▶ Picture ─▶ render
 //! ```
 //!
-//! A [`Composer`] does once what is the same in all frames of a scene. Any frame can be composed by itself: what comes
-//! out depends on the scene and that frame alone. Where frames stand among all others ([`crate::look::View::strip`]),
-//! the composer is told the scene's course beforehand, which depends on the scene alone, too.
+//! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
+//! the scene and that frame only. Strips ([`crate::look::View::strip`]) show time series of the whole scene, which the
+//! composer gets beforehand; they depend on the scene only, too.
 
 mod arrows;
 mod axis;
@@ -48,7 +48,8 @@ pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Face, Fonts, Glyph, TextRun, Weight};
 
-use glam::{Mat4, Vec3};
+use glam::{DVec2, Mat4, Vec3};
+use narrow::narrow;
 
 /// Everything that a frame shows, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +58,7 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Its colours.
     pub palette: Palette,
-    /// The fonts of its words.
+    /// The fonts of its text.
     pub fonts: Fonts,
     /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
     pub ramp: Vec<Colour>,
@@ -69,7 +70,7 @@ pub struct Picture {
     pub marks: Vec<Mark>,
     /// Flat curves above the marks, in the order in which they are drawn.
     pub curves: Vec<Curve>,
-    /// Words, above everything else.
+    /// Text, above everything else.
     pub words: Vec<TextRun>,
 }
 
@@ -84,7 +85,7 @@ pub struct Panel {
     pub sight: Sight,
     /// What the body stands on, if it is drawn.
     pub floor: Option<Floor>,
-    /// The boundary of the elements that have kept their sign.
+    /// The boundary of the sound elements, which have not turned over.
     pub sound: Mesh,
     /// Its opacity, above 0 and up to 1.
     pub opacity: f32,
@@ -94,7 +95,7 @@ pub struct Panel {
     pub hatch: bool,
     /// Edges and contours of both, and of solid obstacles.
     pub lines: Vec<Line>,
-    /// What the body bounces off, besides the floor.
+    /// The obstacles besides the floor.
     pub obstacles: Obstacles,
     /// Springs and other lines with colours of their own, above the surfaces, in the order in which they are drawn.
     pub strokes: Vec<Stroke>,
@@ -105,30 +106,30 @@ pub struct Panel {
 /// The obstacles of a panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Obstacles {
-    /// What hides what is behind it. In the plane all of it lies behind the body, and the first before the next.
+    /// Opaque obstacles. In the plane all of them lie behind the body, each in front of the next.
     pub solids: Vec<Solid>,
-    /// What is seen through, from the farthest to the nearest.
+    /// Transparent obstacles, from the farthest to the nearest.
     pub slabs: Vec<Slab>,
-    /// In space, those near the body, which take light away from it where it touches them; [`MOST_OCCLUDERS`] at most.
+    /// In space, the obstacles near the body, which occlude its ambient light; at most [`MOST_OCCLUDERS`].
     pub occluders: Vec<Occluder>,
 }
 
-/// So many obstacles at most take light away from a body.
+/// The largest number of obstacles that occlude the ambient light of a body.
 pub const MOST_OCCLUDERS: usize = 5;
 
-/// An obstacle that takes light away from the body near it: all points within a distance of a box. That is a box with
-/// round edges, a rod or a ball; a plate or a wall is a very large one.
+/// An obstacle that occludes the ambient light of a body near it: all points within a distance of a box. That makes a
+/// rounded box, a capsule or a sphere; a plate or a wall is a very large one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occluder {
     /// The middle of the box.
     pub centre: Vec3,
     /// Half of its sides.
     pub half: Vec3,
-    /// How its sides are turned, as quaternion.
-    pub turn: [f32; 4],
+    /// Its rotation, as a quaternion.
+    pub rotation: [f32; 4],
     /// The distance.
     pub radius: f32,
-    /// Whether one sees through it.
+    /// Whether it is transparent.
     pub is_clear: bool,
 }
 
@@ -149,12 +150,12 @@ pub struct Solid {
     /// The colour of its rim, in the plane. There `hatch` says how far inside its outline a corner is (px), and corners
     /// reach beyond it by more than half a pixel.
     pub rim: Option<Colour>,
-    /// How near the body is to each corner, in space: 1 where they touch face to face, 0 where it takes no light away.
-    /// Empty if it is nowhere near.
+    /// How much the body occludes the ambient light at each corner, in space: 1 where they touch face to face, 0 where it
+    /// does not. Empty if the body is not near.
     pub near: Vec<f32>,
 }
 
-/// Something transparent.
+/// A transparent obstacle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slab {
     /// Its faces that are turned towards the viewer.
@@ -207,9 +208,9 @@ pub struct Sight {
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
-    /// How much is drawn of the lines of elements, from 0 to 1: less than all where many small ones are drawn apart.
+    /// Opacity of the lines of elements, from 0 to 1: below 1 where many small elements are drawn apart.
     pub line_share: f32,
-    /// How wide the contours of the body are, from 0 to 1: less than all where the body itself is small.
+    /// Width of the body's contours, from 0 to 1: below 1 where the body is small.
     pub contour_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
@@ -277,12 +278,12 @@ pub struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
-    /// From 0 to 1: how much of a contour is drawn, which comes and goes gently as a face turns towards the viewer; how
-    /// much of an edge of a sound element is seen where a surface hides it.
+    /// From 0 to 1: the opacity of a contour, which fades as its faces turn towards the viewer; the opacity of an edge of a
+    /// sound element where a surface hides it.
     pub strength: f32,
 }
 
-/// What a line is, which decides how it is drawn.
+/// The kind of a line, which decides how it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum LineKind {
@@ -309,7 +310,7 @@ pub struct Stroke {
     pub ends: [[f32; 3]; 2],
     /// The colours at its ends.
     pub colours: [Colour; 2],
-    /// What else there is to its colour.
+    /// Its second colour, if it has one.
     pub second: Second,
     /// Opacity of what lies behind a surface.
     pub behind: u8,
@@ -322,9 +323,9 @@ pub struct Stroke {
 pub enum Second {
     /// There is none.
     None,
-    /// It takes the place of the others over surfaces.
+    /// It replaces the first colours over surfaces.
     OnBody(Colour),
-    /// It runs along both sides, so that light colours show on light ground.
+    /// A casing along both sides, so that light colours show on light ground.
     Casing(Colour),
 }
 
@@ -344,7 +345,7 @@ pub struct Bead {
 /// A flat curve on the picture with round ends and joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Where it goes through, in straight pieces (px to the right and down); a single point is a dot.
+    /// The vertices of the polyline (px to the right and down); a single point is a dot.
     pub points: Vec<[f32; 2]>,
     /// Its width (px).
     pub width: f32,
@@ -367,6 +368,8 @@ pub struct Mark {
     pub colour: Colour,
     /// The colour of what is drawn on it.
     pub second: Colour,
+    /// Its opacity (of 255).
+    pub opacity: u8,
     /// What it looks like.
     pub shape: MarkShape,
 }
@@ -374,6 +377,24 @@ pub struct Mark {
 impl Mark {
     /// Along the width of a mark that is not turned.
     pub const UPRIGHT: [f32; 2] = [1.0, 0.0];
+
+    /// An opaque mark of one colour that is not turned: left, top, width and height (px).
+    fn upright([left, top, width, height]: [f64; 4], shape: MarkShape, colour: Colour) -> Self {
+        let rectangle = [left, top, width, height].map(narrow);
+        Self { rectangle, along: Self::UPRIGHT, colour, second: colour, opacity: u8::MAX, shape }
+    }
+
+    /// The same around a middle and as far as a radius (px).
+    fn around(middle: DVec2, radius: f64, shape: MarkShape, colour: Colour) -> Self {
+        let DVec2 { x, y } = middle;
+        Self::upright([x - radius, y - radius, 2.0 * radius, 2.0 * radius], shape, colour)
+    }
+
+    /// The mark with a part of its opacity, from 0 to 1; `None` if nothing of it would be seen.
+    fn faded(self, part: f64) -> Option<Self> {
+        let opacity = (f64::from(self.opacity) * part.clamp(0.0, 1.0)).round() as u8;
+        (opacity > 0).then_some(Self { opacity, ..self })
+    }
 }
 
 /// What a mark looks like.
@@ -406,34 +427,4 @@ pub enum MarkShape {
     Pin,
     /// A disc in a ring, both with a halo of the second colour.
     Hand,
-    /// An [`Self::Arrow`] of an opacity (of 255).
-    FaintArrow(u8),
-    /// A [`Self::Pin`] of an opacity (of 255).
-    FaintPin(u8),
-    /// A [`Self::Hand`] of an opacity (of 255).
-    FaintHand(u8),
-    /// A [`Self::Node`] of an opacity (of 255).
-    FaintNode(u8),
-    /// A [`Self::CounterClockwise`] of an opacity (of 255).
-    FaintCounterClockwise(u8),
-    /// A [`Self::Clockwise`] of an opacity (of 255).
-    FaintClockwise(u8),
-}
-
-impl MarkShape {
-    /// The same shape with a part of its opacity; `None` if nothing is left of it.
-    fn faint(self, part: f64) -> Option<Self> {
-        let opacity = (255.0 * part.clamp(0.0, 1.0)).round() as u8;
-        match self {
-            _ if opacity == 0 => None,
-            _ if opacity == 255 => Some(self),
-            Self::Arrow => Some(Self::FaintArrow(opacity)),
-            Self::Pin => Some(Self::FaintPin(opacity)),
-            Self::Hand => Some(Self::FaintHand(opacity)),
-            Self::Node => Some(Self::FaintNode(opacity)),
-            Self::CounterClockwise => Some(Self::FaintCounterClockwise(opacity)),
-            Self::Clockwise => Some(Self::FaintClockwise(opacity)),
-            _ => Some(self),
-        }
-    }
 }

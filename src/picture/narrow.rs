@@ -1,4 +1,4 @@
-//! The one place where double precision ends.
+//! Narrowing from double to single precision; nowhere else in `picture`.
 
 use glam::{DVec3, DVec4, Vec3, Vec4};
 
@@ -6,8 +6,8 @@ use glam::{DVec3, DVec4, Vec3, Vec4};
 /// coordinates are finite.
 const FARTHEST: f64 = 1e6;
 
-/// Rounds to single precision. What is no number becomes 0, and what is beyond all pictures comes to their rim, so
-/// that a run that blew up can be drawn like any other.
+/// Rounds to single precision. NaN becomes 0, and huge values are clamped, so that a diverged run can be drawn like any
+/// other.
 #[expect(clippy::cast_possible_truncation, reason = "this is the function that is meant to do it")]
 pub(super) fn narrow(value: f64) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) as f32 }

@@ -1,6 +1,6 @@
-//! Numbers as a picture writes them: few digits, a unit that suits them, a minus that is one.
+//! Numbers as text: few digits, a suitable unit, a true minus sign.
 
-use crate::sim::words::rounded;
+use crate::sim::words::{prefix, rounded};
 
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.
 pub(super) fn time(seconds: f64) -> String {
@@ -17,7 +17,7 @@ pub(super) fn time(seconds: f64) -> String {
 
 /// A moment (s) as exactly as someone typed it: milliseconds below a second, if zero is to be one of those, too; then
 /// seconds with so many decimals.
-pub(super) fn moment(seconds: f64, small: bool, decimals: usize) -> String {
+fn moment(seconds: f64, small: bool, decimals: usize) -> String {
     let text = match seconds.abs() {
         0.0 if !small => "0 s".to_owned(),
         size if size < LEAST_SECOND => format!("{} ms", rounded(seconds * 1e3, 4)),
@@ -27,10 +27,19 @@ pub(super) fn moment(seconds: f64, small: bool, decimals: usize) -> String {
 }
 
 /// How many decimals of a moment (s) from a second on are worth writing, at least one.
-pub(super) fn decimals(seconds: f64) -> usize {
+fn decimals(seconds: f64) -> usize {
     let text = format!("{:?}", rounded(seconds, 4));
     let plain = seconds.abs() >= LEAST_SECOND && !text.contains('e');
     text.split_once('.').filter(|_| plain).map_or(1, |(_, decimals)| decimals.len())
+}
+
+/// How times (s) that stand beside each other are written: with equally many decimals from a second on, and zero in the
+/// unit of its neighbours.
+pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> String {
+    let times: Vec<_> = times.collect();
+    let small = times.iter().all(|&time| time < 1.0) || times.iter().any(|&time| time > 0.0 && time < 1.0);
+    let decimals = times.iter().map(|&time| decimals(time)).max().unwrap_or(1);
+    move |time| moment(time, small, decimals)
 }
 
 /// What is shorter is written in milliseconds (s).
@@ -67,16 +76,6 @@ pub(super) fn with_minus(text: String) -> String {
     zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
 }
 
-/// Powers of a thousand that a unit's prefix stands for.
-const PREFIXES: [(f64, &str); 7] =
-    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
-
-/// The prefix that leaves one to three digits before the point, and what it stands for.
-pub(super) fn prefix(size: f64) -> (f64, &'static str) {
-    // A thousandth less than whole numbers still has their prefix, whatever was rounded.
-    PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
-}
-
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));
@@ -109,73 +108,6 @@ pub(super) fn metres(length: f64) -> String {
 /// A round length in metres, without a prefix as long as that is short.
 pub(super) fn plain_metres(length: f64) -> String {
     if (1e-3..1e4).contains(&length) { format!("{length} m") } else { metres(length) }
-}
-
-/// Round numbers along a scale.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Ticks {
-    /// Where they stand, from 0 at the low end to 1 at the high one.
-    pub(super) places: Vec<f64>,
-    /// What stands there.
-    pub(super) texts: Vec<String>,
-    /// The unit with its prefix.
-    pub(super) unit: String,
-}
-
-impl Ticks {
-    /// Three to five ticks of a rising range, in a unit that has prefixes unless it is empty.
-    pub(super) fn new([low, high]: [f64; 2], unit: &str) -> Self {
-        let largest = low.abs().max(high.abs());
-        let (factor, prefix) = if unit.is_empty() { (1.0, "") } else { prefix(largest) };
-        let [low, high] = [low / factor, high / factor];
-        let (values, decimals) = round_values(low, high);
-        let place = |value: f64| ((value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0)).clamp(0.0, 1.0);
-        // So many that one tick is told from the next.
-        let digits = (libm::log10(largest / factor / (high - low)).max(0.0) + 3.0) as usize;
-        let plain = decimals <= 5 && largest / factor < 99_999.5;
-        let text = |value: f64| match plain {
-            true => with_minus(format!("{value:.decimals$}")),
-            false if value == 0.0 => "0".to_owned(),
-            false => with_minus(format!("{:e}", rounded(value, digits))),
-        };
-        Self {
-            places: values.iter().copied().map(place).collect(),
-            texts: values.iter().copied().map(text).collect(),
-            unit: format!("{prefix}{unit}"),
-        }
-    }
-
-    /// Keeps every second tick, with the first.
-    pub(super) fn halve(&mut self) {
-        self.places = self.places.iter().copied().step_by(2).collect();
-        self.texts = self.texts.iter().step_by(2).cloned().collect();
-    }
-}
-
-/// Three to five round values in a range, and how many decimals they need. Of the possible ones those that hold both
-/// ends, then the most.
-fn round_values(low: f64, high: f64) -> (Vec<f64>, usize) {
-    let power = libm::floor(libm::log10((high / 2.0 - low / 2.0).clamp(1e-300, 1e300)));
-    let mut best = (Vec::new(), 0);
-    let mut best_rank = (false, 0);
-    for (down, digits) in [(0, 5.0), (0, 2.5), (0, 2.0), (0, 1.0), (1, 5.0), (1, 2.5), (1, 2.0), (1, 1.0)] {
-        let power = power - f64::from(down);
-        let step = times_ten(digits, power);
-        let [from, to] = [low / step, high / step];
-        let [first, last] = [libm::ceil(from - 1e-9), libm::floor(to + 1e-9)];
-        let count = last - first + 1.0;
-        if !(3.0..=5.0).contains(&count) {
-            continue;
-        }
-        let ends = first - from < 1e-6 && to - last < 1e-6;
-        let count = count as usize;
-        if best.0.is_empty() || (ends, count) > best_rank {
-            let decimals = (-power).clamp(0.0, 300.0) as usize + usize::from(digits == 2.5 && power <= 0.0);
-            best = ((0..count).map(|at| (first + at as f64) * step).collect(), decimals);
-            best_rank = (ends, count);
-        }
-    }
-    best
 }
 
 #[cfg(test)]
@@ -213,39 +145,6 @@ mod tests {
     #[test]
     fn ratios_have_two_decimals_and_a_real_minus() {
         assert_eq!([0.987, -1.0, -0.001, f64::INFINITY].map(ratio), ["0.99", "−1.00", "0.00", "∞"]);
-    }
-
-    #[test]
-    fn ticks_are_round_and_in_the_range() {
-        let expected: [(_, _, &[&str], _); 8] = [
-            ([0.0, 0.5], "", &["0.00", "0.25", "0.50"], ""),
-            ([0.0, 1.0], "", &["0.00", "0.25", "0.50", "0.75", "1.00"], ""),
-            ([0.0, 9.9], "m/s", &["0", "2", "4", "6", "8"], "m/s"),
-            ([0.0, 0.05], "m", &["0", "10", "20", "30", "40", "50"][..0], "mm"),
-            ([-0.02, 0.02], "m", &["−20", "−10", "0", "10", "20"], "mm"),
-            ([0.0, 12.5], "J", &["0.0", "2.5", "5.0", "7.5", "10.0", "12.5"][..0], "J"),
-            ([0.0, 2e6], "J", &["0.0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
-            ([0.0, 3e-7], "", &["0", "1e−7", "2e−7", "3e−7"], ""),
-        ];
-        for (range, unit, texts, prefixed) in expected {
-            let ticks = Ticks::new(range, unit);
-            assert!(texts.is_empty() || ticks.texts == texts, "{range:?}: {ticks:?}");
-            assert_eq!(ticks.unit, prefixed, "{range:?}");
-        }
-        for step in 0..4000 {
-            let high = 1e-8 * libm::pow(10.0, f64::from(step) * 0.004_37);
-            for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high] {
-                let ticks = Ticks::new([low, high], "m");
-                assert!((3..=5).contains(&ticks.places.len()), "{low} {high}: {ticks:?}");
-                assert!(ticks.places.windows(2).all(|two| two[0] < two[1]), "{low} {high}: {ticks:?}");
-                assert!(ticks.places.iter().all(|place| (0.0..=1.0).contains(place)), "{low} {high}: {ticks:?}");
-                let distinct: std::collections::BTreeSet<_> = ticks.texts.iter().collect();
-                assert_eq!(distinct.len(), ticks.texts.len(), "{low} {high}: {ticks:?}");
-            }
-        }
-        for odd in [[0.0, f64::MAX], [-f64::MAX, f64::MAX], [1.0, 1.0 + 1e-15], [0.0, 5e-324], [1e-310, 2e-310]] {
-            assert!(Ticks::new(odd, "J").places.iter().all(|place| (0.0..=1.0).contains(place)), "{odd:?}");
-        }
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! What bodies in the plane have besides their surface: nodes, arrows that say which way round elements are, and a
-//! floor seen from its side.
+//! Marks of bodies in the plane: nodes, ring arrows for the orientation of elements, and floors seen from the side.
 
 use super::camera::Lens;
 use super::ears::Ears;
@@ -45,8 +44,8 @@ const WALL_MARGIN: f64 = 4.0;
 /// Depth of the soft shadow on the floor (px in the reference picture).
 const SHADOW_DEPTH: f64 = 16.0;
 
-/// A pixel, and how far it is from the sides around it (px).
-type Place = (DVec2, f64);
+/// The centre and radius of a circle inside a polygon (px).
+type Circle = (DVec2, f64);
 
 /// One panel in the plane.
 pub(super) struct Flat<'a> {
@@ -89,7 +88,7 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let mut clear = self.clear.map(f64::from);
         if normal.y.abs() < STEEP {
-            // Beside the words there is room for walls, too.
+            // Walls may stand beside the text.
             (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
         }
         let Some([from, to]) = within(start, along, clear) else { return };
@@ -103,8 +102,9 @@ impl Flat<'_> {
         let depth = reaches.fold(FLOOR_DEPTH * unit, f64::min).max(0.0);
         let mut mark = |[from, to]: [f64; 2], [above, below]: [f64; 2], colour, shape| {
             let corner = start + from * along - above * along.perp();
-            let rectangle = [corner.x, corner.y, to - from, above + below].map(narrow);
-            marks.push(Mark { rectangle, along: [along.x, along.y].map(narrow), colour, second: colour, shape });
+            let rectangle = [corner.x, corner.y, to - from, above + below];
+            let along = [along.x, along.y].map(narrow);
+            marks.push(Mark { along, ..Mark::upright(rectangle, shape, colour) });
         };
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
@@ -125,8 +125,8 @@ impl Flat<'_> {
         mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
     }
 
-    /// How far a level floor is drawn below its place (px), so that it is sharp as long as neither it nor the camera
-    /// moves. Always as far: what moves shall move evenly.
+    /// The offset at which a level floor is drawn (px), so that it lies on whole pixels while neither it nor the camera
+    /// moves. It is the same in all frames, so that motion stays even.
     fn alignment(&self, obstacle: &Obstacle) -> f64 {
         let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL);
         let pixel = start.and_then(|(_, level)| self.still.project(DVec3::new(self.still.eye.x, level, 0.0)));
@@ -139,22 +139,16 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (sharpened(pixel[1] + alignment), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
-        // Below the captions it would underline them.
+        // Below the captions it would look like an underline.
         let [_, clear, _, room] = self.clear.map(f64::from);
         if y < top || y > clear + room || length <= 0.0 {
             return;
         }
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);
-        let mark = |rectangle: [f64; 4], colour, shape| Mark {
-            rectangle: rectangle.map(narrow),
-            along: Mark::UPRIGHT,
-            colour,
-            second: colour,
-            shape,
-        };
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
-            marks.push(mark([left + margin, y, length, depth], self.palette.hairline, MarkShape::Fading));
+            let below = [left + margin, y, length, depth];
+            marks.push(Mark::upright(below, MarkShape::Fading, self.palette.hairline));
         }
         let pixels = self.position.iter().filter_map(|&point| self.lens.project(point)).map(|(pixel, _)| pixel);
         let lowest = pixels.clone().map(|pixel| pixel[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -167,7 +161,7 @@ impl Flat<'_> {
             let high = (high + room).min(left + width - margin);
             if high > low {
                 let depth = (SHADOW_DEPTH * unit).min(depth);
-                marks.push(mark([low, y, high - low, depth], self.palette.shadow, MarkShape::Shadow));
+                marks.push(Mark::upright([low, y, high - low, depth], MarkShape::Shadow, self.palette.shadow));
             }
         }
         if !has_floor {
@@ -175,10 +169,10 @@ impl Flat<'_> {
         }
         let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
         let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
-        marks.push(mark(line, self.palette.axis, MarkShape::Smooth));
+        marks.push(Mark::upright(line, MarkShape::Smooth, self.palette.axis));
     }
 
-    /// Arrows that say which way round elements are, above the body.
+    /// Ring arrows for the orientation of elements, above the body.
     pub(super) fn signs(&self, marks: &mut Vec<Mark>) {
         if self.body.elements.len() > MOST_SIGNS || self.position.is_empty() {
             return;
@@ -207,70 +201,59 @@ impl Flat<'_> {
         let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
             let Some(pixel) = self.pixel(point) else { continue };
-            let colour = colours(node).unwrap_or(self.palette.node);
-            self.round(pixel, radius, colour, self.palette.edge, MarkShape::Node, marks);
+            let disc = Mark::around(pixel, radius, MarkShape::Node, colours(node).unwrap_or(self.palette.node));
+            self.add(Mark { second: self.palette.edge, ..disc }, pixel, radius, marks);
         }
     }
 
     /// Where an element's arrow stands: in the roomiest of its triangles if it is not convex.
-    fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Place {
+    fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Circle {
         let Some(ears) = self.ears.of(nodes) else { return roomiest(corners) };
         let places = ears.iter().map(|ear| roomiest(&ear.map(|at| corners[at as usize])));
         places.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((DVec2::ZERO, 0.0))
     }
 
     /// The arrow of a sound element, unless a turned-over one covers it.
-    fn sound_arrow(&self, (middle, room): Place, turned_over: &[(Vec<DVec2>, Place)], marks: &mut Vec<Mark>) {
+    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
-        // Neither one that lies over it nor the disc of its arrow.
-        let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Place)| {
+        // The distance to any such element and to the disc of its arrow.
+        let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Circle)| {
             outside(polygon, middle).min(disc.distance(middle) - (RING[0] + RING[1]) * unit)
         };
         let free = turned_over.iter().map(beside).fold(f64::INFINITY, f64::min) / (FADING_BESIDE * unit);
-        // Where there is less room it is smaller, so that it does not come at once when the camera draws near.
+        // Where there is less room it is smaller, so that it grows gradually as the camera draws near.
         let size = (room / (ROOMY * unit)).min(1.0);
         let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
-        if let Some(shape) = MarkShape::CounterClockwise.faint(grown.min(free)) {
-            let colour = self.palette.sign();
-            self.round(middle, size * RING[0] * unit, colour, colour, shape, marks);
+        let radius = size * RING[0] * unit;
+        let sign = Mark::around(middle, radius, MarkShape::CounterClockwise, self.palette.sign());
+        if let Some(sign) = sign.faded(grown.min(free)) {
+            self.add(sign, middle, radius, marks);
         }
     }
 
     /// The arrow of a turned-over element, on a disc of its own.
-    fn alarm_arrow(&self, (middle, room): Place, marks: &mut Vec<Mark>) {
+    fn alarm_arrow(&self, (middle, room): Circle, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
         // A disc must not hide the element that it stands on.
         let size = (room / (0.55 * disc)).min(1.0);
         let grown = (size - SMALLEST_ALARM) / FADING_SIGN;
-        let [ground, sign] = [MarkShape::Node, MarkShape::Clockwise].map(|shape| shape.faint(grown));
-        if let (Some(ground), Some(sign)) = (ground, sign) {
-            let white = [255; 3];
-            self.round(middle, size * disc, white, white, ground, marks);
-            let colour = self.palette.alarm_on_white;
-            self.round(middle, size * ring, colour, colour, sign, marks);
+        let ground = (size * disc, MarkShape::Node, [255; 3]);
+        let sign = (size * ring, MarkShape::Clockwise, self.palette.alarm_on_white);
+        for (radius, shape, colour) in [ground, sign] {
+            if let Some(mark) = Mark::around(middle, radius, shape, colour).faded(grown) {
+                self.add(mark, middle, radius, marks);
+            }
         }
     }
 
-    /// A mark of a radius around a pixel.
-    fn round(
-        &self,
-        middle: DVec2,
-        radius: f64,
-        colour: Colour,
-        second: Colour,
-        shape: MarkShape,
-        marks: &mut Vec<Mark>,
-    ) {
-        // Nothing of one panel appears in its neighbour.
+    /// Adds a mark of a radius around a pixel (px), unless it would reach into a neighbouring panel.
+    fn add(&self, mark: Mark, middle: DVec2, radius: f64, marks: &mut Vec<Mark>) {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let inside = left + radius <= middle.x
             && middle.x <= left + width - radius
             && top + radius <= middle.y
             && middle.y <= top + height - radius;
-        if inside {
-            let rectangle = [middle.x - radius, middle.y - radius, 2.0 * radius, 2.0 * radius].map(narrow);
-            marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second, shape });
-        }
+        marks.extend(inside.then_some(mark));
     }
 
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
@@ -278,7 +261,7 @@ impl Flat<'_> {
     }
 }
 
-/// A place near one (px) that moves as steadily but stays longer where a line is sharp: on the borders of pixels.
+/// A place near a given one (px), attracted by the borders of pixels, where a line is sharp.
 fn sharpened(place: f64) -> f64 {
     place - libm::sin(TAU * place) / TAU
 }
@@ -330,7 +313,7 @@ fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
 }
 
 /// The point among a few inside a polygon that is farthest from all its sides, and how far it is.
-fn roomiest(corners: &[DVec2]) -> Place {
+fn roomiest(corners: &[DVec2]) -> Circle {
     let centroid = corners.iter().sum::<DVec2>() / corners.len() as f64;
     let next = corners.iter().cycle().skip(1);
     let room = corners

@@ -1,4 +1,4 @@
-//! Arrows that say where obstacles and hands are going.
+//! Arrows in the direction in which obstacles and grips move.
 
 use super::Mark;
 use super::arrows::arrow;
@@ -17,12 +17,12 @@ const FAST: f64 = 0.25;
 /// Height of the mark that holds an arrow: its head with room for a halo (px in the reference picture).
 const HEIGHT: f64 = 23.0;
 
-/// How something moves at one moment.
+/// The motion of something at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Going {
     /// Its velocity (m/s).
     pub(super) velocity: DVec3,
-    /// The greatest speed that it reaches (m/s).
+    /// Its greatest speed at any time (m/s).
     pub(super) greatest: f64,
 }
 
@@ -45,12 +45,12 @@ impl Pointers<'_> {
         }
         let Some((from, distance)) = self.lens.project(point) else { return };
         let pixels = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
-        // So short a way that perspective hardly bends it.
+        // A way of one pixel, which perspective hardly shortens.
         let way = going.velocity / speed;
         let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
         let step = DVec2::from(to) - DVec2::from(from);
         let unit = self.scale.line();
-        // What comes straight at the viewer has a short arrow.
+        // Motion straight towards the viewer has a short arrow.
         let length = LENGTH * unit * share.sqrt() * step.length().min(1.0);
         let Some(along) = step.try_normalize() else { return };
         let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
@@ -69,6 +69,6 @@ impl Pointers<'_> {
         let ends = [tail, tail + way];
         let opacity = grown.min(inside(ends[0])).min(inside(ends[1]));
         let whole = arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo);
-        marks.extend(whole.shape.faint(opacity).map(|shape| Mark { shape, ..whole }));
+        marks.extend(whole.faded(opacity));
     }
 }

@@ -1,10 +1,10 @@
-//! The colours of scalar fields, which the scene's maps name.
+//! Looking up the colours of scalar fields.
 
 use crate::colour::Colour;
 use crate::look::ramp;
 pub(super) use crate::look::ramp::ramp;
 
-/// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
+/// The number of colours of a scale; linear interpolation between them is visually exact.
 pub const SHADES: usize = ramp::SHADES;
 
 /// The colour of a place on a scale, from 0 to 1.

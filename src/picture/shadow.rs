@@ -1,10 +1,12 @@
-//! The soft shadow on the floor: how much of the key light and of the sky a body takes away, worked out without a
-//! device, so that it is the same on all of them.
+//! Soft shadows on the floor, of the key light and of the sky. They are computed on the processor, so that they are the
+//! same with any graphics device.
 //!
 //! The body is projected along many directions onto a grid of cells. One direction fills one bit of each cell, a row of
 //! cells is one machine word, and so a projected triangle costs one operation for each row it touches.
 
+use super::camera::{Framing, Lens};
 use super::narrow::narrow;
+use crate::look::Light;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -12,6 +14,9 @@ use std::ops::Range;
 pub const CELLS: usize = 128;
 /// Half the angle of the cone from which the key light comes (rad).
 const KEY_CONE: f64 = 0.12;
+/// How much steeper the key light falls for each distance of the camera that bodies have risen: the shadow stays in the
+/// panel.
+const KEY_STEEPENING: f64 = 8.0;
 /// How many directions stand for the key light and for the sky.
 const DIRECTIONS: [usize; 2] = [48, 96];
 /// Bodies of more triangles than this get fewer directions, or the shadow would take longer than everything else.
@@ -28,7 +33,7 @@ pub struct Shade {
     pub corner: [f32; 2],
     /// Length of the whole square (sides).
     pub length: f32,
-    /// What is taken away: 0 nothing, 255 all; row after row along the second axis. Empty for no shadow at all.
+    /// How much light is missing: 0 none, 255 all; row after row along the second axis. Empty for no shadow at all.
     pub cells: Vec<u8>,
 }
 
@@ -48,7 +53,7 @@ impl Plane {
         Self { normal, axes: [first, first.cross(normal)], height }
     }
 
-    /// Where a point stands over the plane, and how high. What is below throws its shadow where it is.
+    /// The foot of a point on the plane, and its height. Points below the plane get height 0.
     fn foot(&self, point: DVec3) -> Foot {
         let above = (self.normal.dot(point) - self.height).max(0.0);
         Foot { at: DVec2::new(point.dot(self.axes[0]), point.dot(self.axes[1])), above }
@@ -66,6 +71,15 @@ impl Plane {
         let along = DVec2::new(towards_light.dot(self.axes[0]), towards_light.dot(self.axes[1]));
         -along / self.normal.dot(towards_light)
     }
+}
+
+/// Unit vector towards the key light, which goes with a camera.
+pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
+    let towards_viewer = lens.right.cross(DVec3::Y);
+    let (left, towards) = libm::sincos(light.azimuth);
+    let level = towards * towards_viewer - left * lens.right;
+    let slope = libm::tan(light.elevation) + KEY_STEEPENING * framing.rise / framing.distance;
+    (level + slope * DVec3::Y).normalize()
 }
 
 /// A point by its place over a plane and its height above it.
@@ -142,7 +156,7 @@ pub(super) fn shades(
 /// The box around all shadows, within reach.
 fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, reach: f64) -> (DVec2, DVec2) {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    // The outermost directions come last.
+    // The last directions are the outermost.
     for &direction in directions.iter().rev().take(12) {
         let slant = plane.slant(direction);
         for at in feet.iter().map(|foot| foot.shadow(slant)) {
@@ -204,7 +218,7 @@ impl Mask {
 
 /// The first cell whose middle is not below a coordinate: that rounded, and kept within the grid.
 fn first_middle(at: f64) -> usize {
-    // Truncation is many times quicker than `round` on processors of the oldest kind that we build for.
+    // Truncation is many times faster than `round` without SSE 4.1.
     (at + 0.5).clamp(0.0, CELLS as f64) as usize
 }
 

@@ -1,8 +1,8 @@
-//! Which faces bound a set of elements, looked for only among those that can.
+//! The faces that bound a set of elements, without going through all faces.
 
 use crate::sim::body::Body;
 
-/// What of that no motion changes.
+/// The faces sorted once for all frames.
 #[derive(Debug, Default)]
 pub(super) struct Shell {
     /// The faces that lie on the outside of the body, in rising order.

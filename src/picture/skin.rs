@@ -5,7 +5,7 @@ use super::ears::Ears;
 use crate::sim::body::Body;
 use glam::DVec3;
 
-/// What belongs to faces fades as they turn from the viewer at this cosine to being seen from the side.
+/// Marks on faces fade between this cosine towards the viewer and zero.
 const GRAZING: f64 = 0.08;
 
 /// The surface of a body, whichever elements have turned over.

@@ -1,12 +1,12 @@
-//! The strip below a panel: a diagnostic of its run over the whole scene, the other runs faintly behind it, and the
-//! present moment. All strips of a picture have the same scales, and nothing in them moves but that moment.
+//! The strip below a panel: the time series of a diagnostic of its run, those of the other runs faintly behind it, and a
+//! mark at the present time. All strips of a picture have the same axes, and nothing in them moves but that mark.
 
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
 use super::course::{self, Line, OWN};
 use super::ends::Ends;
-use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, Rectangle, Scale};
+use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, MOST_OTHERS, Rectangle, Scale};
 use super::text::Weight;
 use crate::history::History;
 use crate::scene::Scene;
@@ -19,8 +19,6 @@ const NAME_BASELINE: f64 = 13.0;
 const ABOVE: f64 = 26.0;
 /// The narrowest chart (px).
 const LEAST_WIDTH: f64 = 40.0;
-/// Where there are more other runs than this, they would only be a thicket, and take their time.
-pub(super) const MOST_OTHERS: usize = 15;
 /// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
 const OTHER: f64 = 1.4;
 const FAINT: f64 = 0.55;
@@ -30,14 +28,12 @@ const HALO: f64 = 2.2;
 /// at most (px in the reference picture).
 const NAMES: f64 = 0.4;
 const NAMES_ABOVE: f64 = 8.0;
-/// The height of the room for these names (px in the reference picture), in strips of the usual height.
-pub(super) const NAMES_HEIGHT: f64 = 86.0;
 
 /// What the strips of a scene show.
 #[derive(Debug)]
 pub(super) struct Strips {
     diagnostic: Diagnostic,
-    /// What a reader calls it.
+    /// Its name in the picture.
     name: &'static str,
     /// The last time shown (s).
     end: f64,
@@ -52,7 +48,7 @@ impl Strips {
         let palette = &scene.view.look.palette;
         let line = |course| Line::new(diagnostic, course, scene, palette);
         let lines: Vec<_> = history.courses.iter().map(line).collect();
-        // Counts blow up to the number of elements at the most, and all of them are shown.
+        // Counts are bounded by the number of elements, so diverged runs are shown whole.
         let range = course::range(&lines, diagnostic != Diagnostic::TurnedOver);
         let name = course::name(diagnostic, scene);
         Self { diagnostic, name, end: history.end, range, lines }
@@ -144,7 +140,7 @@ impl Strips {
         let after = left + fonts.width(&name, Weight::SemiBold, size);
         writer.words.push(writer.fonts.lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
         if !note.is_empty() && fonts.width(note, Weight::Regular, size) <= left + room - after {
-            // What is shortened would lose its space, so it is all or nothing.
+            // Shortening would lose the space before it, so the note is written whole or not at all.
             writer.words.push(writer.fonts.lay_out(
                 note,
                 Weight::Regular,

@@ -1,4 +1,4 @@
-//! Closed surfaces of sets of elements: their triangles, edges and contours.
+//! Closed surfaces of sets of elements: triangles, edges and contours.
 
 use super::camera::Lens;
 use super::ears::Ears;
@@ -7,7 +7,7 @@ use super::narrow::{narrow, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::sim::body::Body;
-use crate::sim::topology::{around, ordered};
+use crate::sim::element::{around, ordered};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ use std::collections::HashMap;
 const HATCH_PERIOD: f64 = 0.30;
 /// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
 const FLATNESS: f64 = 0.35;
-/// Between faces that are seen at a smaller cosine than this and others contours come and go gently.
+/// Contours fade at faces seen at a smaller cosine than this.
 const GRAZING: f64 = 0.02;
 /// The finest cut of a patch in each direction.
 const FINEST_CUT: usize = 6;
@@ -24,7 +24,7 @@ const FINEST_CUT: usize = 6;
 const MANY_FACES: usize = 3000;
 const VERY_MANY_FACES: usize = 12_000;
 
-/// Edges of elements smaller than this (px) are as good as transparent and left out. The shader knows it, too.
+/// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 1.5;
 /// Edges of elements smaller than this (px) are not seen through the body.
 const SEEN_THROUGH: f64 = 6.5;
@@ -163,7 +163,7 @@ impl Surroundings<'_> {
         mesh.vertices.reserve(faces.len() * per_face);
         mesh.triangles.reserve(faces.len() * 2 * cut * cut);
         mesh.shades.reserve(if self.shades.is_some() { faces.len() * per_face } else { 0 });
-        // Faces of turned-over elements look inwards: of those, the ones turned away are the ones that are seen.
+        // Not for turned-over elements, whose faces are inside out: their back faces are the visible ones.
         let hides_back = self.apart
             && kinds.edge == LineKind::Edge
             && self.opacity == 1.0
@@ -202,7 +202,7 @@ impl Surroundings<'_> {
         let faces_away =
             |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
-        // Those of turned-over elements are drawn whichever are asked for.
+        // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
             LineKind::Edge => self.edges,
             _ => [true; 2],
@@ -228,12 +228,12 @@ impl Surroundings<'_> {
 
     /// Whether a face of an element of its own is turned away from the viewer: the element hides it.
     fn is_hidden(&self, side: &Side, patch: &Patch) -> bool {
-        // One that is a face itself hides nothing.
+        // A flat element does not hide its own face.
         let is_solid = side.element.is_some_and(|element| !self.body.topology().is_flat(element as usize));
         is_solid && patch.facing.iter().all(|&seen| seen == 0.0)
     }
 
-    /// How much is drawn of the lines of elements that are apart. Where that is nothing, gaps tell them from each other.
+    /// Opacity of the lines of elements that are drawn apart. At 0 the gaps still separate them.
     fn own_lines(&self) -> f64 {
         if self.apart { own_lines(self.element) } else { 1.0 }
     }
@@ -344,7 +344,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// Notes how the triangles along the sides of a face are turned.
+/// Records how much the triangles along the sides of a face show their outsides.
 fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut Borders) {
     let Patch { nodes, facing, .. } = patch;
     for (side, ends) in around(nodes).enumerate() {
@@ -367,14 +367,14 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &
     }
 }
 
-/// How much is drawn of the lines of elements of a size (px) that are apart.
+/// Opacity of the lines of elements of a size (px) that are drawn apart.
 pub(super) fn own_lines(element: f64) -> f64 {
     let [none, all] = OWN_LINES;
     ((element - none) / (all - none)).clamp(0.0, 1.0)
 }
 
-/// How much of a contour lies between two triangles that show their outsides so much. Of the lines around one that is
-/// seen from the side, those on one side or those on the other are contours as a whole.
+/// The opacity of a contour between two triangles that show their outsides so much. It is 1 on one side of a triangle seen
+/// from the side.
 fn contour(one: f64, other: f64) -> f64 {
     (3.0 * (one - other).abs()).min(1.0)
 }

@@ -1,7 +1,6 @@
-//! One square for each element, a row for each layer, so that one sees which elements have turned over.
+//! The tally: one square for each element, a row for each layer, with the turned-over elements marked.
 
 use super::layout::Scale;
-use super::narrow::narrow;
 use super::palette::Palette;
 use super::{Mark, MarkShape};
 use crate::sim::body::Body;
@@ -13,7 +12,7 @@ const MOST_SQUARES: usize = 200;
 pub(super) const HEIGHT: f64 = 36.0;
 /// The widest tally (px in the reference picture).
 const WIDTH: f64 = 200.0;
-/// Squares smaller than this (px in the reference picture) say less than a bar.
+/// Squares smaller than this (px in the reference picture) would be less legible than a bar.
 const LEAST_SQUARE: f64 = 4.0;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];
@@ -117,13 +116,10 @@ impl Tally {
                 let over = turned_over.get(element).copied().unwrap_or(false);
                 let x = left + along as f64 * (side + gap);
                 let y = bottom - side - up as f64 * (side + gap);
-                marks.push(Mark {
-                    rectangle: [x, y, side, side].map(narrow),
-                    along: Mark::UPRIGHT,
-                    colour: if over { palette.alarm } else { palette.tally },
-                    second: palette.alarm_line,
-                    shape: if over { MarkShape::Struck } else { MarkShape::Filled },
-                });
+                let (shape, colour) =
+                    if over { (MarkShape::Struck, palette.alarm) } else { (MarkShape::Filled, palette.tally) };
+                let square = Mark::upright([x, y, side, side], shape, colour);
+                marks.push(Mark { second: palette.alarm_line, ..square });
                 width = width.max(x + side - left);
             }
         }
@@ -148,16 +144,10 @@ impl Tally {
         // A single element among thousands still shows.
         let filled = if over == 0 { 0.0 } else { (width * over as f64 / self.count as f64).max(2.0).min(width) };
         let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.type_unit() - height).round());
-        let bar = |from: f64, length: f64, colour| Mark {
-            rectangle: [left + from, top, length, height].map(narrow),
-            along: Mark::UPRIGHT,
-            colour,
-            second: palette.alarm_line,
-            shape: MarkShape::Filled,
-        };
-        marks.push(bar(0.0, width, palette.tally));
+        let bar = |length, colour| Mark::upright([left, top, length, height], MarkShape::Filled, colour);
+        marks.push(bar(width, palette.tally));
         if over > 0 {
-            marks.push(bar(0.0, filled, palette.alarm));
+            marks.push(bar(filled, palette.alarm));
         }
         width
     }

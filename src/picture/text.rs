@@ -1,4 +1,4 @@
-//! Words: which glyphs they need and how wide they are. Rasterising them is the renderer's work.
+//! Text layout: glyphs and widths. The renderer rasterises them.
 
 use super::narrow::narrow;
 use crate::look::FontFiles;
@@ -29,7 +29,7 @@ pub struct Glyph {
 /// A line of text, laid out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextRun {
-    /// What it says, after shortening.
+    /// Its text, after shortening.
     pub text: String,
     /// Its weight.
     pub weight: Weight,
@@ -43,7 +43,7 @@ pub struct TextRun {
     pub span: [f32; 2],
     /// Its glyphs from left to right.
     pub glyphs: Vec<Glyph>,
-    /// Whether it lies over something that it must stand out from.
+    /// Whether it has a halo, because it lies over a body.
     pub has_halo: bool,
 }
 
@@ -67,8 +67,7 @@ impl TextRun {
 const ASCENT: f32 = 0.78;
 const DESCENT: f32 = 0.22;
 
-/// The fonts of a picture: those that its scene brings with it, and behind them the ones that are built in, which serve
-/// where the others are missing or lack a letter. Cheap to clone.
+/// The fonts of a picture: those of its scene, with the built-in ones as fallback. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Fonts(Arc<[Face]>);
 
@@ -76,7 +75,7 @@ pub struct Fonts(Arc<[Face]>);
 #[derive(Debug)]
 pub struct Face {
     font: FontArc,
-    /// Tells fonts apart, also those of different scenes.
+    /// Identifies a font, also among those of different scenes.
     pub key: u64,
 }
 
@@ -90,7 +89,7 @@ impl PartialEq for Fonts {
 static REGULAR: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
 static SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
 
-/// Marks of direction and of joining, which no reader ever sees by themselves.
+/// Invisible characters: marks of direction, joiners, variation selectors.
 pub(super) fn is_invisible(character: char) -> bool {
     matches!(
         character,
@@ -98,7 +97,7 @@ pub(super) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// Stands for what was cut off.
+/// Replaces what was cut off.
 const ELLIPSIS: char = '…';
 
 impl Default for Fonts {
@@ -141,7 +140,7 @@ impl Fonts {
             Weight::Regular => 0,
             Weight::SemiBold => 1,
         };
-        // The scene's own stand behind the built-in ones; a single one serves both weights.
+        // The scene's own are stored after the built-in ones; a single one serves both weights.
         let own = match self.0.len() {
             2 => None,
             3 => Some(2),

@@ -1,4 +1,4 @@
-//! Lines in place of surfaces: the springs of a model, or the edges of the elements.
+//! Lines instead of surfaces: the springs of a model, or the edges of the elements.
 
 use super::field::{self, NOWHERE};
 use super::narrow::{narrow, narrow_point};
@@ -28,7 +28,7 @@ const SMALL_ELEMENT: f64 = 26.0;
 const THINNEST: f64 = 0.2;
 /// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.
 const SEEN_THROUGH: f64 = 8.0;
-/// How far the colour of the farthest line or node goes to the ground's, where no surface says what lies before what.
+/// The share of the background in the colour of the farthest line or node, as a depth cue where there are no surfaces.
 const HAZE: f64 = 0.62;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
 const LONGEST_STEP: f64 = 0.05;
@@ -37,7 +37,7 @@ const LONGEST_STEP: f64 = 0.05;
 #[derive(Debug, Default)]
 pub(super) struct Edges {
     /// Each edge once.
-    all: Vec<[u32; 2]>,
+    pub(super) all: Vec<[u32; 2]>,
     /// The edges of each element, and the nodes of those that have none.
     of_elements: Vec<Vec<[u32; 2]>>,
 }
@@ -81,12 +81,12 @@ pub(super) struct Wire<'a> {
 }
 
 impl Wire<'_> {
-    /// The same for what a field colours only where it colours no surfaces.
+    /// The same without the colours of a field if surfaces show them.
     pub(super) fn without_surfaces(&self) -> Self {
         Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
     }
 
-    /// Whether nothing is seen of springs inside the body.
+    /// Whether springs inside the body are invisible.
     pub(super) fn hides_inside(&self) -> bool {
         self.surfaces && self.element < SEEN_THROUGH * self.opacity
     }
@@ -117,7 +117,7 @@ impl Wire<'_> {
         let middle = ends_now[0].midpoint(ends_now[1]);
         let faded = |colour| mixed(colour, self.palette.background, haze(middle));
         let (depth, plain) = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
-        // Beside surfaces, lines of all colours must stand out.
+        // Over surfaces, a casing keeps lines of all colours visible.
         let second = if self.surfaces { Second::Casing(faded(self.palette.casing)) } else { Second::None };
         (depth, Stroke { second, ..plain })
     }
@@ -262,7 +262,7 @@ impl Wire<'_> {
         narrow_point((point - self.origin) / self.side).to_array()
     }
 
-    /// How far a point fades into the ground: not at all with surfaces, which show by themselves what is far.
+    /// How far a point fades into the background; with surfaces not at all.
     fn haze(&self) -> impl Fn(DVec3) -> f64 {
         let depth = |point: &DVec3| point.dot(self.forward);
         let depths = self.position.iter().map(depth);

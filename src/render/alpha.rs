@@ -1,10 +1,10 @@
-//! Opacities: what a picture without a background is made of, found from what it looks like on white and on black.
+//! The opacities of a picture without a background, recovered from two drawings on white and on black.
 
 use crate::colour::linear;
 use crate::picture::Rectangle;
 use image::{Rgb, RgbImage, Rgba, RgbaImage};
 
-/// So little of the ground's light counts as nothing where obstacles are, which an opacity of 254/255 marks for shaders.
+/// The ground's light below this is ignored where obstacles are, whose opacity is 254/255 as a mark for shaders.
 const UNSEEN: f64 = 1.6 / 255.0;
 
 /// What two drawings of one picture, on white and on black ground, have in common: the colour and opacity of each pixel.

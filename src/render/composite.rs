@@ -1,4 +1,4 @@
-//! Laying bodies and their lines over the ground.
+//! Blending bodies and their lines over the ground.
 
 use super::panel::{Panels, is_visible, limit};
 use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
@@ -8,7 +8,7 @@ use crate::picture::Picture;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 
-/// The pipeline that lays one over the other.
+/// The pipeline that blends them.
 #[derive(Debug)]
 pub(super) struct Composite {
     pipeline: wgpu::RenderPipeline,
@@ -35,7 +35,7 @@ impl Composite {
         Self { pipeline: recipe.build(gpu), layout, textures: None }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         let views = [(0, &bodies.colour), (2, &bodies.lines)];
         self.textures = Some(bind_textures(gpu, "bodies", &self.layout, &views));

@@ -1,7 +1,7 @@
 //! Flat curves over the finished picture.
 
 use super::overlay::CanvasUniform;
-use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, uniform_entry};
+use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Curve, Picture};
 use bytemuck::{Pod, Zeroable};
@@ -14,7 +14,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/curve.wgsl");
 #[repr(C)]
 struct Piece {
     ends: [Vec2; 2],
-    /// Normals of the lines that part it from its neighbours, along the curve; zero at the ends of a curve.
+    /// Normals of the lines that separate it from its neighbours, along the curve; zero at the ends of a curve.
     joints: [Vec2; 2],
     colour: [u8; 4],
     /// Width, where in the pattern it begins, and how long the pattern is: 0 for a solid curve.
@@ -45,11 +45,7 @@ impl Curves {
             shader: &module,
             entries: ["piece", "piece_colour"],
             groups: &[&layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Piece>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
+            vertices: &[Some(for_instances::<Piece>(&ATTRIBUTES))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target: ENCODED_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
@@ -85,7 +81,7 @@ impl Curves {
     }
 }
 
-/// The pieces of a curve, each with what parts it from its neighbours.
+/// The pieces of a curve, each with the lines that separate it from its neighbours.
 fn pieces(curve: &Curve) -> Vec<Piece> {
     let mut points: Vec<Vec2> = curve.points.iter().copied().map(Vec2::from).collect();
     points.dedup();
@@ -93,7 +89,7 @@ fn pieces(curve: &Curve) -> Vec<Piece> {
         points.push(dot);
     }
     let way = |at: usize| (points[at + 1] - points[at]).normalize_or_zero();
-    // Halfway between the two directions; a curve that turns back by itself is not parted.
+    // Halfway between the two directions; none where a curve turns back on itself.
     let joint = |at: usize| match at {
         0 => Vec2::ZERO,
         at if at + 1 >= points.len() => Vec2::ZERO,

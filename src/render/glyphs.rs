@@ -1,4 +1,4 @@
-//! The glyphs in use, rasterised once each and kept in one texture.
+//! The glyph atlas: each glyph in use is rasterised once and kept in one texture.
 
 use crate::gpu::Gpu;
 use crate::picture::{Face, Fonts, Glyph, TextRun};
@@ -9,13 +9,13 @@ const WIDTH: u32 = 2048;
 /// Glyphs are rasterised at this many places between two pixels.
 const PLACES: f32 = 4.0;
 
-/// What makes one raster different from another.
+/// What a raster depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
     /// Which font, of any scene.
     font: u64,
     id: u16,
-    /// Size of the type in bits: any size is as good as any other.
+    /// Size of the type, as bits for hashing.
     size: u32,
     place: u8,
 }
@@ -78,7 +78,7 @@ impl Glyphs {
         let outlined = face.outline(id, size, place)?;
         let bounds = outlined.px_bounds();
         let [width, height] = [bounds.width(), bounds.height()].map(|length| length as u32);
-        // A font may say anything of its letters.
+        // A font may be wrong about the size of its glyphs.
         if width == 0 || height == 0 || width > WIDTH || height > WIDTH {
             return None;
         }
@@ -102,7 +102,7 @@ impl Glyphs {
         [left, top]
     }
 
-    /// Brings new glyphs to the device. Returns whether the texture is another one now.
+    /// Uploads new glyphs. Returns whether the texture was replaced.
     pub(super) fn upload(&mut self, gpu: &Gpu) -> bool {
         if !self.changed {
             return false;

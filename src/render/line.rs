@@ -1,7 +1,7 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
 use super::panel::{Panels, is_visible, limit};
-use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, LineKind, Panel, Picture, Rectangle};
@@ -9,7 +9,7 @@ use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/line.wgsl");
-/// What lines know of solid obstacles, where there are none and where there are some.
+/// The part of the shader about solid obstacles, without any and with some.
 pub(super) const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
 pub(super) const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 
@@ -31,9 +31,9 @@ pub(super) fn has_alarm(panel: &Panel) -> bool {
     panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
 }
 
-/// A pipeline and what it reads.
+/// Pipelines and what they read.
 #[derive(Debug)]
-struct Way {
+struct Variant {
     among: bool,
     /// For edges and for contours.
     pipelines: [wgpu::RenderPipeline; 2],
@@ -44,9 +44,9 @@ struct Way {
 /// The pipelines of the lines, and the lines of one picture.
 #[derive(Debug)]
 pub(super) struct Lines {
-    alone: Way,
+    alone: Variant,
     /// Among solid obstacles, as soon as there are any.
-    among: Option<Way>,
+    among: Option<Variant>,
     samples: u32,
     segments: GrowingBuffer<Segment>,
     /// The edges and the contours of each panel.
@@ -56,7 +56,7 @@ pub(super) struct Lines {
 impl Lines {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
         Self {
-            alone: Way::new(gpu, panels, samples, false),
+            alone: Variant::new(gpu, panels, samples, false),
             among: None,
             samples,
             segments: GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::VERTEX, 1024),
@@ -67,9 +67,9 @@ impl Lines {
     /// Prepares to draw lines among solid obstacles.
     pub(super) fn prepare_among(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies) {
         if self.among.is_none() {
-            let mut way = Way::new(gpu, panels, self.samples, true);
-            way.retarget(gpu, bodies);
-            self.among = Some(way);
+            let mut among = Variant::new(gpu, panels, self.samples, true);
+            among.retarget(gpu, bodies);
+            self.among = Some(among);
         }
     }
 
@@ -98,7 +98,7 @@ impl Lines {
         self.segments.write(gpu, &segments);
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         self.alone.retarget(gpu, bodies);
         if let Some(among) = &mut self.among {
@@ -108,10 +108,10 @@ impl Lines {
 
     /// Draws the lines of all panels, among solid obstacles if there are any.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle], among: bool) {
-        let way = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
-        pass.set_bind_group(1, way.textures.as_ref(), &[]);
+        let variant = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
+        pass.set_bind_group(1, variant.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
-        for (at, pipeline) in way.pipelines.iter().enumerate() {
+        for (at, pipeline) in variant.pipelines.iter().enumerate() {
             pass.set_pipeline(pipeline);
             for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {
                 if is_visible(place) && !ranges[at].is_empty() {
@@ -124,7 +124,7 @@ impl Lines {
     }
 }
 
-impl Way {
+impl Variant {
     fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
         let reading = super::reading_shader(samples);
@@ -148,11 +148,7 @@ impl Way {
                 shader: &module,
                 entries: ["segment", fragment],
                 groups: &[&panels.layout, &layout],
-                vertices: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Segment>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &ATTRIBUTES,
-                })],
+                vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 target: LINE_FORMAT,
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),

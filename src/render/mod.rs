@@ -53,7 +53,7 @@ fn alarm_shader(samples: u32) -> &'static str {
     if samples > 1 { ALARM_MULTISAMPLED_SHADER } else { ALARM_SINGLE_SHADER }
 }
 
-/// The part of shaders that knows where samples lie.
+/// The part of shaders with the positions of samples.
 fn samples_shader(samples: u32) -> &'static str {
     if samples > 1 { FOUR_SAMPLES_SHADER } else { ONE_SAMPLE_SHADER }
 }
@@ -194,7 +194,8 @@ impl Renderer {
         }
         let gpu = self.gpu.clone();
         let (places, needed) = panel::place(picture);
-        // Where nothing lies behind any surface, nobody asks for it but lines of turned-over elements without faces.
+        // What lies behind surfaces is drawn only where it is read: by clear surfaces, over turned-over elements, and by
+        // the lines of turned-over elements without faces.
         let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
         let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
@@ -241,16 +242,17 @@ impl Renderer {
         }
         let solids = self.solids.as_ref().filter(|_| with_solids);
         let slabs = self.slabs.as_ref().filter(|_| with_slabs);
-        if picture.ramp.is_empty() {
+        let occluders = surface::occluders(picture);
+        let colouring = if picture.ramp.is_empty() {
             self.surfaces.prepare(&gpu, &self.panels, picture);
+            self.surfaces.plain(occluders)
         } else {
             let made = || tint::Tint::new(&gpu, &bodies, self.samples);
             let tint = self.tint.get_or_insert_with(made);
             tint.prepare(&gpu, &self.panels, picture);
             tint.write(&gpu, picture);
-        }
-        let occluders = surface::occluders(picture);
-        let tint = self.tint.as_ref().filter(|_| !picture.ramp.is_empty());
+            tint.colouring(occluders)
+        };
         if stroke::Strokes::are_in(picture) {
             let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies, self.samples);
             self.strokes.get_or_insert_with(made).write(&gpu, picture);
@@ -260,14 +262,14 @@ impl Renderer {
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if has_behind {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places, tint, occluders);
+            self.surfaces.draw_behind(&mut pass, &self.panels, &places, colouring);
             if let Some(solids) = solids.filter(|_| with_clear) {
                 solids.draw_behind(&mut pass, &self.panels, &places);
             }
         }
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places, tint, occluders);
+            self.surfaces.draw_all(&mut pass, &self.panels, &places, colouring);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
@@ -312,7 +314,7 @@ impl Renderer {
     }
 }
 
-/// Nothing there: transparent, and infinitely far away.
+/// Empty: transparent, and infinitely far away.
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
 
 fn begin<'a>(

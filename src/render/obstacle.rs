@@ -1,7 +1,11 @@
-//! Solid obstacles among the bodies, and transparent ones below and above them. Made when the first one is drawn.
+//! Solid obstacles, drawn with the bodies, and transparent ones, drawn below and above them. The pipelines are made when
+//! they are first needed.
 
 use super::panel::{Panels, is_visible, limit, linear};
-use super::pipeline::{BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{
+    BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader,
+    texture_entry,
+};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Pane, Picture, Rectangle};
@@ -21,7 +25,7 @@ struct SolidVertex {
     rim: [f32; 3],
     /// How far inside the outline it is (px).
     inward: f32,
-    /// How near the body is.
+    /// How much the body occludes the ambient light.
     near: f32,
 }
 
@@ -101,7 +105,7 @@ impl Solids {
             shader: &module,
             entries: ["solid_corner", fragment],
             groups: &[&panels.layout],
-            vertices: &[Some(layout::<SolidVertex>(&SOLID, wgpu::VertexStepMode::Vertex))],
+            vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
             topology: wgpu::PrimitiveTopology::TriangleList,
             target: BODY_FORMAT,
             blend: None,
@@ -171,7 +175,7 @@ impl Solids {
     }
 }
 
-/// What is seen through in one picture.
+/// The transparent obstacles of one picture.
 #[derive(Debug)]
 pub(super) struct Slabs {
     /// Below and above the bodies.
@@ -213,11 +217,11 @@ impl Slabs {
             recipe.build(gpu)
         };
         let pane = |fragment| {
-            let corners = layout::<PaneVertex>(&PANE, wgpu::VertexStepMode::Vertex);
+            let corners = for_vertices::<PaneVertex>(&PANE);
             build(["pane_corner", fragment], corners, wgpu::PrimitiveTopology::TriangleList)
         };
         let edge = |fragment| {
-            let pieces = layout::<EdgePiece>(&EDGE, wgpu::VertexStepMode::Instance);
+            let pieces = for_instances::<EdgePiece>(&EDGE);
             build(["edge_corner", fragment], pieces, wgpu::PrimitiveTopology::TriangleStrip)
         };
         Self {
@@ -231,7 +235,7 @@ impl Slabs {
         }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         let views = [(1, &bodies.depth), (2, &bodies.lines)];
         self.textures = Some(bind_textures(gpu, "pane", &self.layout, &views));
@@ -315,8 +319,4 @@ fn add_fan(pane: &Pane, grid: glam::Vec3, corners: &mut Vec<PaneVertex>) {
             ..middle
         }));
     }
-}
-
-fn layout<T>(attributes: &[wgpu::VertexAttribute], step_mode: wgpu::VertexStepMode) -> wgpu::VertexBufferLayout<'_> {
-    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
 }

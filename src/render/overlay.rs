@@ -1,7 +1,7 @@
 //! Marks and words on top of everything.
 
 use super::glyphs::Glyphs;
-use super::pipeline::{ENCODED_FORMAT, Recipe, group_layout, shader, texture_entry, uniform_entry};
+use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{self, Colour, Fonts, MarkShape, Picture, TextRun};
 use bytemuck::{Pod, Zeroable};
@@ -13,7 +13,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 /// size, and how many glyphs stand on each.
 const HALO: [(f32, u32); 2] = [(0.07, 8), (0.14, 16)];
 
-/// Whole pixels around a place, about evenly on a circle: what is read pixel by pixel is moved by pixels.
+/// Offsets of whole pixels, about evenly on a circle: glyphs are read pixel by pixel.
 fn ring(radius: f32, count: u32) -> impl Iterator<Item = [f32; 2]> {
     (0..count).map(move |at| {
         let (sine, cosine) = (at as f32 / count as f32 * std::f32::consts::TAU).sin_cos();
@@ -69,11 +69,7 @@ impl Overlay {
             shader: &module,
             entries: ["corner", "mark_colour"],
             groups: &[&layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Mark>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
+            vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target: ENCODED_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
@@ -173,36 +169,27 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
 
 /// A mark that is no glyph, as the shader reads it.
 fn plain(mark: &picture::Mark) -> Mark {
-    let opacity = match mark.shape {
-        MarkShape::FaintArrow(opacity)
-        | MarkShape::FaintPin(opacity)
-        | MarkShape::FaintHand(opacity)
-        | MarkShape::FaintNode(opacity)
-        | MarkShape::FaintCounterClockwise(opacity)
-        | MarkShape::FaintClockwise(opacity) => opacity,
-        _ => 255,
-    };
     let [red, green, blue] = mark.colour;
     Mark {
         rectangle: mark.rectangle,
         along: mark.along,
-        colour: [red, green, blue, opacity],
+        colour: [red, green, blue, mark.opacity],
         second: opaque(mark.second),
         glyph: [0; 2],
         shape: match mark.shape {
             MarkShape::Filled => 0,
             MarkShape::Struck => 1,
-            MarkShape::Node | MarkShape::FaintNode(_) => 3,
-            MarkShape::CounterClockwise | MarkShape::FaintCounterClockwise(_) => 4,
-            MarkShape::Clockwise | MarkShape::FaintClockwise(_) => 5,
+            MarkShape::Node => 3,
+            MarkShape::CounterClockwise => 4,
+            MarkShape::Clockwise => 5,
             MarkShape::Fading => 6,
             MarkShape::Shadow => 7,
             MarkShape::Smooth => 8,
-            MarkShape::Arrow | MarkShape::FaintArrow(_) => 9,
+            MarkShape::Arrow => 9,
             MarkShape::Blend => 10,
             MarkShape::Point => 11,
-            MarkShape::Pin | MarkShape::FaintPin(_) => 12,
-            MarkShape::Hand | MarkShape::FaintHand(_) => 13,
+            MarkShape::Pin => 12,
+            MarkShape::Hand => 13,
         },
     }
 }

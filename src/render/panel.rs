@@ -1,4 +1,4 @@
-//! What every pass knows of a panel, as the shaders read it, and where bodies stand in the textures that hold them.
+//! The data of a panel that every pass reads, and the places of bodies in the textures that hold them.
 
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
@@ -43,17 +43,17 @@ pub(super) struct PanelUniform {
 pub(super) struct OccluderUniform {
     pub(super) first: Vec4,
     pub(super) second: Vec4,
-    pub(super) turn: Vec4,
+    pub(super) rotation: Vec4,
 }
 
 impl OccluderUniform {
     /// Reaches nothing.
-    const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, turn: Vec4::W };
+    const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, rotation: Vec4::W };
 
     fn new(occluder: &Occluder) -> Self {
-        let Occluder { centre, half, turn, radius, is_clear } = *occluder;
+        let Occluder { centre, half, rotation, radius, is_clear } = *occluder;
         let clear = if is_clear { 1.0 } else { 0.0 };
-        Self { first: centre.extend(radius), second: half.extend(clear), turn: Vec4::from(turn) }
+        Self { first: centre.extend(radius), second: half.extend(clear), rotation: Vec4::from(rotation) }
     }
 }
 
@@ -125,7 +125,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         element: sight.element,
         alarm: linear(palette.alarm),
         line_scale: sight.line_scale,
-        // Beside the dark end of a scale, vermilion is seen better.
+        // On the dark end of a scale, vermilion is more visible.
         alarm_line: linear(if picture.ramp.is_empty() || !panel.hatch { palette.alarm_line } else { palette.alarm }),
         outline_alpha: palette.outline_alpha,
         edge: linear(palette.edge),

@@ -1,4 +1,4 @@
-//! Building pipelines and bindings with few words.
+//! Short forms for making pipelines and bindings.
 
 use crate::gpu::Gpu;
 
@@ -13,7 +13,7 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What makes one pipeline different from another.
+/// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
     pub(super) shader: &'a wgpu::ShaderModule,
@@ -67,6 +67,17 @@ impl Recipe<'_> {
             cache: None,
         })
     }
+}
+
+/// How elements of a type lie in a buffer that holds one for each vertex.
+pub(super) fn for_vertices<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    let step_mode = wgpu::VertexStepMode::Vertex;
+    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
+}
+
+/// How elements of a type lie in a buffer that holds one for each instance of a few vertices.
+pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
 }
 
 /// A shader from its parts, one behind the other.

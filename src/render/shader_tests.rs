@@ -1,4 +1,4 @@
-//! All shaders are valid, and their structs are laid out as ours, on any machine.
+//! All shaders are valid, and their structs have the same layout as those in Rust. Needs no graphics device.
 
 use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
@@ -98,7 +98,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
             occluders
         ]
     );
-    same_layout!(module, "Occluder", OccluderUniform, [first, second, turn]);
+    same_layout!(module, "Occluder", OccluderUniform, [first, second, rotation]);
     same_layout!(
         module,
         "Ground",

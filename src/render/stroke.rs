@@ -1,7 +1,7 @@
 //! Lines with colours of their own, and nodes in space.
 
 use super::panel::{Panels, is_visible, limit};
-use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Bead, Colour, Picture, Second, Stroke};
@@ -53,11 +53,7 @@ impl Strokes {
             shader: &module,
             entries: ["stroke", "stroke_colour"],
             groups: &[&panels.layout, &layout],
-            vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Instance>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ATTRIBUTES,
-            })],
+            vertices: &[Some(for_instances::<Instance>(&ATTRIBUTES))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target: PICTURE_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
@@ -73,7 +69,7 @@ impl Strokes {
         }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         self.depth = bind_textures(gpu, "depth of bodies", &self.layout, &[(1, &bodies.depth)]);
     }

@@ -1,9 +1,8 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
 
 use super::panel::{Panels, is_visible, limit};
-use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
-use super::tint::Tint;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
 use std::ops::Range;
@@ -14,18 +13,14 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Flo
 
 /// How corners lie in their buffer.
 pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
-    wgpu::VertexBufferLayout {
-        array_stride: size_of::<Vertex>() as u64,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &ATTRIBUTES,
-    }
+    for_vertices::<Vertex>(&ATTRIBUTES)
 }
 
-/// What light knows of obstacles near a body, where there are none and where there are some.
+/// The part of the shader about the occlusion by obstacles near a body, without any and with some.
 const ALONE_SHADER: &str = include_str!("../../shaders/light_alone.wgsl");
 const AMONG_SHADER: &str = include_str!("../../shaders/light_among.wgsl");
 
-/// How many obstacles there are. A shader that knows it need not count, which saves drawing on a processor much time.
+/// The number of obstacles as a constant, so that the loop is unrolled: much faster with a software driver.
 const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
     "",
     "const OCCLUDERS = 1u;\n",
@@ -42,24 +37,38 @@ pub(super) fn parts(samples: u32, occluders: usize) -> [&'static str; 6] {
     [super::PANEL_SHADER, samples, alarm, COUNTS[occluders], obstacles, SHADER]
 }
 
-/// How many obstacles take light away from a body of a picture at the most.
+/// The largest number of obstacles near one of the bodies of a picture.
 pub(super) fn occluders(picture: &Picture) -> usize {
     let counts = picture.panels.iter().map(|panel| panel.obstacles.occluders.len());
     counts.max().unwrap_or(0).min(MOST_OCCLUDERS)
 }
 
-/// A thing for each number of obstacles near a body, made when it is first needed.
+/// One for each number of obstacles near a body, made when it is first needed.
 pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 
-/// How surfaces are drawn.
+/// The pipelines that draw surfaces: turned-over ones by themselves, and both sets.
 #[derive(Debug)]
-pub(super) struct Ways {
+pub(super) struct Pipelines {
     pub(super) alarm_behind: wgpu::RenderPipeline,
     pub(super) alarm: wgpu::RenderPipeline,
     pub(super) sound: wgpu::RenderPipeline,
 }
 
-/// What surfaces read of what lies behind them.
+/// The two sets of elements of a panel, in the order in which they are stored.
+const SOUND: usize = 0;
+const TURNED_OVER: usize = 1;
+
+/// What draws the surfaces of one picture, plain or coloured by a field.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colouring<'a> {
+    pub(super) pipelines: &'a Pipelines,
+    /// What the pipelines of each set read besides the panel.
+    pub(super) groups: [Option<&'a wgpu::BindGroup>; 2],
+    /// The places of corners on the scale of a field, as a second buffer of vertices.
+    pub(super) shades: Option<&'a wgpu::Buffer>,
+}
+
+/// The textures with what lies behind sound surfaces.
 pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
     [texture_entry(2, true, samples), texture_entry(3, false, samples)]
 }
@@ -68,13 +77,13 @@ pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
 #[derive(Debug)]
 pub(super) struct Surfaces {
     /// Made when they are first needed.
-    ways: ForOccluders<Ways>,
+    pipelines: ForOccluders<Pipelines>,
     samples: u32,
     behind_layout: wgpu::BindGroupLayout,
     behind: Option<wgpu::BindGroup>,
     vertices: GrowingBuffer<Vertex>,
     indices: GrowingBuffer<u32>,
-    /// The indices of each panel's two sets: sound, turned over.
+    /// The indices of each panel's two sets.
     ranges: Vec<[Range<u32>; 2]>,
 }
 
@@ -82,7 +91,7 @@ impl Surfaces {
     pub(super) fn new(gpu: &Gpu, samples: u32) -> Self {
         let behind_layout = group_layout(gpu, "turned over", &behind_entries(samples));
         Self {
-            ways: ForOccluders::default(),
+            pipelines: ForOccluders::default(),
             samples,
             behind_layout,
             behind: None,
@@ -92,7 +101,7 @@ impl Surfaces {
         }
     }
 
-    fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, samples: u32, occluders: usize) -> Ways {
+    fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, samples: u32, occluders: usize) -> Pipelines {
         let module = shader(gpu, "surface", &parts(samples, occluders));
         let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
             let recipe = Recipe {
@@ -109,7 +118,7 @@ impl Surfaces {
             };
             recipe.build(gpu)
         };
-        Ways {
+        Pipelines {
             alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
             alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
             sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, behind]),
@@ -120,7 +129,7 @@ impl Surfaces {
     pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
         let count = occluders(picture);
         let made = || Self::made(gpu, panels, &self.behind_layout, self.samples, count);
-        self.ways[count].get_or_insert_with(made);
+        self.pipelines[count].get_or_insert_with(made);
     }
 
     /// Uploads the meshes of a picture.
@@ -137,68 +146,57 @@ impl Surfaces {
         self.indices.write(gpu, &indices);
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         let views = [(2, &bodies.alarm_depth), (3, &bodies.alarm_colour)];
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
     }
 
-    fn ways(&self, occluders: usize) -> &Ways {
-        self.ways[occluders].as_ref().expect("prepared")
+    /// Without a field, for a number of obstacles near a body that was prepared.
+    pub(super) fn plain(&self, occluders: usize) -> Colouring<'_> {
+        let pipelines = self.pipelines[occluders].as_ref().expect("prepared");
+        Colouring { pipelines, groups: [self.behind.as_ref(), None], shades: None }
     }
 
-    /// Draws the turned-over sets by themselves, coloured by a field if there is a tint.
+    /// Draws the turned-over sets by themselves.
     pub(super) fn draw_behind(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        tint: Option<&Tint>,
-        occluders: usize,
+        colouring: Colouring<'_>,
     ) {
-        let pipeline = match tint {
-            Some(tint) => {
-                pass.set_bind_group(1, &tint.alarm_group, &[]);
-                pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
-                &tint.ways(occluders).alarm_behind
-            }
-            None => &self.ways(occluders).alarm_behind,
-        };
-        self.draw(pass, pipeline, panels, places, 1);
+        self.draw(pass, panels, places, colouring, &colouring.pipelines.alarm_behind, TURNED_OVER);
     }
 
-    /// Draws everything, coloured by a field if there is a tint.
+    /// Draws everything.
     pub(super) fn draw_all(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        tint: Option<&Tint>,
-        occluders: usize,
+        colouring: Colouring<'_>,
     ) {
-        let Some(tint) = tint else {
-            let ways = self.ways(occluders);
-            self.draw(pass, &ways.alarm, panels, places, 1);
-            pass.set_bind_group(1, self.behind.as_ref(), &[]);
-            return self.draw(pass, &ways.sound, panels, places, 0);
-        };
-        let ways = tint.ways(occluders);
-        pass.set_vertex_buffer(1, tint.shades.buffer().slice(..));
-        pass.set_bind_group(1, &tint.alarm_group, &[]);
-        self.draw(pass, &ways.alarm, panels, places, 1);
-        pass.set_bind_group(1, &tint.sound_group, &[]);
-        self.draw(pass, &ways.sound, panels, places, 0);
+        self.draw(pass, panels, places, colouring, &colouring.pipelines.alarm, TURNED_OVER);
+        self.draw(pass, panels, places, colouring, &colouring.pipelines.sound, SOUND);
     }
 
     fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        pipeline: &wgpu::RenderPipeline,
         panels: &Panels,
         places: &[Rectangle],
+        colouring: Colouring<'_>,
+        pipeline: &wgpu::RenderPipeline,
         set: usize,
     ) {
         pass.set_pipeline(pipeline);
+        if let Some(group) = colouring.groups[set] {
+            pass.set_bind_group(1, group, &[]);
+        }
+        if let Some(shades) = colouring.shades {
+            pass.set_vertex_buffer(1, shades.slice(..));
+        }
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
         for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {

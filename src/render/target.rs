@@ -41,7 +41,7 @@ pub(super) struct Bodies {
     /// Everything of the bodies, with all samples.
     pub(super) colour: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
-    /// Whether the next two are as large as the others, or of a single pixel that nobody asks for.
+    /// Whether the next two have the full size, or a single pixel that is never read.
     has_behind: bool,
     /// The turned-over elements by themselves, with all samples.
     pub(super) alarm_colour: wgpu::TextureView,

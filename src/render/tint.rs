@@ -1,8 +1,8 @@
 //! Surfaces coloured by a scalar field, in place of the plain ones.
 
 use super::panel::{Panels, linear};
-use super::pipeline::{BODY_FORMAT, Recipe, group_layout, shader, uniform_entry};
-use super::surface::{self, ForOccluders, Ways};
+use super::pipeline::{BODY_FORMAT, Recipe, for_vertices, group_layout, shader, uniform_entry};
+use super::surface::{self, Colouring, ForOccluders, Pipelines};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Picture, SHADES};
@@ -16,15 +16,15 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Flo
 /// first picture that has a field.
 #[derive(Debug)]
 pub(super) struct Tint {
-    ways: ForOccluders<Ways>,
+    pipelines: ForOccluders<Pipelines>,
     samples: u32,
     alarm_layout: wgpu::BindGroupLayout,
     /// For the turned-over sets: the scale; for the sound ones also what lies behind them.
-    pub(super) alarm_group: wgpu::BindGroup,
-    pub(super) sound_group: wgpu::BindGroup,
+    alarm_group: wgpu::BindGroup,
+    sound_group: wgpu::BindGroup,
     sound_layout: wgpu::BindGroupLayout,
     ramp: GrowingBuffer<Vec4>,
-    pub(super) shades: GrowingBuffer<f32>,
+    shades: GrowingBuffer<f32>,
 }
 
 impl Tint {
@@ -37,7 +37,7 @@ impl Tint {
         let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
         let alarm_entries = [wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() }];
         Self {
-            ways: ForOccluders::default(),
+            pipelines: ForOccluders::default(),
             samples,
             alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("scale"),
@@ -52,16 +52,15 @@ impl Tint {
         }
     }
 
-    fn made(gpu: &Gpu, panels: &Panels, layouts: [&wgpu::BindGroupLayout; 2], samples: u32, occluders: usize) -> Ways {
+    fn made(
+        gpu: &Gpu,
+        panels: &Panels,
+        layouts: [&wgpu::BindGroupLayout; 2],
+        samples: u32,
+        occluders: usize,
+    ) -> Pipelines {
         let module = shader(gpu, "tint", &[&surface::parts(samples, occluders)[..], &[SHADER]].concat());
-        let vertices = [
-            Some(surface::vertices()),
-            Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<f32>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &ATTRIBUTES,
-            }),
-        ];
+        let vertices = [Some(surface::vertices()), Some(for_vertices::<f32>(&ATTRIBUTES))];
         let build = |label, entries, layout| {
             let recipe = Recipe {
                 label,
@@ -78,7 +77,7 @@ impl Tint {
             recipe.build(gpu)
         };
         let [of_alarm, of_sound] = layouts;
-        Ways {
+        Pipelines {
             alarm_behind: build("turned over, behind, coloured", ["tinted_alarm_corner", "tinted_behind"], of_alarm),
             alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm),
             sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound),
@@ -89,15 +88,19 @@ impl Tint {
     pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
         let count = surface::occluders(picture);
         let layouts = [&self.alarm_layout, &self.sound_layout];
-        self.ways[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, self.samples, count));
+        self.pipelines[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, self.samples, count));
     }
 
-    /// How surfaces are drawn with a number of obstacles near a body.
-    pub(super) fn ways(&self, occluders: usize) -> &Ways {
-        self.ways[occluders].as_ref().expect("prepared")
+    /// By the field, for a number of obstacles near a body that was prepared.
+    pub(super) fn colouring(&self, occluders: usize) -> Colouring<'_> {
+        Colouring {
+            pipelines: self.pipelines[occluders].as_ref().expect("prepared"),
+            groups: [Some(&self.sound_group), Some(&self.alarm_group)],
+            shades: Some(self.shades.buffer()),
+        }
     }
 
-    /// Takes note of new textures.
+    /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
         self.sound_group = sound_group(gpu, &self.sound_layout, &self.ramp, bodies);
     }

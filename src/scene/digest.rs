@@ -36,9 +36,8 @@ pub(super) fn digest(parts: &Parts) -> String {
     }
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
-    let mut text = String::new();
-    canonical(&value, &mut text);
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    value.sort_all_objects();
+    Sha256::digest(value.to_string().as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Removes every entry whose value is the default that the schema names.
@@ -59,32 +58,5 @@ fn without_defaults(value: &mut Value, schema: &Value) {
         }
         Value::Array(items) => items.iter_mut().for_each(|item| without_defaults(item, &schema["items"])),
         _ => {}
-    }
-}
-
-/// Writes JSON without spaces and with sorted keys.
-fn canonical(value: &Value, text: &mut String) {
-    match value {
-        Value::Object(table) => {
-            let mut entries: Vec<_> = table.iter().collect();
-            entries.sort_by_key(|(key, _)| *key);
-            text.push('{');
-            for (at, (key, value)) in entries.into_iter().enumerate() {
-                text.push_str(if at > 0 { "," } else { "" });
-                text.push_str(&Value::from(key.as_str()).to_string());
-                text.push(':');
-                canonical(value, text);
-            }
-            text.push('}');
-        }
-        Value::Array(items) => {
-            text.push('[');
-            for (at, item) in items.iter().enumerate() {
-                text.push_str(if at > 0 { "," } else { "" });
-                canonical(item, text);
-            }
-            text.push(']');
-        }
-        plain => text.push_str(&plain.to_string()),
     }
 }

@@ -3,11 +3,10 @@
 //! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
 //! only with what is really there.
 
-use crate::reading::words::size;
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use zip::{CompressionMethod, ZipArchive};
 
@@ -28,7 +27,7 @@ pub(crate) struct Npz {
 pub(crate) struct Array {
     /// Where it stands in the archive.
     index: usize,
-    number: Number,
+    dtype: Dtype,
     /// Whether columns, not rows, lie in one piece.
     by_columns: bool,
     /// How long it is in each direction.
@@ -39,14 +38,14 @@ pub(crate) struct Array {
 
 /// How a number is stored, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Number {
+enum Dtype {
     Float64,
     Float32,
     Signed(usize),
     Unsigned(usize),
 }
 
-impl Number {
+impl Dtype {
     fn bytes(self) -> usize {
         match self {
             Self::Float64 => 8,
@@ -60,7 +59,7 @@ impl Number {
         const EXPECTED: &str = "expected float64, float32 or whole numbers";
         let (order, rest) = name.split_at_checked(1).unwrap_or_default();
         let (letter, bytes) = rest.split_at_checked(1).unwrap_or_default();
-        let number = match (letter, bytes) {
+        let dtype = match (letter, bytes) {
             ("f", "8") => Self::Float64,
             ("f", "4") => Self::Float32,
             ("i" | "u", "1" | "2" | "4" | "8") => {
@@ -75,7 +74,7 @@ impl Number {
             _ => return Err(format!("has numbers of the type {}; {EXPECTED}", quoted(name))),
         };
         match order {
-            "<" | "|" => Ok(number),
+            "<" | "|" => Ok(dtype),
             _ => Err("has big-endian numbers; expected little-endian ones, as by astype(\"<f8\") or, for indices, astype(\"<i4\")".to_owned()),
         }
     }
@@ -83,15 +82,15 @@ impl Number {
 
 /// The numbers of an array with one to three directions, row by row.
 #[derive(Clone, Debug)]
-pub(crate) struct Numbers {
+pub(crate) struct Values {
     bytes: Vec<u8>,
-    number: Number,
+    dtype: Dtype,
     by_columns: bool,
     rows: usize,
     columns: usize,
 }
 
-impl Numbers {
+impl Values {
     pub(crate) fn rows(&self) -> usize {
         self.rows
     }
@@ -102,22 +101,22 @@ impl Numbers {
 
     fn raw(&self, row: usize, column: usize) -> &[u8] {
         let at = if self.by_columns { column * self.rows + row } else { row * self.columns + column };
-        let width = self.number.bytes();
+        let width = self.dtype.bytes();
         &self.bytes[at * width..(at + 1) * width]
     }
 
     /// One number, as a whole one; those beyond 64 bits with a sign are at their end. Zero for a fraction.
     pub(crate) fn whole(&self, row: usize, column: usize) -> i64 {
         let raw = self.raw(row, column);
-        match self.number {
-            Number::Float64 | Number::Float32 => 0,
-            Number::Signed(bytes) => {
+        match self.dtype {
+            Dtype::Float64 | Dtype::Float32 => 0,
+            Dtype::Signed(bytes) => {
                 let is_negative = raw[bytes - 1] >= 0x80;
                 let mut all = [if is_negative { 0xff } else { 0 }; 8];
                 all[..bytes].copy_from_slice(raw);
                 i64::from_le_bytes(all)
             }
-            Number::Unsigned(bytes) => {
+            Dtype::Unsigned(bytes) => {
                 let mut all = [0; 8];
                 all[..bytes].copy_from_slice(raw);
                 i64::try_from(u64::from_le_bytes(all)).unwrap_or(i64::MAX)
@@ -128,9 +127,9 @@ impl Numbers {
     /// One number in double precision.
     pub(crate) fn double(&self, row: usize, column: usize) -> f64 {
         let raw = self.raw(row, column);
-        match self.number {
-            Number::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
-            Number::Float32 => f32::from_le_bytes(raw.try_into().unwrap_or_default()).into(),
+        match self.dtype {
+            Dtype::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
+            Dtype::Float32 => f32::from_le_bytes(raw.try_into().unwrap_or_default()).into(),
             _ => self.whole(row, column) as f64,
         }
     }
@@ -150,9 +149,10 @@ impl Npz {
             return Err("is no regular file; expected a NumPy archive (.npz)".to_owned());
         }
         let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
-        let mut start = [0; 6];
-        let length = read_up_to(&mut file, &mut start).map_err(|error| format!("cannot be read: {error}"))?;
-        match &start[..length] {
+        let mut start = Vec::new();
+        let read = (&file).take(6).read_to_end(&mut start).and_then(|_| file.rewind());
+        read.map_err(|error| format!("cannot be read: {error}"))?;
+        match &start[..] {
             [] => return Err("is empty; expected a NumPy archive (.npz)".to_owned()),
             b"\x93NUMPY" => {
                 return Err(
@@ -206,18 +206,18 @@ impl Npz {
         let mut text = vec![0; length];
         entry.read_exact(&mut text).map_err(|_| short())?;
         let text = String::from_utf8(text).map_err(|_| short())?;
-        let number = value(&text, "descr").ok_or_else(short)?;
-        if number.starts_with('[') {
+        let dtype = value(&text, "descr").ok_or_else(short)?;
+        if dtype.starts_with('[') {
             return Err("has rows of several fields; expected plain numbers".to_owned());
         }
-        let number = Number::of(quoted_text(number).ok_or_else(short)?)?;
+        let dtype = Dtype::of(quoted_text(dtype).ok_or_else(short)?)?;
         let by_columns = match value(&text, "fortran_order").ok_or_else(short)? {
             order if order.starts_with("True") => true,
             order if order.starts_with("False") => false,
             _ => return Err(short()),
         };
         let shape = value(&text, "shape").and_then(tuple).ok_or_else(short)?;
-        let array = Array { index, number, by_columns, shape, head: (start + length) as u64 };
+        let array = Array { index, dtype, by_columns, shape, head: (start + length) as u64 };
         let stored = entry.size();
         if array.bytes().and_then(|bytes| bytes.checked_add(array.head)) != Some(stored) {
             let (shape, stored) = (array.shape_in_words(), count(stored.saturating_sub(array.head).into()));
@@ -228,7 +228,7 @@ impl Npz {
 
     /// The numbers of an array: of one with a single direction as one column, of one with three directions with the last
     /// two in one row.
-    pub(crate) fn numbers(&mut self, array: &Array) -> Result<Numbers, String> {
+    pub(crate) fn numbers(&mut self, array: &Array) -> Result<Values, String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
@@ -249,35 +249,30 @@ impl Npz {
             [rows, columns, depth] if !array.by_columns => [rows, columns * depth],
             _ => return Err(format!("has the shape {}; expected rows and columns", array.shape_in_words())),
         };
-        let (number, by_columns) = (array.number, array.by_columns);
-        Ok(Numbers { bytes, number, by_columns, rows: rows as usize, columns: columns as usize })
+        let (dtype, by_columns) = (array.dtype, array.by_columns);
+        Ok(Values { bytes, dtype, by_columns, rows: rows as usize, columns: columns as usize })
     }
 }
 
 impl Array {
     /// Whether it holds whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
-        matches!(self.number, Number::Signed(_) | Number::Unsigned(_))
+        matches!(self.dtype, Dtype::Signed(_) | Dtype::Unsigned(_))
     }
 
     /// NumPy's name of the type of its numbers.
     pub(crate) fn type_in_words(&self) -> String {
-        let kind = match self.number {
-            Number::Float64 | Number::Float32 => "float",
-            Number::Signed(_) => "int",
-            Number::Unsigned(_) => "uint",
+        let kind = match self.dtype {
+            Dtype::Float64 | Dtype::Float32 => "float",
+            Dtype::Signed(_) => "int",
+            Dtype::Unsigned(_) => "uint",
         };
-        format!("{kind}{}", 8 * self.number.bytes())
+        format!("{kind}{}", 8 * self.dtype.bytes())
     }
 
     /// Length of the numbers (bytes), if 64 bits can say it.
     pub(crate) fn bytes(&self) -> Option<u64> {
-        self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))
-    }
-
-    /// The length of the numbers in words.
-    pub(crate) fn size_in_words(&self) -> String {
-        size(self.bytes().unwrap_or(u64::MAX).into())
+        self.shape.iter().try_fold(self.dtype.bytes() as u64, |all, &length| all.checked_mul(length))
     }
 
     /// The shape as NumPy writes it.
@@ -285,19 +280,6 @@ impl Array {
         let lengths: Vec<_> = self.shape.iter().map(u64::to_string).collect();
         format!("({}{})", lengths.join(", "), if lengths.len() == 1 { "," } else { "" })
     }
-}
-
-/// Reads until a buffer is full or nothing more comes, and says how much came.
-fn read_up_to(file: &mut File, buffer: &mut [u8]) -> std::io::Result<usize> {
-    let mut length = 0;
-    while length < buffer.len() {
-        match file.read(&mut buffer[length..])? {
-            0 => break,
-            more => length += more,
-        }
-    }
-    std::io::Seek::rewind(file)?;
-    Ok(length)
 }
 
 /// What follows a key in the head of an array, which is a dictionary in Python's spelling.
@@ -338,8 +320,8 @@ mod tests {
 
     #[test]
     fn types_are_known_or_refused_in_words() {
-        assert_eq!(Number::of("<f8"), Ok(Number::Float64));
-        assert_eq!(Number::of("|u1"), Ok(Number::Unsigned(1)));
+        assert_eq!(Dtype::of("<f8"), Ok(Dtype::Float64));
+        assert_eq!(Dtype::of("|u1"), Ok(Dtype::Unsigned(1)));
         for (name, words) in [
             (">f8", "big-endian"),
             ("<f2", "of the type \"<f2\""),
@@ -349,7 +331,7 @@ mod tests {
             ("", "of the type"),
             ("é", "of the type"),
         ] {
-            assert!(Number::of(name).unwrap_err().contains(words), "{name}");
+            assert!(Dtype::of(name).unwrap_err().contains(words), "{name}");
         }
     }
 
@@ -359,9 +341,9 @@ mod tests {
             let mut raw = (-1i64).to_le_bytes()[..bytes].to_vec();
             raw.extend(&5i64.to_le_bytes()[..bytes]);
             let mut numbers =
-                Numbers { bytes: raw, number: Number::Signed(bytes), by_columns: false, rows: 1, columns: 2 };
+                Values { bytes: raw, dtype: Dtype::Signed(bytes), by_columns: false, rows: 1, columns: 2 };
             assert_eq!((numbers.whole(0, 0), numbers.whole(0, 1)), (-1, 5));
-            numbers.number = Number::Unsigned(bytes);
+            numbers.dtype = Dtype::Unsigned(bytes);
             let largest = if bytes == 8 { i64::MAX } else { (1 << (8 * bytes)) - 1 };
             assert_eq!((numbers.whole(0, 0), numbers.double(0, 1)), (largest, 5.0));
         }

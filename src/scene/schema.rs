@@ -1,6 +1,7 @@
 //! The JSON Schema of scene files, made from the types in [`super::file`].
 
 use super::file::SceneFile;
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
@@ -19,17 +20,20 @@ pub fn schema() -> Value {
 }
 
 /// The schema, made once.
-pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFile>("Scene file of localshape"));
+
+/// The schema of a file's type.
+pub(super) fn schema_of<T: JsonSchema>(title: &str) -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<SceneFile>().to_value();
+    let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
     tidy(&mut schema);
-    schema["title"] = "Scene file of localshape".into();
+    schema["title"] = title.into();
     schema
-});
+}
 
 /// Fits the generated schema to TOML: there is no null, a description is one line, an alternative of one is none,
 /// and every `kind` says what it is.
-pub(super) fn tidy(schema: &mut Value) {
+fn tidy(schema: &mut Value) {
     match schema {
         Value::Array(items) => items.iter_mut().for_each(tidy),
         Value::Object(table) => {

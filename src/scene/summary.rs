@@ -6,7 +6,7 @@ use crate::reading::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
-use crate::sim::words;
+use crate::sim::words::{self, typed};
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -147,11 +147,6 @@ pub(super) fn corners(points: &[DVec3], dimension: Dimension) -> [Vec<f64>; 2] {
         let coordinates = corner.to_array().into_iter().take(axes);
         coordinates.map(|at| if at.abs() <= round_off { 0.0 } else { at }).collect()
     })
-}
-
-/// A choice as it is typed in a scene.
-fn typed(choice: &impl Serialize) -> String {
-    serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
 /// An obstacle in words.

@@ -1,9 +1,12 @@
 //! What is simulated: a [`Body`], which never changes.
 
+pub use super::element::{Dimension, ElementKind, Solids};
+use super::element::{around, kind};
 use super::hull::Hulls;
+pub use super::hull::bounds;
 pub use super::lists::IndexLists;
-use super::topology;
-pub use super::topology::{Dimension, ElementKind, Faces, Solids};
+pub use super::topology::Faces;
+use super::topology::{Elements, assign_faces};
 use glam::DVec3;
 
 /// A deformable body as it is at rest. It never changes during a simulation and all runs of a scene share it.
@@ -44,20 +47,20 @@ impl Body {
     ) -> Self {
         assert_eq!(rest.len(), mass.len(), "one mass per node");
         assert!(elements.indices().iter().all(|&node| (node as usize) < rest.len()), "node indices in range");
-        let kinds: Vec<_> = elements.iter().map(|nodes| topology::kind(dimension, solids, nodes.len())).collect();
+        let kinds: Vec<_> = elements.iter().map(|nodes| kind(dimension, solids, nodes.len())).collect();
         let hulls = Hulls::new(&elements, &kinds, &rest);
         let faces = match faces {
-            Some(given) => topology::assign_faces(given, &elements, |face, element| {
-                looks_out(face, &elements[element as usize], &rest)
-            }),
-            None => topology::Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
+            Some(given) => {
+                assign_faces(given, &elements, |face, element| looks_out(face, &elements[element as usize], &rest))
+            }
+            None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
         Self { dimension, rest, mass, elements, kinds, hulls, faces }
     }
 
     /// The elements with their faces, edges and named springs.
-    pub fn topology(&self) -> topology::Elements<'_> {
-        topology::Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls, rest: &self.rest }
+    pub fn topology(&self) -> Elements<'_> {
+        Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls, rest: &self.rest }
     }
 
     /// The number of nodes.
@@ -87,15 +90,9 @@ fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
     let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
     let middle = mean(face);
     let at = |node: u32| rest[node as usize] - middle;
-    let area: DVec3 = topology::around(face).map(|[a, b]| at(a).cross(at(b))).sum();
+    let area: DVec3 = around(face).map(|[a, b]| at(a).cross(at(b))).sum();
     let inwards = mean(element) - middle;
     area.dot(inwards) <= 1e-9 * area.length() * inwards.length()
-}
-
-/// The corners of the box around `points`, low and high; zero for no points.
-pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
-    let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
-    points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
 }
 
 #[cfg(test)]

@@ -2,12 +2,12 @@
 
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
+use super::element;
 use super::kernel::{Lanes, MOST, Set, Work};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
 use super::state::Nodes;
-use super::topology;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::ops::{Add, Mul, Sub};
@@ -222,7 +222,7 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
         // Relative to the first node, so that distance from the origin costs no digits.
         let origin = position[nodes[0] as usize];
         let at = |node: u32| position[node as usize] - origin;
-        return 0.5 * topology::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
+        return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
     inside(kind, &corners(nodes, position))
 }
@@ -273,7 +273,7 @@ impl<L: Lanes> Number for L {
 #[inline(always)]
 fn inside<T: Number>(kind: ElementKind, corners: &[[T; 3]; 8]) -> T {
     let mut volume = T::new(0.0);
-    for face in topology::face_table(kind) {
+    for face in element::face_table(kind) {
         let part = match **face {
             [a, b, c] => triple(at(corners, a), at(corners, b), at(corners, c)).over(6.0),
             // Each of the four triangles of two corners that are next to each other and a third is in two fans.

@@ -85,8 +85,8 @@ fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
     };
     let (rest, now) = (centred(&body.rest), centred(position));
     let at_rest = moment(&rest, now.iter().copied());
-    let turn = rotation::best(body.dimension, at_rest);
-    let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - turn * rest).length_squared()).sum();
+    let best = rotation::best(body.dimension, at_rest);
+    let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - best * rest).length_squared()).sum();
     (off / rest.iter().map(|rest| rest.length_squared()).sum::<f64>()).sqrt()
 }
 

@@ -21,7 +21,7 @@ impl Grip {
     /// How far the hand has gone since it gripped, at a time (s), turning about the mean of the nodes then.
     pub fn way(&self, time: f64) -> Pose {
         let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
-        Pose { shift: now.shift - first.shift, turn: now.turn * first.turn.conjugate() }
+        Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
     }
 
     /// Whether the nodes follow the hand at a time (s).

@@ -1,7 +1,7 @@
 //! Convex hulls of a few points, with faces that are polygons: what the faces of an element of any shape are.
 
+use super::element::{ElementKind, around};
 use super::lists::IndexLists;
-use super::topology::ElementKind;
 use glam::DVec3;
 use std::collections::HashSet;
 
@@ -54,6 +54,12 @@ impl Hulls {
     }
 }
 
+/// The corners of the box around `points`, low and high; zero for no points.
+pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+    let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
+    points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
+}
+
 /// The faces of the convex hull of points as places in their list, each from its lowest place, counter-clockwise seen
 /// from outside, in rising order.
 ///
@@ -63,7 +69,7 @@ impl Hulls {
 /// Faces are found one beside the other by turning a plane about each edge ("gift wrapping"), which takes the product
 /// of the numbers of points and faces.
 pub fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
-    let (low, high) = super::body::bounds(points);
+    let (low, high) = bounds(points);
     let size = (high - low).max_element();
     if size <= 0.0 || !size.is_finite() {
         return Vec::new();
@@ -267,7 +273,7 @@ impl<'p> Cloud<'p> {
                     .map(|(&a, &b)| (self.at(a) - self.at(face[0])).cross(self.at(b) - self.at(face[0])))
                     .sum();
                 let normal = area.try_normalize()?;
-                for edge in super::topology::around(&face) {
+                for edge in around(&face) {
                     if !edges.insert(edge) {
                         return None;
                     }
@@ -326,9 +332,9 @@ mod tests {
         assert!(faces.len() >= 4, "{faces:?} of {points:?}");
         let mut edges: Vec<[u32; 2]> = Vec::new();
         for face in faces {
-            edges.extend(crate::sim::topology::around(face));
+            edges.extend(around(face));
             let at = |n: usize| points[face[n] as usize];
-            let (low, high) = crate::sim::body::bounds(points);
+            let (low, high) = bounds(points);
             // The largest triangle of the face says best how it lies.
             let normals = (2..face.len()).map(|n| (at(n - 1) - at(0)).cross(at(n) - at(0)));
             let normal = normals.reduce(|a, b| if b.length() > a.length() { b } else { a }).unwrap().normalize();

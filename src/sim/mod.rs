@@ -4,11 +4,11 @@
 
 pub mod alike;
 pub mod body;
-pub mod census;
 pub mod contact;
 pub mod diagnose;
 pub mod diagnostics;
 mod dynamics;
+pub mod element;
 pub mod field;
 pub mod grip;
 pub mod hull;

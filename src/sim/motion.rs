@@ -3,57 +3,56 @@
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A displacement of something rigid: a turn about a pivot of its own, then a shift.
+/// A rigid displacement: a rotation about a pivot, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The shift (m).
     pub shift: DVec3,
-    /// The turn about the pivot.
-    pub turn: DQuat,
+    /// The rotation about the pivot.
+    pub rotation: DQuat,
 }
 
 impl Pose {
     /// Where it was at the beginning.
-    pub const NONE: Self = Self { shift: DVec3::ZERO, turn: DQuat::IDENTITY };
+    pub const NONE: Self = Self { shift: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
     /// Where a point (m) of the thing is, which without the displacement is at `point`.
     pub fn apply(&self, pivot: DVec3, point: DVec3) -> DVec3 {
-        pivot + self.shift + self.turn * (point - pivot)
+        pivot + self.shift + self.rotation * (point - pivot)
     }
 
     /// The point (m) of the thing that the displacement has brought to `point`.
     pub fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
-        pivot + self.turn.conjugate() * (point - pivot - self.shift)
+        pivot + self.rotation.conjugate() * (point - pivot - self.shift)
     }
 }
 
-/// A displacement as typed: the turn is a vector along its axis, as long as its angle (rad), so that it may go round
-/// more than once.
+/// A rigid displacement as typed: the rotation is a vector, so that it may go round more than once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct Offset {
     /// The shift (m).
     pub shift: DVec3,
-    /// Axis times angle of the turn (rad).
-    pub turn: DVec3,
+    /// Rotation vector: axis times angle (rad).
+    pub rotation: DVec3,
 }
 
-impl Place {
+impl Offset {
     fn pose(self) -> Pose {
-        Pose { shift: self.shift, turn: quaternion(self.turn) }
+        Pose { shift: self.shift, rotation: quaternion(self.rotation) }
     }
 
     fn lerp(self, other: Self, share: f64) -> Self {
-        Self { shift: self.shift.lerp(other.shift, share), turn: self.turn.lerp(other.turn, share) }
+        Self { shift: self.shift.lerp(other.shift, share), rotation: self.rotation.lerp(other.rotation, share) }
     }
 }
 
-/// A place at a time.
+/// An offset at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
     /// When (s).
     pub time: f64,
     /// Where.
-    pub place: Place,
+    pub offset: Offset,
 }
 
 /// How a path runs from one key to the next.
@@ -100,21 +99,21 @@ pub enum Motion {
         /// Whether the path begins again at the first key's time when it has reached the last one's.
         repeat: bool,
     },
-    /// To and fro about where it is: `sin(2π t / period + phase)` times a place.
+    /// To and fro about where it is: `sin(2π t / period + phase)` times an offset.
     Swing {
         /// Duration of one swing to and fro (s).
         period: f64,
         /// Where in the swing it is at time zero (rad).
         phase: f64,
-        /// The farthest place.
-        amplitude: Place,
+        /// The farthest offset.
+        amplitude: Offset,
     },
 }
 
 impl Motion {
-    /// Staying at a place.
-    pub fn at(place: Place) -> Self {
-        Self::Keys { keys: vec![Key { time: 0.0, place }], ease: Ease::Linear, repeat: false }
+    /// Staying at an offset.
+    pub fn at(offset: Offset) -> Self {
+        Self::Keys { keys: vec![Key { time: 0.0, offset }], ease: Ease::Linear, repeat: false }
     }
 
     /// Where it is at a time (s).
@@ -126,32 +125,32 @@ impl Motion {
                 // Whole swings first: what is left has all its digits however long it has swung.
                 let swings = time / period;
                 let share = libm::sin(TAU * (swings - swings.floor()) + phase);
-                Place::default().lerp(*amplitude, share).pose()
+                Offset::default().lerp(*amplitude, share).pose()
             }
         }
     }
 
-    /// The longest way (m) from one place of the path to another, at a distance from the pivot (m).
+    /// The longest way (m) from one point of the path to another, at a distance from the pivot (m).
     pub fn longest_way(&self, distance: f64) -> f64 {
-        let way = |place: Place| place.shift.length() + place.turn.length().min(PI) * distance;
+        let way = |offset: Offset| offset.shift.length() + offset.rotation.length().min(PI) * distance;
         match self {
             Self::Still => 0.0,
-            Self::Keys { keys, .. } => 2.0 * keys.iter().map(|key| way(key.place)).fold(0.0, f64::max),
+            Self::Keys { keys, .. } => 2.0 * keys.iter().map(|key| way(key.offset)).fold(0.0, f64::max),
             Self::Swing { amplitude, .. } => 2.0 * way(*amplitude),
         }
     }
 
     /// The greatest speed (m/s) at a distance from the pivot (m).
     pub fn greatest_speed(&self, distance: f64) -> f64 {
-        let way = |place: Place| place.shift.length() + place.turn.length() * distance;
+        let way = |offset: Offset| offset.shift.length() + offset.rotation.length() * distance;
         match self {
             Self::Still => 0.0,
             Self::Keys { keys, ease, .. } => {
                 let speed = |two: &[Key]| {
                     let [from, to] = [two[0], two[1]];
-                    let place =
-                        Place { shift: to.place.shift - from.place.shift, turn: to.place.turn - from.place.turn };
-                    way(place) / (to.time - from.time) * ease.peak()
+                    let shift = to.offset.shift - from.offset.shift;
+                    let rotation = to.offset.rotation - from.offset.rotation;
+                    way(Offset { shift, rotation }) / (to.time - from.time) * ease.peak()
                 };
                 keys.windows(2).map(speed).fold(0.0, f64::max)
             }
@@ -160,8 +159,8 @@ impl Motion {
     }
 }
 
-fn along(keys: &[Key], ease: Ease, repeat: bool, time: f64) -> Place {
-    let (Some(first), Some(last)) = (keys.first(), keys.last()) else { return Place::default() };
+fn along(keys: &[Key], ease: Ease, repeat: bool, time: f64) -> Offset {
+    let (Some(first), Some(last)) = (keys.first(), keys.last()) else { return Offset::default() };
     let length = last.time - first.time;
     let mut time = time;
     if repeat && length > 0.0 && time > first.time {
@@ -170,23 +169,23 @@ fn along(keys: &[Key], ease: Ease, repeat: bool, time: f64) -> Place {
     }
     let after = keys.partition_point(|key| key.time <= time);
     match (after.checked_sub(1).map(|at| keys[at]), keys.get(after)) {
-        (None, _) => first.place,
-        (Some(last), None) => last.place,
+        (None, _) => first.offset,
+        (Some(last), None) => last.offset,
         (Some(from), Some(to)) => {
             let share = (time - from.time) / (to.time - from.time);
-            from.place.lerp(to.place, ease.share(share))
+            from.offset.lerp(to.offset, ease.share(share))
         }
     }
 }
 
-/// The turn about a vector by its length (rad).
-fn quaternion(turn: DVec3) -> DQuat {
-    let angle = turn.length();
+/// The quaternion of a rotation vector (rad).
+fn quaternion(rotation: DVec3) -> DQuat {
+    let angle = rotation.length();
     if angle == 0.0 {
         return DQuat::IDENTITY;
     }
     let (sine, cosine) = libm::sincos(0.5 * angle);
-    let axis = turn / angle * sine;
+    let axis = rotation / angle * sine;
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
 }
 
@@ -195,7 +194,7 @@ mod tests {
     use super::*;
 
     fn key(time: f64, x: f64, turn: f64) -> Key {
-        Key { time, place: Place { shift: DVec3::X * x, turn: DVec3::Z * turn } }
+        Key { time, offset: Offset { shift: DVec3::X * x, rotation: DVec3::Z * turn } }
     }
 
     #[test]
@@ -215,13 +214,13 @@ mod tests {
 
     #[test]
     fn a_swing_starts_at_its_phase() {
-        let amplitude = Place { shift: DVec3::X, turn: DVec3::Z * 0.4 };
+        let amplitude = Offset { shift: DVec3::X, rotation: DVec3::Z * 0.4 };
         for (phase, share) in [(0.0, 0.0), (0.5 * PI, 1.0), (PI / 6.0, 0.5), (-0.5 * PI, -1.0)] {
             let swing = Motion::Swing { period: 0.8, phase, amplitude };
             for time in [0.0, 0.8, 8.0] {
                 let pose = swing.pose(time);
                 assert!((pose.shift - DVec3::X * share).length() < 1e-13, "{phase} {time}: {}", pose.shift);
-                assert!(pose.turn.angle_between(DQuat::from_rotation_z(0.4 * share)) < 1e-7, "{phase} {time}");
+                assert!(pose.rotation.angle_between(DQuat::from_rotation_z(0.4 * share)) < 1e-7, "{phase} {time}");
             }
             let quarter = (phase + 0.5 * PI).sin();
             assert!((swing.pose(0.2).shift.x - quarter).abs() < 1e-13);
@@ -241,7 +240,7 @@ mod tests {
 
     #[test]
     fn no_path_is_faster_than_its_greatest_speed() {
-        let amplitude = Place { shift: DVec3::X, turn: DVec3::Z };
+        let amplitude = Offset { shift: DVec3::X, rotation: DVec3::Z };
         let paths = [
             Motion::Swing { period: 0.7, phase: 0.4, amplitude },
             Motion::Keys {

@@ -1,44 +1,12 @@
-//! The kinds of elements, their faces and edges, and the springs made from them.
+//! The faces and edges of a body's elements, and the springs made from them.
 
 use super::alike::Alike;
+use super::element::{ElementKind, around, edge_table, for_each_face, ordered};
 use super::hull::Hulls;
 use super::lists::IndexLists;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::HashMap;
-
-/// Whether a body lives in the plane or in space.
-///
-/// A body in the plane is stored with `z = 0`, moves in the xy-plane only and is drawn flat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// Two coordinates; elements are polygons, listed counter-clockwise.
-    Plane,
-    /// Three coordinates.
-    Space,
-}
-
-/// What an element is, which decides its faces, its edges and how its volume is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ElementKind {
-    /// Two nodes.
-    Segment,
-    /// Three or more nodes in the plane, counter-clockwise.
-    Polygon,
-    /// Three nodes in space: a face without a volume, with two equal sides.
-    Triangle,
-    /// Four nodes in space; node 3 lies on the side to which the triangle 0, 1, 2 turns counter-clockwise.
-    Tetrahedron,
-    /// Five nodes in space: a quadrilateral 0, 1, 2, 3 in order around, and the apex 4.
-    Pyramid,
-    /// Six nodes in space: a triangle 0, 1, 2 and the opposite one 3, 4, 5.
-    Wedge,
-    /// Eight nodes in space in bit order: x fastest, then y, then z.
-    Hexahedron,
-    /// Any other number of nodes in space, in any order. Its faces are those of its convex hull at rest, and so are its
-    /// edges. Nodes within the hull are on none of them: of the named springs only those through the element hold them.
-    Other,
-}
 
 /// The faces of a body, each stored once, whether inside it or on its surface.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,77 +17,6 @@ pub struct Faces {
     pub inner: Vec<Option<u32>>,
     /// The element on the other side, into which the face looks; `None` on the surface of the body.
     pub outer: Vec<Option<u32>>,
-}
-
-/// What elements of four, five, six and eight nodes in space are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Solids {
-    /// Tetrahedra, pyramids, wedges and hexahedra, whose nodes stand in an order of their own.
-    #[default]
-    Ordered,
-    /// The convex hulls of their nodes, like elements of any other number: octahedra and bipyramids, too.
-    Convex,
-}
-
-/// The kind of an element from the number of its nodes.
-pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
-    match (dimension, nodes) {
-        (Dimension::Space, 4..) if solids == Solids::Convex => ElementKind::Other,
-        (_, 2) => ElementKind::Segment,
-        (Dimension::Plane, _) => ElementKind::Polygon,
-        (Dimension::Space, 3) => ElementKind::Triangle,
-        (Dimension::Space, 4) => ElementKind::Tetrahedron,
-        (Dimension::Space, 5) => ElementKind::Pyramid,
-        (Dimension::Space, 6) => ElementKind::Wedge,
-        (Dimension::Space, 8) => ElementKind::Hexahedron,
-        (Dimension::Space, _) => ElementKind::Other,
-    }
-}
-
-/// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
-///
-/// A polygon is its own single face and has no entry here, nor has what no table can hold; see [`Elements`].
-pub(super) fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
-    match kind {
-        ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
-        ElementKind::Triangle => &[&[0, 1, 2]],
-        ElementKind::Tetrahedron => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
-        ElementKind::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
-        ElementKind::Wedge => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
-        ElementKind::Hexahedron => {
-            &[&[0, 4, 6, 2], &[1, 3, 7, 5], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 2, 3, 1], &[4, 5, 7, 6]]
-        }
-    }
-}
-
-/// The edges of an element of a kind that has a table of faces, as positions in its own node list.
-fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
-    match kind {
-        ElementKind::Segment => &[[0, 1]],
-        ElementKind::Polygon | ElementKind::Other => &[],
-        ElementKind::Triangle => &[[0, 1], [1, 2], [0, 2]],
-        ElementKind::Tetrahedron => &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
-        ElementKind::Pyramid => &[[0, 1], [1, 2], [2, 3], [0, 3], [0, 4], [1, 4], [2, 4], [3, 4]],
-        ElementKind::Wedge => &[[0, 1], [1, 2], [0, 2], [3, 4], [4, 5], [3, 5], [0, 3], [1, 4], [2, 5]],
-        ElementKind::Hexahedron => {
-            &[[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]]
-        }
-    }
-}
-
-/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; a polygon is its
-/// own face.
-pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
-    if kind == ElementKind::Polygon {
-        return visit(nodes);
-    }
-    for face in face_table(kind) {
-        let mut own = [0; 4];
-        for (own, &at) in own.iter_mut().zip(*face) {
-            *own = nodes[at as usize];
-        }
-        visit(&own[..face.len()]);
-    }
 }
 
 /// The elements of a body with the faces of each.
@@ -142,13 +39,6 @@ impl Elements<'_> {
             ElementKind::Other => self.hulls.of(element).for_each(visit),
             kind => for_each_face(kind, &self.nodes[element], visit),
         }
-    }
-
-    /// The faces of one element as lists of nodes.
-    pub fn faces_of(&self, element: usize) -> Vec<Vec<u32>> {
-        let mut faces = Vec::new();
-        self.for_each_face(element, |face| faces.push(face.to_vec()));
-        faces
     }
 
     /// The edges of one element as pairs of nodes, smaller node first, in rising order.
@@ -311,16 +201,6 @@ pub fn assign_faces(given: &IndexLists, elements: &IndexLists, looks_out: impl F
     faces
 }
 
-/// The sides of a polygon: each node with the next.
-pub fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
-    face.iter().enumerate().map(|(at, &node)| [node, face[(at + 1) % face.len()]])
-}
-
-/// A pair with the smaller index first.
-pub fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
 /// Which springs a named topology puts on an element (paper, sections 2 and 3; Fig. 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub enum Springs {
@@ -342,19 +222,6 @@ pub enum Springs {
     /// Every pair of nodes of an element.
     #[serde(rename = "all")]
     All,
-}
-
-impl Springs {
-    /// The name that scenes use.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Edges => "edges",
-            Self::EdgesOneDiagonal => "edges+one-diagonal",
-            Self::EdgesFaceDiagonals => "edges+face-diagonals",
-            Self::EdgesBodyDiagonals => "edges+body-diagonals",
-            Self::All => "all",
-        }
-    }
 }
 
 #[cfg(test)]
@@ -380,19 +247,6 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_the_scene_format() {
-        for topology in [
-            Springs::Edges,
-            Springs::EdgesOneDiagonal,
-            Springs::EdgesFaceDiagonals,
-            Springs::EdgesBodyDiagonals,
-            Springs::All,
-        ] {
-            assert_eq!(serde_json::to_value(topology).expect("a name"), topology.name());
-        }
-    }
-
-    #[test]
     fn closed_elements_have_each_edge_in_both_directions() {
         for (kind, nodes) in [
             (ElementKind::Tetrahedron, 4),
@@ -404,7 +258,8 @@ mod tests {
             let lists = [own.as_slice()].into_iter().collect();
             let kinds = [kind];
             let element = elements(&lists, &kinds);
-            let faces = element.faces_of(0);
+            let mut faces: Vec<Vec<u32>> = Vec::new();
+            element.for_each_face(0, |face| faces.push(face.to_vec()));
             let directed: Vec<_> = faces.iter().flat_map(|face| around(face)).collect();
             for &[a, b] in &directed {
                 assert_eq!(directed.iter().filter(|&&edge| edge == [b, a]).count(), 1, "{kind:?} {a}-{b}");

@@ -1,7 +1,8 @@
-//! What a reader calls the parts of a body, and how many digits of a number are shown.
+//! What a reader calls the parts of a body, choices and units, and how many digits of a number are shown.
 
 use super::body::{Body, ElementKind};
 use glam::DVec3;
+use serde::Serialize;
 
 /// How many elements of each kind a body has, and what a reader calls that many: polygons by the number of their sides,
 /// cubes when all hexahedra are ones, and squares when all quadrilaterals are.
@@ -62,6 +63,21 @@ fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
         && is_at(5, x + z)
         && is_at(6, yz)
         && is_at(7, xy + z)
+}
+
+/// A choice as it is typed in a scene.
+pub(crate) fn typed(choice: &impl Serialize) -> String {
+    serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
+}
+
+/// SI prefixes and their factors.
+const PREFIXES: [(f64, &str); 7] =
+    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+
+/// The SI prefix that leaves one to three digits before the point of a size, and its factor.
+pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
+    // Rounding may leave a size a little below a power of a thousand.
+    PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
 /// A number with so many significant digits.

@@ -12,6 +12,7 @@ use super::{Sheet, Spread, Watch, scene};
 use crate::output::{Clock, Spent, exact};
 use crate::scene::Scene;
 use crate::sim::topology::Springs;
+use crate::sim::words::typed;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -151,7 +152,7 @@ fn block(side: u32) -> Scene {
         model = {{ kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1, passes = 2 }}
         "
     );
-    for springs in SPRINGS.map(Springs::name) {
+    for springs in SPRINGS.map(|springs| typed(&springs)) {
         text += &format!(
             "[[run]]
             name = '{springs}'
@@ -224,7 +225,7 @@ impl Ratios {
             let Spread { lower, median, upper, .. } = one.ratio;
             sheet.rows.push([
                 format!("{}³", one.side),
-                one.springs.name().to_owned(),
+                typed(&one.springs),
                 figure(per_cube),
                 figure(one.shape.median),
                 figure(one.mass_spring.median),
@@ -261,7 +262,7 @@ impl Ratios {
         for one in &self.comparisons {
             sheet.rows.push([
                 one.cubes().to_string(),
-                one.springs.name().to_owned(),
+                typed(&one.springs),
                 one.count.to_string(),
                 self.threads.to_string(),
                 self.time.name().to_owned(),
@@ -287,7 +288,7 @@ impl Ratios {
         let row = |one: &Comparison| {
             json!({
                 "cubes": one.cubes(),
-                "springs": one.springs.name(),
+                "springs": typed(&one.springs),
                 "spring_count": one.count,
                 "shape_ns": one.shape,
                 "springs_ns": one.mass_spring,

@@ -1,8 +1,8 @@
 //! `animate`: what other decoders make of the files, and what is said of frames that do not fit.
 
-use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, has_ffmpeg, lasting, python, run};
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, has_ffmpeg, lasting, python, run};
 use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
-use localshape::output::{Tags, encode};
+use localshape::output::{Shown, Tags};
 use std::path::Path;
 use std::process::Command;
 
@@ -20,11 +20,10 @@ fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
 
 fn tags(number: u64) -> Tags {
     Tags {
-        scene: "5c".repeat(32),
-        states: vec![("ab".repeat(32), "Local shape".to_owned())],
-        frame: number,
         // Taken at the end of a step, as those of scenes.
-        time: number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 },
+        shows: Shown::Frame { frame: number, time: number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 } },
+        scenes: vec!["5c".repeat(32)],
+        states: vec![("ab".repeat(32), "Local shape".to_owned())],
         version: "0.1.0".to_owned(),
         adapter: "none".to_owned(),
     }
@@ -38,7 +37,7 @@ fn put(place: &Place, folder: &str, number: u64, bytes: &[u8]) {
 /// A place with a folder of frames at 30 a second.
 fn with_frames() -> Place {
     let place = Place::new();
-    (0..COUNT).for_each(|number| put(&place, "in", number, &encode(SIZE, &pixels(number, SIZE), &tags(number))));
+    (0..COUNT).for_each(|number| put(&place, "in", number, &frame_file(SIZE, &pixels(number, SIZE), &tags(number))));
     place
 }
 
@@ -343,7 +342,7 @@ fn folders_stand_side_by_side_and_may_be_scaled() {
 fn the_comment_names_every_scene_once() {
     let place = with_frames();
     let other = "99".repeat(32);
-    put(&place, "other", 0, &encode(SIZE, &pixels(0, SIZE), &Tags { scene: other.clone(), ..tags(0) }));
+    put(&place, "other", 0, &frame_file(SIZE, &pixels(0, SIZE), &Tags { scenes: vec![other.clone()], ..tags(0) }));
     place.run("animate in other in -o out.apng --frames 0").good();
     let bytes = std::fs::read(place.path("out.apng")).unwrap();
     let scenes = format!("; scene {}, {other}; command: ", "5c".repeat(32));
@@ -421,7 +420,8 @@ fn films_are_piped_to_ffmpeg() {
 #[test]
 fn films_of_odd_frames_are_padded() {
     let place = Place::new();
-    (0..3).for_each(|number| put(&place, "odd", number, &encode([63, 47], &pixels(number, [63, 47]), &tags(number))));
+    (0..3)
+        .for_each(|number| put(&place, "odd", number, &frame_file([63, 47], &pixels(number, [63, 47]), &tags(number))));
     let script = "cat > pixels; for last; do :; done; echo film > \"$last\"";
     let ran = run(&mut with_script(&place, script, "animate odd -o out.mp4")).good();
     assert!(ran.out.starts_with("out.mp4  64×48, 3 pictures"), "{}", ran.out);
@@ -518,7 +518,7 @@ fn films_and_all_else_are_read_by_other_programs() {
     }
     let mut odd = Vec::new();
     for number in 0..COUNT {
-        put(&place, "odd", number, &encode([63, 47], &pixels(number, [63, 47]), &tags(number)));
+        put(&place, "odd", number, &frame_file([63, 47], &pixels(number, [63, 47]), &tags(number)));
         odd.push(pixels(number, [63, 47]));
     }
     for (file, size) in
@@ -601,7 +601,7 @@ fn bad(place: &Place, arguments: &str, words: &[&str]) -> Ran {
 fn frames_that_are_no_sequence_are_told() {
     let place = with_frames();
     let copy = |name: &str| {
-        (0..4).for_each(|number| put(&place, name, number, &encode(SIZE, &pixels(number, SIZE), &tags(number))))
+        (0..4).for_each(|number| put(&place, name, number, &frame_file(SIZE, &pixels(number, SIZE), &tags(number))))
     };
     place.write("empty/notes.txt", "");
     bad(&place, "empty -o out.gif", &["empty has no frames", "localshape render"]);
@@ -617,22 +617,22 @@ fn frames_that_are_no_sequence_are_told() {
         copy(name);
         put(&place, name, 2, bytes);
     };
-    with("size", &encode([32, 48], &pixels(2, [32, 48]), &tags(2)));
+    with("size", &frame_file([32, 48], &pixels(2, [32, 48]), &tags(2)));
     bad(&place, "size -o out.gif", &["size/frame_00002.png has 32×48 pixels, frame_00001.png has 64×48"]);
-    with("scene", &encode(SIZE, &pixels(2, SIZE), &Tags { scene: "99".repeat(32), ..tags(2) }));
+    with("scene", &frame_file(SIZE, &pixels(2, SIZE), &Tags { scenes: vec!["99".repeat(32)], ..tags(2) }));
     bad(&place, "scene -o out.gif", &["scene/frame_00002.png shows another scene than frame_00001.png"]);
     with(
         "runs",
-        &encode(SIZE, &pixels(2, SIZE), &Tags { states: vec![("ab".repeat(32), "Springs".to_owned())], ..tags(2) }),
+        &frame_file(SIZE, &pixels(2, SIZE), &Tags { states: vec![("ab".repeat(32), "Springs".to_owned())], ..tags(2) }),
     );
     bad(&place, "runs -o out.gif", &["runs/frame_00002.png shows the runs “Springs”", "“Local shape”"]);
-    with("time", &encode(SIZE, &pixels(2, SIZE), &Tags { time: 0.0, ..tags(2) }));
+    with("time", &frame_file(SIZE, &pixels(2, SIZE), &Tags { shows: Shown::Frame { frame: 2, time: 0.0 }, ..tags(2) }));
     bad(&place, "time -o out.gif", &["time/frame_00002.png is at 0 s, not after frame_00001.png"]);
-    with("renamed", &encode(SIZE, &pixels(2, SIZE), &tags(3)));
+    with("renamed", &frame_file(SIZE, &pixels(2, SIZE), &tags(3)));
     bad(&place, "renamed -o out.gif", &["renamed/frame_00002.png shows frame 3"]);
     with("foreign", b"GIF89a");
     bad(&place, "foreign -o out.gif", &["foreign/frame_00002.png is damaged, or no frame"]);
-    let whole = encode(SIZE, &pixels(2, SIZE), &tags(2));
+    let whole = frame_file(SIZE, &pixels(2, SIZE), &tags(2));
     with("cut", &whole[..whole.len() - 40]);
     for out in ["out.gif", "out.apng", "out.y4m"] {
         bad(&place, &format!("cut -o {out}"), &["cut/frame_00002.png: this PNG picture is damaged or cut short"]);
@@ -640,8 +640,8 @@ fn frames_that_are_no_sequence_are_told() {
     bad(&place, "in gap -o out.gif --frames 0-1,4", &["gap"]);
     bad(&place, "in gap -o out.gif", &["gap has a gap"]);
     bad(&place, "in cut -o out.gif", &["frame 4 is only in one of in and cut"]);
-    let later = Tags { time: 0.3, ..tags(3) };
-    put(&place, "later", 3, &encode(SIZE, &pixels(3, SIZE), &later));
+    let later = Tags { shows: Shown::Frame { frame: 3, time: 0.3 }, ..tags(3) };
+    put(&place, "later", 3, &frame_file(SIZE, &pixels(3, SIZE), &later));
     bad(&place, "in later -o out.gif --frames 3", &["frame 3 is at 0.1010 s in in and at 0.3000 s in later"]);
     assert!(
         place.names(".").iter().all(|name| !name.starts_with("out") && !name.starts_with('.')),

@@ -1,20 +1,19 @@
 //! `compare`: verdicts on pictures and folders of them.
 
-use crate::support::{Place, SMALL, run};
-use localshape::output::{Tags, encode};
+use crate::support::{Place, SMALL, frame_file, run};
+use localshape::output::{Shown, Tags};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
     let tags = Tags {
-        scene: "s".into(),
+        shows: Shown::Frame { frame, time: frame as f64 / 60.0 },
+        scenes: vec!["s".into()],
         states: vec![(digest(state), "Local shape".into())],
-        frame,
-        time: frame as f64 / 60.0,
         version: "0".into(),
         adapter: adapter.into(),
     };
-    encode([16, 8], bytes, &tags)
+    frame_file([16, 8], bytes, &tags)
 }
 
 /// 64 digits.
@@ -99,15 +98,14 @@ fn two_folders() {
 fn another_scene_file_is_mentioned_and_no_difference() {
     let place = Place::new();
     let tags = |scene: &str| Tags {
-        scene: scene.into(),
+        shows: Shown::Frame { frame: 0, time: 0.0 },
+        scenes: vec![scene.into()],
         states: vec![(digest("1"), "run".into())],
-        frame: 0,
-        time: 0.0,
         version: "0".into(),
         adapter: "one".into(),
     };
-    put(&place, "a.png", &encode([16, 8], &GREY, &tags("5")));
-    put(&place, "b.png", &encode([16, 8], &GREY, &tags("6")));
+    put(&place, "a.png", &frame_file([16, 8], &GREY, &tags("5")));
+    put(&place, "b.png", &frame_file([16, 8], &GREY, &tags("6")));
     let ran = place.run("compare a.png b.png").good();
     assert_eq!(ran.out, "b.png: identical\nthe scene files are not the same\n");
 }
@@ -189,8 +187,8 @@ fn put_scene(place: &Place, name: &str) {
     let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
     let mut runner = Runner::new(&scene, &[0, 1]);
     for index in 0..=scene.last_frame() {
-        let tags = Tags::new(&scene, &runner.frame(index), "one");
-        put(place, &format!("{name}/frame_{index:05}.png"), &encode([16, 8], &GREY, &tags));
+        let tags = Tags::of_frame(&scene, &runner.frame(index), "one");
+        put(place, &format!("{name}/frame_{index:05}.png"), &frame_file([16, 8], &GREY, &tags));
     }
 }
 
@@ -318,7 +316,8 @@ fn a_run_that_only_the_new_side_has_is_no_pass() {
     let with = |runs: &[&str]| {
         let states = runs.iter().map(|run| (digest("1"), (*run).to_owned())).collect();
         let [scene, version, adapter] = ["s", "0", "one"].map(str::to_owned);
-        encode([16, 8], &GREY, &Tags { scene, states, frame: 0, time: 0.0, version, adapter })
+        let shows = Shown::Frame { frame: 0, time: 0.0 };
+        frame_file([16, 8], &GREY, &Tags { shows, scenes: vec![scene], states, version, adapter })
     };
     put(&place, "was/a.png", &with(&["one"]));
     put(&place, "is/a.png", &with(&["one", "other"]));

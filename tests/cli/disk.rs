@@ -1,7 +1,7 @@
 //! A full disk: one message, nothing half-written, what was finished stays.
 #![cfg(target_os = "linux")]
 
-use crate::support::{Place, Ran, lasting, run, skip};
+use crate::support::{Place, Ran, frame_file, lasting, run, skip};
 use std::process::Command;
 
 /// Runs the program with its output in `out`, on a disk of `size` that goes when it ends, and then `after` in a shell.
@@ -71,7 +71,7 @@ fn frames_on_a_full_disk() {
 #[cfg(feature = "render")]
 #[test]
 fn animations_on_a_full_disk() {
-    use localshape::output::{Tags, encode};
+    use localshape::output::{Shown, Tags};
     let place = Place::new();
     for number in 0..4 {
         // Noise, which takes room.
@@ -80,17 +80,16 @@ fn animations_on_a_full_disk() {
             ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8
         });
         let tags = Tags {
-            scene: "5c".repeat(32),
+            shows: Shown::Frame { frame: number.into(), time: f64::from(number) / 30.0 },
+            scenes: vec!["5c".repeat(32)],
             states: vec![("ab".repeat(32), "Shape".to_owned())],
-            frame: number.into(),
-            time: f64::from(number) / 30.0,
             version: String::new(),
             adapter: String::new(),
         };
         place.write(&format!("in/frame_{number:05}.png"), "");
         std::fs::write(
             place.path(format!("in/frame_{number:05}.png")),
-            encode([320, 240], &noise.collect::<Vec<_>>(), &tags),
+            frame_file([320, 240], &noise.collect::<Vec<_>>(), &tags),
         )
         .unwrap();
     }

@@ -1,6 +1,6 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
-use crate::support::{Place, SMALL, run, skip};
+use crate::support::{Place, SMALL, frame_file, run, skip};
 use localshape::golden::Pixels;
 use localshape::gpu::{AdapterChoice, Gpu};
 
@@ -100,8 +100,7 @@ fn drawing_is_never_taken_for_physics() {
     let path = place.path("golden/frame_00004.png");
     let pixels = Pixels::read(&path).unwrap();
     std::fs::create_dir(place.path("fast")).unwrap();
-    let localshape::output::Label::Frame(tags) = pixels.label.as_ref().unwrap() else { panic!("a frame") };
-    let fast = localshape::output::encode(pixels.size, &pixels.bytes, tags);
+    let fast = frame_file(pixels.size, &pixels.bytes, pixels.label.as_ref().unwrap());
     assert_ne!(fast.len(), std::fs::read(&path).unwrap().len());
     std::fs::write(place.path("fast/frame_00004.png"), fast).unwrap();
     let same = place.run("compare golden/frame_00004.png fast/frame_00004.png").good();

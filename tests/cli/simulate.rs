@@ -1,7 +1,7 @@
 //! `simulate`: diagnostics, summary and states.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, documented, lasting};
-use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
+use crate::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting};
+use localshape::output::{Shown, Spent, Tags, Timings};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::diagnostics::Diagnostic;
@@ -282,10 +282,11 @@ fn everything_in_the_files_is_documented() {
     assert_eq!(told, found);
 
     let (text, states) = (String::new, vec![(String::new(), String::new())]);
-    let tags = Tags { scene: text(), states: states.clone(), frame: 0, time: 0.0, version: text(), adapter: text() };
-    assert_eq!(documented("frame_00000.png"), chunks(&encode([1, 1], &[0; 3], &tags)));
-    let tags = FigureTags { figure: text(), scenes: vec![], states, version: text(), adapter: text() };
-    assert_eq!(documented("NAME.png"), chunks(&encode_figure([1, 1], &[0; 3], &tags)));
+    let shows = Shown::Frame { frame: 0, time: 0.0 };
+    let tags = Tags { shows, scenes: vec![], states, version: text(), adapter: text() };
+    assert_eq!(documented("frame_00000.png"), chunks(&frame_file([1, 1], &[0; 3], &tags)));
+    let tags = Tags { shows: Shown::Figure(text()), ..tags };
+    assert_eq!(documented("NAME.png"), chunks(&frame_file([1, 1], &[0; 3], &tags)));
     assert!(include_str!("../../README.md").contains("](docs/files.md)"));
 }
 

@@ -1,5 +1,6 @@
 //! A place to run the program in, and what comes out of it.
 
+use localshape::output::{Compression, Tags, encode};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -35,6 +36,11 @@ friction = 0.3
 [view]
 size = [96, 64]
 "#;
+
+/// A picture as `render` writes it.
+pub(crate) fn frame_file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
+    encode(size, pixels, &tags.texts(), Compression::Fast)
+}
 
 /// The number of frames of [`SMALL`].
 pub(crate) const SMALL_FRAMES: usize = 7;

@@ -3,7 +3,7 @@
 use crate::support::Noise;
 use glam::{DQuat, DVec3};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
-use localshape::sim::motion::{Ease, Key, Place};
+use localshape::sim::motion::{Ease, Key, Offset};
 
 const STEP: f64 = 1e-3;
 
@@ -19,8 +19,8 @@ fn floor() -> Shape {
 /// Constant speed (m/s) and angular velocity (rad/s) from the start on.
 fn steady(speed: DVec3, spin: DVec3) -> Motion {
     let keys = vec![
-        Key { time: 0.0, place: Place::default() },
-        Key { time: 100.0, place: Place { shift: speed * 100.0, turn: spin * 100.0 } },
+        Key { time: 0.0, offset: Offset::default() },
+        Key { time: 100.0, offset: Offset { shift: speed * 100.0, rotation: spin * 100.0 } },
     ];
     Motion::Keys { keys, ease: Ease::Linear, repeat: false }
 }
@@ -77,7 +77,7 @@ fn every_shape_mirrors_the_depth_and_the_speed_along_its_normal() {
         (Shape::Capsule { from: -DVec3::Z, to: DVec3::Z, radius: 0.3 }, slant * 0.29 + DVec3::Z * 0.4, slant),
         (Shape::Capsule { from: -DVec3::Z, to: DVec3::Z, radius: 0.3 }, DVec3::Z * 1.29, DVec3::Z),
         (
-            Shape::Box { centre: DVec3::ONE, half: DVec3::new(0.5, 0.2, 0.3), turn: DQuat::IDENTITY },
+            Shape::Box { centre: DVec3::ONE, half: DVec3::new(0.5, 0.2, 0.3), rotation: DQuat::IDENTITY },
             DVec3::ONE + DVec3::new(0.1, 0.19, 0.1),
             DVec3::Y,
         ),
@@ -111,7 +111,7 @@ fn a_steadily_moving_obstacle_is_a_still_one_in_a_moving_frame() {
         floor(),
         Shape::Sphere { centre: DVec3::new(0.1, 0.0, 0.0), radius: 0.9 },
         Shape::Capsule { from: -DVec3::X, to: DVec3::X * 0.5, radius: 0.8 },
-        Shape::Box { centre: DVec3::ZERO, half: DVec3::ONE, turn: DQuat::from_rotation_y(0.4) },
+        Shape::Box { centre: DVec3::ZERO, half: DVec3::ONE, rotation: DQuat::from_rotation_y(0.4) },
     ];
     for shape in shapes {
         let mut met = 0;
@@ -148,7 +148,7 @@ fn obstacles_act_in_the_order_of_the_scene() {
 /// A steady shift of something that stands turned, `far` metres from where it was typed.
 fn turned_and_shifting(far: f64) -> Motion {
     let shift = DVec3::new(0.2, -0.1, 0.3);
-    let at = |time: f64| Key { time, place: Place { shift: shift * (time + far), turn: DVec3::Y } };
+    let at = |time: f64| Key { time, offset: Offset { shift: shift * (time + far), rotation: DVec3::Y } };
     Motion::Keys { keys: vec![at(0.0), at(1.0)], ease: Ease::Linear, repeat: false }
 }
 
@@ -163,13 +163,13 @@ fn wall_place(far: Option<f64>) -> DVec3 {
 fn a_node_on_the_surface_rebounds_if_it_approaches() {
     let mut noise = Noise(12);
     let slant = DVec3::new(0.3, 0.9, -0.2).normalize();
-    let turn = DQuat::from_xyzw(0.1, 0.3, -0.2, 0.9).normalize();
+    let rotation = DQuat::from_xyzw(0.1, 0.3, -0.2, 0.9).normalize();
     let shapes = [
         Shape::Floor { normal: slant, height: 0.7 },
         Shape::Plate { point: DVec3::new(0.1, 0.2, 0.3), normal: slant },
         Shape::Sphere { centre: DVec3::splat(0.2), radius: 2.0 },
         Shape::Capsule { from: DVec3::X, to: DVec3::new(-0.4, 0.3, 0.0), radius: 2.0 },
-        Shape::Box { centre: DVec3::new(0.1, 0.0, 0.0), half: DVec3::splat(2.0), turn },
+        Shape::Box { centre: DVec3::new(0.1, 0.0, 0.0), half: DVec3::splat(2.0), rotation },
     ];
     for (shape, far) in shapes.iter().flat_map(|shape| [None, Some(0.0), Some(1e4)].map(|far| (shape, far))) {
         let motion = far.map_or(Motion::Still, turned_and_shifting);

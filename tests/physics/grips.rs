@@ -3,7 +3,7 @@
 use crate::support::{after, lattice, shape_based, shipped, world};
 use glam::{DQuat, DVec3};
 use localshape::sim::grip::Grip;
-use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::motion::{Ease, Key, Motion, Offset};
 use localshape::sim::state::State;
 use localshape::sim::world::Surroundings;
 
@@ -36,8 +36,8 @@ fn held_nodes_stay_where_they_are_and_the_body_hangs_from_them() {
 fn dragged_nodes_follow_the_hand_and_keep_its_speed_when_let_go() {
     let body = lattice(1, 0.1);
     let keys = vec![
-        Key { time: 0.1, place: Place::default() },
-        Key { time: 0.3, place: Place { shift: DVec3::new(0.5, 0.2, 0.0), turn: DVec3::Y * 1.5 } },
+        Key { time: 0.1, offset: Offset::default() },
+        Key { time: 0.3, offset: Offset { shift: DVec3::new(0.5, 0.2, 0.0), rotation: DVec3::Y * 1.5 } },
     ];
     let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
     let nodes: Vec<u32> = (0..8).collect();
@@ -89,8 +89,8 @@ fn one_hand_takes_over_from_another_and_may_pull_far() {
     let body = lattice(1, 0.1);
     let out = |until: f64, way: f64| {
         let keys = vec![
-            Key { time: 0.0, place: Place::default() },
-            Key { time: until, place: Place { shift: DVec3::X * way, turn: DVec3::ZERO } },
+            Key { time: 0.0, offset: Offset::default() },
+            Key { time: until, offset: Offset { shift: DVec3::X * way, rotation: DVec3::ZERO } },
         ];
         Motion::Keys { keys, ease: Ease::Linear, repeat: false }
     };

@@ -8,7 +8,7 @@ use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::shape_based::ShapeBased;
 use localshape::sim::model::{ElasticModel, Report};
-use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::motion::{Ease, Key, Motion, Offset};
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
@@ -257,8 +257,8 @@ fn the_damping_limit_is_the_same_for_every_method() {
 fn the_residual_means_the_same_for_every_method() {
     let body = lattice(1, 0.1);
     let keys = vec![
-        Key { time: 0.0, place: Place::default() },
-        Key { time: 1.0, place: Place { shift: DVec3::ZERO, turn: DVec3::new(3.0, 10.0, -4.0) } },
+        Key { time: 0.0, offset: Offset::default() },
+        Key { time: 1.0, offset: Offset { shift: DVec3::ZERO, rotation: DVec3::new(3.0, 10.0, -4.0) } },
     ];
     let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
     let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
@@ -288,8 +288,8 @@ fn the_residual_means_the_same_for_every_method() {
 fn held_nodes_have_the_velocity_of_the_hand() {
     let body = lattice(2, 0.1);
     let keys = vec![
-        Key { time: 0.0, place: Place::default() },
-        Key { time: 1.0, place: Place { shift: DVec3::new(0.3, 0.1, 0.0), turn: DVec3::ZERO } },
+        Key { time: 0.0, offset: Offset::default() },
+        Key { time: 1.0, offset: Offset { shift: DVec3::new(0.3, 0.1, 0.0), rotation: DVec3::ZERO } },
     ];
     let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
     let grip = Grip { nodes: vec![0, 5, 9], from: 0.0, until: 1.0, motion };

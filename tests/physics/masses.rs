@@ -8,7 +8,7 @@ use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::shape_based::ShapeBased;
 use localshape::sim::model::{ModelParameters, Report};
-use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::motion::{Ease, Key, Motion, Offset};
 use localshape::sim::rotation::{linearised, moment, torque};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
@@ -50,8 +50,8 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let (body, stiffness, step) = (uneven(), 1e4, 0.01);
     let axis = DVec3::new(3.0, 10.0, -4.0);
     let keys = vec![
-        Key { time: 0.0, place: Place::default() },
-        Key { time: 1.0, place: Place { shift: DVec3::ZERO, turn: axis } },
+        Key { time: 0.0, offset: Offset::default() },
+        Key { time: 1.0, offset: Offset { shift: DVec3::ZERO, rotation: axis } },
     ];
     let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
     let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
@@ -66,12 +66,12 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     };
     let rest = centred(&body.rest);
     // The rotation of the forces in the first step, from the exact one at the start.
-    let solve = |a| linearised::turn(linearised::solve(a));
+    let solve = |a| linearised::rotation_by_arctangent(linearised::solve(a));
     let at_rest = |world: &World| moment(&rest, centred(&world.state().position));
     let exact = localshape::sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);
-    let first = linearised::follow(at_rest(&world), exact, 1, solve);
+    let first = linearised::iterate(at_rest(&world), exact, 1, solve);
     world.advance(1);
-    let second = linearised::follow(at_rest(&world), first, 1, solve);
+    let second = linearised::iterate(at_rest(&world), first, 1, solve);
     let inertia: f64 = body.mass.iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
     let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
     let found = world.report(0).residual(Report::ROTATION).expect("the shape model has one");

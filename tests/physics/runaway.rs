@@ -6,7 +6,7 @@ use glam::DVec3;
 use localshape::sim::contact::{Obstacle, Shape};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
-use localshape::sim::motion::{Ease, Key, Motion, Place};
+use localshape::sim::motion::{Ease, Key, Motion, Offset};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
 use localshape::sim::world::{Stepping, Surroundings, World};
@@ -26,8 +26,8 @@ fn fastest(around: Surroundings, seconds: f64) -> f64 {
 /// Over a short way at once: 200 m/s.
 fn path() -> Motion {
     let keys = vec![
-        Key { time: 0.1, place: Place::default() },
-        Key { time: 0.11, place: Place { shift: DVec3::X * 2.0, turn: DVec3::ZERO } },
+        Key { time: 0.1, offset: Offset::default() },
+        Key { time: 0.11, offset: Offset { shift: DVec3::X * 2.0, rotation: DVec3::ZERO } },
     ];
     Motion::Keys { keys, ease: Ease::Linear, repeat: false }
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
-use localshape::sim::motion::{Motion, Place};
+use localshape::sim::motion::{Motion, Offset};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
@@ -56,7 +56,7 @@ fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
 #[test]
 fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     for body in bodies() {
-        let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Place::default()) };
+        let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Offset::default()) };
         let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
         for (integrator, kernel) in ways {
             for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 7.0), (vec![], 0.0)] {

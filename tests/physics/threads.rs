@@ -7,7 +7,7 @@ use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::motion::Place;
+use localshape::sim::motion::Offset;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
@@ -20,7 +20,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
     let velocity = vec![DVec3::new(0.3, -5.0, 0.1); body.len()];
     let start = State::new(position, velocity);
-    let amplitude = Place { shift: DVec3::new(0.1, 0.2, 0.0), turn: DVec3::Z * 0.3 };
+    let amplitude = Offset { shift: DVec3::new(0.1, 0.2, 0.0), rotation: DVec3::Z * 0.3 };
     let swinging = Obstacle {
         shape: Shape::Sphere { centre: DVec3::new(0.6, -0.2, 0.6), radius: 0.4 },
         pivot: DVec3::new(0.6, 1.0, 0.6),

@@ -41,7 +41,7 @@ fn plane(view: &str) -> (Scene, Frame) {
 }
 
 fn marks(picture: &Picture, shape: MarkShape) -> Vec<Mark> {
-    picture.marks.iter().copied().filter(|mark| mark.shape == shape).collect()
+    picture.marks.iter().copied().filter(|mark| mark.shape == shape && mark.opacity == 255).collect()
 }
 
 /// The beginning and the tip of an arrow (px).

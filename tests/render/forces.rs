@@ -50,8 +50,7 @@ fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
     let picture = picture("fig3", [1280, 720]);
     assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
     // An arrow for each node of the pentagon and of the cube, and that of the key.
-    let arrow = |shape: MarkShape| matches!(shape, MarkShape::Arrow | MarkShape::FaintArrow(_));
-    assert_eq!(picture.marks.iter().filter(|mark| arrow(mark.shape)).count(), 5 + 8 + 1);
+    assert_eq!(picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow).count(), 5 + 8 + 1);
 }
 
 /// Left, top, right and bottom of a word (px).

@@ -163,8 +163,7 @@ fn every_line_becomes_thicker_and_no_word_larger() {
     let [usual, twice] = thin_and_thick(&text, 12, 2.0);
     assert_eq!(usual.words, twice.words);
     // Arrows: as many, from and to the same places, twice as wide.
-    let arrows =
-        |picture: &Picture| some(picture, |mark| matches!(mark.shape, MarkShape::Arrow | MarkShape::FaintArrow(_)));
+    let arrows = |picture: &Picture| some(picture, |mark| mark.shape == MarkShape::Arrow);
     let (thin, thick) = (arrows(&usual), arrows(&twice));
     assert!(thin.len() == thick.len() && thin.len() > 10, "{} {}", thin.len(), thick.len());
     for (thin, thick) in thin.iter().zip(&thick) {

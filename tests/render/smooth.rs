@@ -84,6 +84,7 @@ fn borders_of_flat_marks_are_smooth() {
             along: [cosine, sine],
             colour: [0; 3],
             second: [0; 3],
+            opacity: 255,
             shape,
         });
         let image = draw(gpu, &picture, 4);
@@ -97,6 +98,7 @@ fn borders_of_flat_marks_are_smooth() {
         along: Mark::UPRIGHT,
         colour: [0; 3],
         second: [0; 3],
+        opacity: 255,
         shape: MarkShape::Node,
     });
     let image = draw(gpu, &picture, 4);

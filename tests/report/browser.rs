@@ -247,9 +247,9 @@ impl Browser {
         self.mouse("mouseReleased", to, 0);
     }
 
-    /// Turns the wheel (px; up is negative).
+    /// Turns the wheel with Ctrl held down (px; up is negative).
     pub(crate) fn wheel(&mut self, [x, y]: [f64; 2], turned: f64) {
-        let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turned });
+        let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turned, "modifiers": 2 });
         self.order("Input.dispatchMouseEvent", event);
     }
 

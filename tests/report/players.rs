@@ -1,7 +1,7 @@
 //! Animations in the browser's own players: what they show first and last.
 
 use crate::browser::Browser;
-use localshape::output::{Tags, encode};
+use localshape::output::{Compression, Shown, Tags, encode};
 use serde_json::json;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -29,14 +29,14 @@ fn put_frames(folder: &Path) {
         let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
         let pixels: Vec<u8> = places.flat_map(|(x, y)| if is_ink(x, y) { INK } else { GROUND }).collect();
         let tags = Tags {
-            scene: "5c".repeat(32),
+            shows: Shown::Frame { frame: number, time: number as f64 / 30.0 },
+            scenes: vec!["5c".repeat(32)],
             states: vec![("ab".repeat(32), "Local shape".to_owned())],
-            frame: number,
-            time: number as f64 / 30.0,
             version: String::new(),
             adapter: String::new(),
         };
-        std::fs::write(folder.join(format!("frame_{number:05}.png")), encode(SIZE, &pixels, &tags)).expect("a frame");
+        let file = encode(SIZE, &pixels, &tags.texts(), Compression::Fast);
+        std::fs::write(folder.join(format!("frame_{number:05}.png")), file).expect("a frame");
     }
 }
 

@@ -505,12 +505,12 @@ fn what_is_said_to_be_enormous_is_refused_before_it_is_read() {
         error.contains("`body.npz: nodes` has 4 nodes; the limit is 3") && error.contains("--allow-large"),
         "{error}"
     );
-    let little = Limits { memory: 100, ..Limits::default() };
+    let little = Limits { corners: 5, ..Limits::default() };
     let error = place.load(SCENE, &little).unwrap_err().to_string();
-    assert!(error.contains("`body.npz: elements` takes 1 kB; the limit of all arrays is 1 kB"), "{error}");
+    assert!(error.contains("`body.npz: elements` has 6 entries; the limit is 5"), "{error}");
     // It fits, and what would be made of it does not.
-    let error = place.load(SCENE, &Limits { memory: 200, ..little }).unwrap_err().to_string();
-    assert!(error.contains("`body.npz`: this makes 4 nodes, 2 elements and up to 6 springs, about"), "{error}");
+    let error = place.load(SCENE, &Limits { springs: 5, ..Limits::default() }).unwrap_err().to_string();
+    assert!(error.contains("this makes 4 nodes, 2 elements and up to 6 springs, at least"), "{error}");
 }
 
 #[test]
@@ -622,7 +622,7 @@ fn any_bytes_in_an_archive() {
         state ^= state << 17;
         (state % bound as u64) as usize
     };
-    let small = Limits { nodes: 5000, memory: 1 << 24, file: 1 << 20 };
+    let small = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20 };
     let place = Place::new(&[]);
     for bytes in BY_NUMPY {
         for _ in 0..1500 {

@@ -494,12 +494,12 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
         SPACE,
         "[1, 1, 1]",
         "[1000, 1000, 1000]",
-        &[(5, 21, "this makes 1 003 003 001 nodes and 1 000 000 000 elements, about")],
+        &[(5, 21, "this makes 1 003 003 001 nodes and 1 000 000 000 elements, at least")],
     );
     let text = SPACE.replace("[1, 1, 1]", "[300, 300, 300]");
     let error = bad(&text).to_string();
     assert!(error.contains("27 270 901 nodes") && error.contains("GiB of memory"), "{error}");
-    assert!(error.contains("for the states of each frame; the limit is 8 200 000 nodes"), "{error}");
+    assert!(error.contains("of memory; the limit is 8 200 000 nodes"), "{error}");
     assert!(error.contains("--allow-large"), "{error}");
     case(
         SPACE,
@@ -511,7 +511,7 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
     assert!(matches!(Scene::parse(SPACE, "a", &none), Err(SceneError::Mistakes(_))));
     assert!(Scene::parse(SPACE, "a", &Limits { nodes: 8, ..none }).is_ok());
     assert!(Scene::parse(PLANE, "a", &Limits { nodes: 3, ..none }).is_err());
-    assert!(Scene::parse(SPACE, "a", &Limits { memory: 100, ..Limits::default() }).is_err());
+    assert!(Scene::parse(SPACE, "a", &Limits { corners: 7, ..Limits::default() }).is_err());
 }
 
 /// One polygon of very many corners, whose diagonals are too many although its file is small.

@@ -16,7 +16,7 @@ impl Numbers {
 }
 
 /// Small enough that a mutated count does not make a case slow.
-const SMALL: Limits = Limits { nodes: 5000, memory: 1 << 24, file: 1 << 20 };
+const SMALL: Limits = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20 };
 
 const EXPLICIT: &str = include_str!("explicit.toml");
 

@@ -1,6 +1,6 @@
 //! A comparison as a page: one HTML file that needs nothing else and works offline.
 //!
-//! The page is made of `page.html`, `page.css` and `page.js`. What it shows stands in it as JSON, the pictures too; what
+//! The page is made of `page.html`, `page.css`, `strip.js` and `page.js`. What it shows stands in it as JSON, the pictures too; what
 //! is said of the whole is written into the page itself, so that it can be read without scripts.
 
 use base64::Engine;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPT: &str = concat!(include_str!("strip.js"), include_str!("page.js"));
 
 /// The colours of a picture of differences: along silhouettes, elsewhere, and what differs too little to be seen.
 pub(super) const SILHOUETTE: [u8; 3] = [230, 159, 0];
@@ -172,7 +172,7 @@ impl Report {
             format!(
                 "<div class=\"accept\"><p id=\"accept-label\">If this is what you meant, accept it:</p>\n\
                  <div class=\"command\"><code id=\"command\" tabindex=\"0\" aria-labelledby=\"accept-label\">{}</code>\
-                 <button type=\"button\" id=\"copy\" hidden>Copy</button></div></div>",
+                 <button type=\"button\" id=\"copy\" aria-live=\"polite\" hidden>Copy</button></div></div>",
                 escaped(command)
             )
         })

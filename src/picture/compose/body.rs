@@ -1,7 +1,6 @@
 //! The body of a panel: its surfaces, lines and nodes.
 
 use super::panel::Draft;
-use crate::picture::narrow::narrow_point;
 use crate::picture::plane::node_radius;
 use crate::picture::surface::{Lines, Surroundings};
 use crate::picture::wire::Wire;
@@ -44,12 +43,13 @@ impl Draft<'_> {
 
     /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
     fn bare_lines(&self, lines: &mut Vec<Line>) {
-        let relative = |point: DVec3| narrow_point((point - self.origin) / self.side).to_array();
         for &element in &self.composer.bare {
             let nodes = &self.body.elements[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
-            let mut line = |from, to| lines.push(Line { from: relative(from), to: relative(to), kind, strength: 1.0 });
+            let mut line = |from, to| {
+                lines.push(Line { from: self.relative(from), to: self.relative(to), kind, strength: 1.0 });
+            };
             let at = |node: u32| self.position[node as usize];
             let edges = self.body.topology().edges_of(element);
             for &[a, b] in &edges {

@@ -1,9 +1,8 @@
-//! The floor of a panel, its grid, and the light that throws shadows on it.
+//! The floor of a panel, its grid and its shadows.
 
 use super::panel::Draft;
-use crate::look::{FloorStyle, Light};
+use crate::look::FloorStyle;
 use crate::picture::Floor;
-use crate::picture::camera::{Framing, Lens};
 use crate::picture::layout;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
@@ -12,8 +11,6 @@ use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// How much steeper it falls for each distance of the camera that bodies have risen: the shadow stays in the panel.
-const KEY_STEEPENING: f64 = 8.0;
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
 /// As far as its shadow goes beyond the first distance from the point looked at, up to the third one, the floor is drawn
@@ -88,7 +85,7 @@ impl Draft<'_> {
             && let Shape::Floor { normal, .. } = moving.shape
         {
             let pose = moving.pose(time);
-            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+            plane.axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
             anchor = pose.apply(moving.pivot, DVec3::ZERO);
         }
         (plane, anchor)
@@ -139,15 +136,6 @@ impl Draft<'_> {
         let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
         cell(self.composer.extent * self.composer.spread / self.side, most)
     }
-}
-
-/// Unit vector towards the key light.
-pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
-    let towards_viewer = lens.right.cross(DVec3::Y);
-    let (left, towards) = libm::sincos(light.azimuth);
-    let level = towards * towards_viewer - left * lens.right;
-    let slope = libm::tan(light.elevation) + KEY_STEEPENING * framing.rise / framing.distance;
-    (level + slope * DVec3::Y).normalize()
 }
 
 /// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most: 1, 2, 5,

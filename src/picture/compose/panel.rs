@@ -1,7 +1,6 @@
 //! One panel: its parts, one after the other.
 
 use super::Composer;
-use super::ground::key_light;
 use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
@@ -13,6 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::ramp;
+use crate::picture::shadow::key_light;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
@@ -117,7 +117,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Draws the panel, with flat marks below and above the bodies.
-    pub(super) fn panel(self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
         let mut lines = Vec::new();
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
@@ -318,6 +318,11 @@ impl<'a> Draft<'a> {
     pub(super) fn clear_of_words(&self) -> Rectangle {
         let view = &self.scene.view;
         layout::clear_of_words(self.viewport, self.scale, layout::rooms(view))
+    }
+
+    /// A point (m) as the panel has it.
+    pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
+        narrow_point((point - self.origin) / self.side).to_array()
     }
 
     /// Draws the arrows of what moves.

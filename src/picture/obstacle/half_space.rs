@@ -10,7 +10,7 @@ pub(super) type HalfSpace = (DVec3, f64);
 pub(in crate::picture) fn half_space(obstacle: &Obstacle, time: f64) -> Option<HalfSpace> {
     let Shape::Plate { point, normal } = obstacle.shape else { return obstacle.floor(time) };
     let pose = obstacle.pose(time);
-    let normal = pose.turn * normal;
+    let normal = pose.rotation * normal;
     Some((normal, normal.dot(pose.apply(point, point))))
 }
 
@@ -53,7 +53,7 @@ pub(super) fn clipped_line([mut from, mut to]: [DVec3; 2], solid: &[HalfSpace]) 
 mod tests {
     use super::*;
     use crate::sim::contact::Motion;
-    use crate::sim::motion::Place;
+    use crate::sim::motion::Offset;
     use std::f64::consts::PI;
 
     #[test]
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_plate_is_where_its_path_has_brought_it() {
-        let place = Place { shift: DVec3::new(0.0, -0.5, 0.0), turn: DVec3::new(0.0, 0.0, PI / 2.0) };
+        let place = Offset { shift: DVec3::new(0.0, -0.5, 0.0), rotation: DVec3::new(0.0, 0.0, PI / 2.0) };
         let plate = Obstacle {
             shape: Shape::Plate { point: DVec3::Y, normal: -DVec3::Y },
             motion: Motion::at(place),

@@ -52,12 +52,14 @@ impl Staging<'_> {
                 let half = 0.5 * from.distance(to) * DVec3::Y;
                 (from.midpoint(to), half, DQuat::from_rotation_arc(DVec3::Y, axis), radius)
             }
-            Shape::Box { centre, half, turn } => (place(centre), half - round(half), pose.turn * turn, round(half)),
+            Shape::Box { centre, half, rotation } => {
+                (place(centre), half - round(half), pose.rotation * rotation, round(half))
+            }
         };
         Occluder {
             centre: narrow_point((centre - self.site.origin) / self.site.side),
             half: narrow_point(half / self.site.side),
-            turn: turn.to_array().map(narrow),
+            rotation: turn.to_array().map(narrow),
             radius: narrow(radius / self.site.side),
             is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
         }

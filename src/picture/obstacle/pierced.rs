@@ -73,8 +73,8 @@ pub(super) fn height(shape: &Shape, point: DVec3) -> f64 {
             let share = if squared > 0.0 { ((point - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
             point.distance(from + share * along) - radius
         }
-        Shape::Box { centre, half, turn } => {
-            let beyond = (turn.conjugate() * (point - centre)).abs() - half;
+        Shape::Box { centre, half, rotation } => {
+            let beyond = (rotation.conjugate() * (point - centre)).abs() - half;
             beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
         }
     }

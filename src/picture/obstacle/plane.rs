@@ -98,10 +98,10 @@ impl Flat<'_> {
             Shape::Capsule { from, to, radius } => {
                 (radius > inwards).then(|| self.round([place(from), place(to)], radius, inwards))
             }
-            Shape::Box { centre, half, turn } => {
+            Shape::Box { centre, half, rotation } => {
                 let half = half - inwards;
                 let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-                let corner = |[x, y]: [f64; 2]| place(centre + turn * DVec3::new(x * half.x, y * half.y, 0.0));
+                let corner = |[x, y]: [f64; 2]| place(centre + rotation * DVec3::new(x * half.x, y * half.y, 0.0));
                 (half.x > 0.0 && half.y > 0.0).then(|| corners.map(corner).to_vec())
             }
         }

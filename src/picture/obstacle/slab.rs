@@ -4,15 +4,16 @@ use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
 use super::shapes::{FACES, corners, edges};
 use super::space::Staging;
 use crate::picture::narrow::narrow;
+use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
-use crate::picture::{Pane, PaneCorner, Slab};
-use crate::sim::contact::{Obstacle, Pose, Shape};
+use crate::picture::{Mark, Pane, PaneCorner, Slab};
+use crate::sim::contact::{Motion, Obstacle, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// Half the side of a plate, and its thickness (body sizes).
 const PLATE: f64 = 0.85;
-pub(super) const THICKNESS: f64 = 0.042;
+const THICKNESS: f64 = 0.042;
 /// A plate reaches over where the body starts by this much, unless that is farther away than `FARTHEST_EDGE`, and over
 /// nodes near it (body sizes).
 const START_MARGIN: f64 = 0.25;
@@ -43,7 +44,7 @@ impl Staging<'_> {
         let Shape::Plate { normal, .. } = obstacle.shape else { return None };
         let pose = obstacle.pose(self.site.time);
         let (middle, half) = self.span(obstacle, &pose, normal);
-        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let corner = |[x, y]: [f64; 2]| middle + x * half.x * first + y * half.y * second;
         Some([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
     }
@@ -87,11 +88,28 @@ impl Staging<'_> {
         (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
     }
 
+    /// The arrows of plates that move.
+    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
+        for obstacle in self.site.obstacles {
+            let Shape::Plate { normal, .. } = obstacle.shape else { continue };
+            if obstacle.motion == Motion::Still {
+                continue;
+            }
+            let pose = obstacle.pose(self.site.time);
+            let out = pose.rotation * normal;
+            let (middle, half) = self.span(obstacle, &pose, normal);
+            let going = self.site.going(obstacle, middle, half.max_element());
+            // Always on the side that is not the body's.
+            let arriving = going.velocity.dot(out) > 0.0;
+            pointers.draw(middle - THICKNESS * self.site.extent * out, going, arriving, 3.0, marks);
+        }
+    }
+
     /// A plate: a thin box that ends where floors begin.
     pub(super) fn plate(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
         let (middle, half) = self.span(obstacle, pose, normal);
-        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
-        let out = pose.turn * normal;
+        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
+        let out = pose.rotation * normal;
         let thickness = THICKNESS * self.site.extent;
         // Right-handed, so that faces are turned as those of a box.
         let axes = [second, first, out];
@@ -152,7 +170,7 @@ impl Staging<'_> {
                 middle += depth / along.length_squared() * along;
             }
         }
-        let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.turn * axis);
+        let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let reach = WALL * self.site.extent * self.widening;
         // Circumscribed: the circle in which it fades lies within.
         let around = (0..CORNERS).map(|at| {

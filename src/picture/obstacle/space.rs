@@ -2,12 +2,10 @@
 
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
-use super::slab::THICKNESS;
 use super::{Site, Staged};
-use crate::picture::pointer::Pointers;
 use crate::picture::skin::Skin;
-use crate::picture::{Line, Mark, Obstacles};
-use crate::sim::contact::{Motion, Shape};
+use crate::picture::{Line, Obstacles};
+use crate::sim::contact::Shape;
 use glam::DVec3;
 
 /// What is needed to draw the obstacles of one panel in space.
@@ -61,30 +59,13 @@ impl Staging<'_> {
                     let middle = ends[0].midpoint(ends[1]);
                     self.round(shape, radius, middle, &mut solids, lines, &mut staged);
                 }
-                Shape::Box { centre, half, turn } => {
-                    let axes = DVec3::AXES.map(|axis| pose.turn * (turn * axis));
+                Shape::Box { centre, half, rotation } => {
+                    let axes = DVec3::AXES.map(|axis| pose.rotation * (rotation * axis));
                     let corners = corners(pose.apply(centre, centre), axes, half);
                     self.block(&corners, axes, &mut solids, lines, &mut staged);
                 }
             }
         }
         (Obstacles { solids, slabs: self.in_order(slabs), occluders: self.occluders() }, staged)
-    }
-
-    /// The arrows of plates that move.
-    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
-        for obstacle in self.site.obstacles {
-            let Shape::Plate { normal, .. } = obstacle.shape else { continue };
-            if obstacle.motion == Motion::Still {
-                continue;
-            }
-            let pose = obstacle.pose(self.site.time);
-            let out = pose.turn * normal;
-            let (middle, half) = self.span(obstacle, &pose, normal);
-            let going = self.site.going(obstacle, middle, half.max_element());
-            // Always on the side that is not the body's.
-            let arriving = going.velocity.dot(out) > 0.0;
-            pointers.draw(middle - THICKNESS * self.site.extent * out, going, arriving, 3.0, marks);
-        }
     }
 }

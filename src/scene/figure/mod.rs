@@ -11,9 +11,9 @@ use super::Scene;
 use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
+use super::schema::schema_of;
 use crate::look::{Look, Theme};
 use crate::sim::snapshot::Diagnostic;
-use schemars::generate::SchemaSettings;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -171,13 +171,7 @@ pub fn schema() -> Value {
     SCHEMA.clone()
 }
 
-static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
-    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<file::FigureFile>().to_value();
-    super::schema::tidy(&mut schema);
-    schema["title"] = "Figure file of localshape".into();
-    schema
-});
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<file::FigureFile>("Figure file of localshape"));
 
 /// The look of a figure: that of its first scene, in another theme and with larger type if it says so, and never without a
 /// background.

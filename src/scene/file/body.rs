@@ -120,17 +120,6 @@ pub(in crate::scene) enum StartShape {
 }
 
 impl StartShape {
-    /// As scenes call it.
-    pub(in crate::scene) fn name(self) -> &'static str {
-        match self {
-            Self::Point => "point",
-            Self::Line => "line",
-            Self::Plane => "plane",
-            Self::MirrorImage => "mirror-image",
-            Self::Cloud => "cloud",
-        }
-    }
-
     /// Whether it leads or faces anywhere.
     pub(in crate::scene) fn has_direction(self) -> bool {
         matches!(self, Self::Line | Self::Plane | Self::MirrorImage)

@@ -1,6 +1,6 @@
 //! Blocks whose nodes are moved at random, and yet no element is turned inside out.
 
-use super::lattice::Grid;
+use super::grid::Grid;
 use super::random;
 use crate::sim::body::IndexLists;
 use glam::DVec3;

@@ -1,36 +1,16 @@
 //! Blocks of elements of many kinds that fit together: the cells of a lattice cut or joined at random.
 
-use super::lattice::Grid;
+use super::grid::Grid;
 use super::random;
+use crate::sim::body::IndexLists;
 
 /// Uses of random numbers, beside the axes 0 to 2 along which nodes move.
 const WISH: u64 = 3;
 const TURN: u64 = 4;
 
-/// Calls `visit` with the nodes of each element. `middle` is called for each cell that needs a node in its middle, with
-/// how many there were before and the cell, and gives that node.
-pub(super) fn visit(
-    grid: &Grid,
-    seed: u32,
-    mut middle: impl FnMut(u32, [u32; 3]) -> u32,
-    mut visit: impl FnMut(&[u32]),
-) {
-    if grid.is_flat() {
-        return visit_plane(grid, seed, visit);
-    }
-    let mut middles = 0;
-    for cell in grid.each_cell() {
-        let mut make_middle = || {
-            middles += 1;
-            middle(middles - 1, cell)
-        };
-        visit_cube(grid, seed, cell, &mut make_middle, &mut visit);
-    }
-}
-
 /// In the plane two squares side by side stay two, become a hexagon, or a pentagon and a triangle; a square that stays
 /// may be cut in two triangles. Pairs are staggered from row to row like bricks.
-fn visit_plane(grid: &Grid, seed: u32, mut visit: impl FnMut(&[u32])) {
+pub(super) fn cut_squares(grid: &Grid, seed: u32, elements: &mut IndexLists) {
     let [nx, ny, _] = grid.cells;
     for y in 0..ny {
         let mut x = 0;
@@ -39,14 +19,14 @@ fn visit_plane(grid: &Grid, seed: u32, mut visit: impl FnMut(&[u32])) {
             let is_first = x % 2 == y % 2 && x + 1 < nx;
             let wish = random::unit(seed, grid.node(cell).into(), WISH);
             if is_first && wish < 0.5 {
-                join(grid, seed, cell, wish < 0.2, &mut visit);
+                join(grid, seed, cell, wish < 0.2, elements);
                 x += 2;
             } else {
                 let [a, b, c, d] = grid.square(cell);
                 match random::hash(seed, grid.node(cell).into(), TURN) % 4 {
-                    0 => [[a, b, c], [a, c, d]].iter().for_each(|half| visit(half)),
-                    1 => [[a, b, d], [b, c, d]].iter().for_each(|half| visit(half)),
-                    _ => visit(&[a, b, c, d]),
+                    0 => [[a, b, c], [a, c, d]].iter().for_each(|half| elements.push(half)),
+                    1 => [[a, b, d], [b, c, d]].iter().for_each(|half| elements.push(half)),
+                    _ => elements.push(&[a, b, c, d]),
                 }
                 x += 1;
             }
@@ -56,16 +36,16 @@ fn visit_plane(grid: &Grid, seed: u32, mut visit: impl FnMut(&[u32])) {
 
 /// Two squares side by side as a hexagon, or without one of their four corners as a pentagon and a triangle. Both begin
 /// at a node that sees all their sides, the middle one of the lower or upper row.
-fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, visit: &mut impl FnMut(&[u32])) {
+fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, elements: &mut IndexLists) {
     let [a, b, e, f] = grid.square([x, y, z]);
     let [_, c, d, _] = grid.square([x + 1, y, z]);
     // Around: a b c below from left to right, d e f above from right to left.
     match random::hash(seed, grid.node([x, y, z]).into(), TURN) % 4 {
-        _ if whole => visit(&[b, c, d, e, f, a]),
-        0 => [&[b, c, d, e, f][..], &[a, b, f]].iter().for_each(|part| visit(part)),
-        1 => [&[b, d, e, f, a][..], &[b, c, d]].iter().for_each(|part| visit(part)),
-        2 => [&[e, f, a, b, c][..], &[c, d, e]].iter().for_each(|part| visit(part)),
-        _ => [&[e, a, b, c, d][..], &[e, f, a]].iter().for_each(|part| visit(part)),
+        _ if whole => elements.push(&[b, c, d, e, f, a]),
+        0 => [&[b, c, d, e, f][..], &[a, b, f]].iter().for_each(|part| elements.push(part)),
+        1 => [&[b, d, e, f, a][..], &[b, c, d]].iter().for_each(|part| elements.push(part)),
+        2 => [&[e, f, a, b, c][..], &[c, d, e]].iter().for_each(|part| elements.push(part)),
+        _ => [&[e, a, b, c, d][..], &[e, f, a]].iter().for_each(|part| elements.push(part)),
     }
 }
 
@@ -107,13 +87,17 @@ fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool>
 const FACES: [[[usize; 4]; 2]; 3] =
     [[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]];
 
-fn visit_cube(
-    grid: &Grid,
-    seed: u32,
-    cell: [u32; 3],
-    make_middle: &mut impl FnMut() -> u32,
-    visit: &mut impl FnMut(&[u32]),
-) {
+/// In space a cube stays whole, becomes two wedges, or pyramids and tetrahedra about a node in its middle. The corners of
+/// the cubes with such a node; these nodes follow those of the grid in this order.
+pub(super) fn cut_cubes(grid: &Grid, seed: u32, elements: &mut IndexLists) -> Vec<[u32; 8]> {
+    let mut middles = Vec::new();
+    for cell in grid.each_cell() {
+        cut_cube(grid, seed, cell, &mut middles, elements);
+    }
+    middles
+}
+
+fn cut_cube(grid: &Grid, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]>, elements: &mut IndexLists) {
     let corners = grid.corners(cell);
     let diagonals: [[Option<bool>; 2]; 3] = std::array::from_fn(|axis| {
         let mut above = cell;
@@ -122,7 +106,7 @@ fn visit_cube(
     });
     let is_square = |axis: usize| diagonals[axis] == [None, None];
     if (0..3).all(is_square) && wish(grid, seed, cell) != Wish::Middle {
-        return visit(&corners);
+        return elements.push(&corners);
     }
     for axis in 0..3 {
         if let [Some(low), Some(high)] = diagonals[axis]
@@ -132,23 +116,24 @@ fn visit_cube(
             for triangle in halves(FACES[axis][0], low) {
                 // As seen from inside, and the same on the other side of the cube.
                 let [a, b, c] = [triangle[0], triangle[2], triangle[1]];
-                visit(&[a, b, c, a | 1 << axis, b | 1 << axis, c | 1 << axis].map(|at| corners[at]));
+                elements.push(&[a, b, c, a | 1 << axis, b | 1 << axis, c | 1 << axis].map(|at| corners[at]));
             }
             return;
         }
     }
-    let middle = make_middle();
+    let middle = grid.len() as u32 + middles.len() as u32;
+    middles.push(corners);
     for (faces, diagonals) in FACES.iter().zip(diagonals) {
         for (&face, diagonal) in faces.iter().zip(diagonals) {
             match diagonal {
                 None => {
                     let [a, b, c, d] = face.map(|at| corners[at]);
-                    visit(&[a, d, c, b, middle]);
+                    elements.push(&[a, d, c, b, middle]);
                 }
                 Some(diagonal) => {
                     for triangle in halves(face, diagonal) {
                         let [a, b, c] = triangle.map(|at| corners[at]);
-                        visit(&[a, c, b, middle]);
+                        elements.push(&[a, c, b, middle]);
                     }
                 }
             }

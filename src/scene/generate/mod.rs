@@ -2,6 +2,7 @@
 //!
 //! Each says first how large it will be, then makes itself. What is typed has been checked before.
 
+mod grid;
 mod irregular;
 mod lattice;
 mod mixed;
@@ -13,8 +14,8 @@ pub(super) use start::brought_to_start;
 
 use super::file::BodyFile;
 use super::file::{BarsFile, CellsFile, DiscFile, LatticeFile, PolygonFile, SideFile};
+use super::limits::BodySize;
 use crate::sim::body::{Dimension, IndexLists};
-use crate::sim::census::Census;
 use glam::DVec3;
 
 /// A body that a scene names by a rule.
@@ -60,15 +61,14 @@ impl<'a> Generator<'a> {
         if coordinates == 2 { Dimension::Plane } else { Dimension::Space }
     }
 
-    /// How large the body will be. A mixed block is gone through for that, if its corners alone are no more nodes than
-    /// `most_nodes`; else it is said to be as large as such a block can be.
-    pub(super) fn census(self, most_nodes: u64) -> Census {
+    /// How large the body will be, at most.
+    pub(super) fn size(self) -> BodySize {
         match self {
-            Self::Lattice(typed) => lattice::census(typed, most_nodes),
-            Self::Polygon(typed) => shapes::polygon_census(typed),
-            Self::Fan(typed) => shapes::disc_census(1, typed.sides),
-            Self::Disc(typed) => shapes::disc_census(typed.rings, typed.sectors),
-            Self::Bars(typed) => shapes::bars_census(typed, self.dimension()),
+            Self::Lattice(typed) => lattice::size(typed),
+            Self::Polygon(typed) => shapes::polygon_size(typed),
+            Self::Fan(typed) => shapes::disc_size(1, typed.sides),
+            Self::Disc(typed) => shapes::disc_size(typed.rings, typed.sectors),
+            Self::Bars(typed) => shapes::bars_size(typed),
         }
     }
 

@@ -2,28 +2,22 @@
 
 use super::Made;
 use crate::scene::file::{BarsFile, PolygonFile};
-use crate::sim::body::{Dimension, IndexLists, Solids};
-use crate::sim::census::Census;
+use crate::scene::limits::BodySize;
+use crate::sim::body::IndexLists;
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-fn census(dimension: Dimension, nodes: u128, elements: impl IntoIterator<Item = (usize, u128)>) -> Census {
-    let elements: BTreeMap<_, _> = elements.into_iter().filter(|&(_, count)| count > 0).collect();
-    Census { dimension, nodes, solids: Solids::Ordered, elements, lattice: false, springs: None }
+pub(super) fn polygon_size(typed: &PolygonFile) -> BodySize {
+    BodySize::new(typed.sides.into(), [(typed.sides as usize, 1)])
 }
 
-pub(super) fn polygon_census(typed: &PolygonFile) -> Census {
-    census(Dimension::Plane, typed.sides.into(), [(typed.sides as usize, 1)])
-}
-
-pub(super) fn disc_census(rings: u32, sectors: u32) -> Census {
+pub(super) fn disc_size(rings: u32, sectors: u32) -> BodySize {
     let (rings, sectors) = (u128::from(rings), u128::from(sectors));
-    census(Dimension::Plane, 1 + rings * sectors, [(3, sectors), (4, (rings - 1) * sectors)])
+    BodySize::new(1 + rings * sectors, [(3, sectors), (4, (rings - 1) * sectors)])
 }
 
-pub(super) fn bars_census(typed: &BarsFile, dimension: Dimension) -> Census {
-    census(dimension, u128::from(typed.count) + 1, [(2, typed.count.into())])
+pub(super) fn bars_size(typed: &BarsFile) -> BodySize {
+    BodySize::new(u128::from(typed.count) + 1, [(2, typed.count.into())])
 }
 
 /// The corner of a regular polygon, counted counter-clockwise from the left end of its lowest side, about its middle.
@@ -83,11 +77,10 @@ mod tests {
     use crate::sim::body::ElementKind;
     use crate::sim::diagnose::volume_by_faces;
 
-    fn assert_census(made: &Made, census: &Census) {
-        assert_eq!(made.nodes.len() as u128, census.nodes);
-        let mut counted = BTreeMap::new();
-        made.elements.iter().for_each(|nodes| *counted.entry(nodes.len()).or_insert(0) += 1);
-        assert_eq!(counted, census.elements);
+    fn assert_size(made: &Made, said: &BodySize) {
+        assert_eq!(made.nodes.len() as u128, said.nodes);
+        assert_eq!(made.elements.len() as u128, said.count());
+        assert_eq!(made.elements.indices().len() as u128, said.corners());
     }
 
     fn area(made: &Made) -> f64 {
@@ -101,9 +94,9 @@ mod tests {
             let typed = PolygonFile { sides, radius: Positive(0.5) };
             let expected = 0.5 * f64::from(sides) * 0.25 * (2.0 * PI / f64::from(sides)).sin();
             let (polygon, fan, disc) = (polygon(&typed), disc(0.5, 1, sides), disc(0.5, 4, sides));
-            assert_census(&polygon, &polygon_census(&typed));
-            assert_census(&fan, &disc_census(1, sides));
-            assert_census(&disc, &disc_census(4, sides));
+            assert_size(&polygon, &polygon_size(&typed));
+            assert_size(&fan, &disc_size(1, sides));
+            assert_size(&disc, &disc_size(4, sides));
             for made in [&polygon, &fan, &disc] {
                 assert!((area(made) / expected - 1.0).abs() < 1e-12, "{sides}");
                 let lowest = made.nodes.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
@@ -117,7 +110,7 @@ mod tests {
     fn bars_lie_end_to_end() {
         let typed = BarsFile { count: 8, length: Positive(0.1), direction: Coordinates(vec![0.0, 3.0]) };
         let made = bars(&typed, DVec3::Y);
-        assert_census(&made, &bars_census(&typed, Dimension::Plane));
+        assert_size(&made, &bars_size(&typed));
         assert_eq!((made.nodes[0], &made.elements[7]), (DVec3::ZERO, &[7, 8][..]));
         assert!((made.nodes[8] - DVec3::Y * 0.8).length() < 1e-15);
     }

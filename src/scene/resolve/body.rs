@@ -7,10 +7,10 @@ use crate::reading::report::{Report, Way};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
-use crate::scene::limits::{Demand, Excess, Limits};
+use crate::scene::limits::{BodySize, Excess, Limits};
 use crate::sim::body::{Body, Dimension, Solids};
-use crate::sim::census::Census;
 use crate::sim::state::State;
+use crate::sim::words::typed;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -77,9 +77,7 @@ fn generated(
         Generator::Disc(_) => (&[Way::Key("body"), Way::Key("disc")], "use fewer rings or sectors"),
         Generator::Bars(_) => (&[Way::Key("body"), Way::Key("bars"), Way::Key("count")], "use fewer bars"),
     };
-    let solids = solids(file);
-    let census = Census { solids, ..generator.census(limits.nodes) };
-    if let Some(Excess { message, help, run }) = beyond(census, less, runs, limits) {
+    if let Some(Excess { message, help, run }) = generator.size().beyond(runs, limits, less) {
         match run {
             Some(run) => report.at(&springs_of(run), message, help),
             None => report.at(path, message, help),
@@ -93,7 +91,7 @@ fn generated(
     if report.total() > before {
         return None;
     }
-    let body = Body::new(dimension, rest, mass, elements, solids, None);
+    let body = Body::new(dimension, rest, mass, elements, solids(file), None);
     let of_cells = generator.side();
     let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
     Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
@@ -150,10 +148,8 @@ fn listed(
     let mut elements = BTreeMap::new();
     lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
     let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
-    let (dimension, nodes) = (lists.dimension, lists.nodes.len() as u128);
-    let solids = solids(file);
-    let census = Census { dimension, nodes, solids, elements, lattice: false, springs };
-    if let Some(Excess { message, help, run }) = beyond(census, "use fewer nodes", runs, limits) {
+    let size = BodySize { springs, ..BodySize::new(lists.nodes.len() as u128, elements) };
+    if let Some(Excess { message, help, run }) = size.beyond(runs, limits, "use fewer nodes") {
         match (run, &file.file) {
             (Some(run), _) => report.at(&springs_of(run), message, help),
             (None, None) => report.at_key(&[Way::Key("body"), Way::Key("nodes")], message, help),
@@ -163,6 +159,7 @@ fn listed(
         }
         return None;
     }
+    let (dimension, solids) = (lists.dimension, solids(file));
     elements::check(&lists, solids, flawed, report);
     let count = lists.nodes.len();
     for (key, length) in [
@@ -170,7 +167,7 @@ fn listed(
         ("positions", lists.positions.as_ref().map(Vec::len)),
         ("velocities", lists.velocities.as_ref().map(Vec::len)),
     ] {
-        length.into_iter().for_each(|length| check_count(&lists.place, key, length, count, report));
+        length.into_iter().for_each(|length| check_count(&lists.source, key, length, count, report));
     }
     if file.file.is_some() {
         check_exclusive(&lists, lists.masses.is_some() && file.mass.is_some(), "mass", "masses", report);
@@ -192,16 +189,6 @@ fn listed(
 /// What elements of some numbers of nodes are meant to be.
 fn solids(file: &BodyFile) -> Solids {
     if file.convex { Solids::Convex } else { Solids::Ordered }
-}
-
-/// Whether a body and its runs are too large, and what would make it less. A run with a mistake counts as none.
-fn beyond(body: Census, less: &'static str, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
-    let mut models: Vec<usize> = Vec::new();
-    let known = runs.iter().enumerate().filter_map(|(at, run)| Some((at, &run.as_ref()?.model)));
-    let demand = Demand::new(body, less, known.map(|(at, model)| (models.push(at), model).1));
-    let mut excess = demand.beyond(limits).or_else(|| demand.denied())?;
-    excess.run = excess.run.map(|run| models[run]);
-    Some(excess)
 }
 
 /// The place of a run's springs.
@@ -282,7 +269,7 @@ fn check_use(shape: StartShape, report: &mut Report<'_>) {
     for (key, used, about) in about {
         let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
         if !used && report.is_typed(&path) {
-            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(shape.name()));
+            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
             report.at_key(&path, message, "leave it out, or take another shape".to_owned());
         }
     }

@@ -1,12 +1,12 @@
 //! Checks of elements, springs and faces that a body lists.
 
-use super::lists::{Lists, Place};
+use super::lists::{ListSource, Lists};
 use crate::reading::report::Report;
 use crate::reading::words::{count, list};
 use crate::sim::alike::Alike;
 use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
 use crate::sim::diagnose::volume_by_faces;
-use crate::sim::topology;
+use crate::sim::element::kind;
 use glam::DVec3;
 
 /// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
@@ -16,19 +16,19 @@ const FLAT: f64 = 1e-12;
 /// Reports every wrong index, repeated node, repeated element or spring, element without extent or inside out, and every
 /// node that nothing holds. `flawed`: there were mistakes before, and nothing is said then that may follow from them.
 pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
-    let Lists { place, nodes, elements, springs, faces, .. } = lists;
+    let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
     let mut sound = !flawed;
     let mut distinct = Vec::new();
     let mut known = Alike::new(elements.len());
     for (at, element) in elements.iter().enumerate() {
-        if !check_indices(place, "elements", at, element, node_count, report) {
+        if !check_indices(source, "elements", at, element, node_count, report) {
             sound = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(place, "elements", at, |at| &elements[at], &mut known, report) {
+        if !repeated(source, "elements", at, |at| &elements[at], &mut known, report) {
             distinct.push(at);
         }
     }
@@ -41,20 +41,20 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let springs = springs.as_deref().unwrap_or_default();
     let mut known = Alike::new(springs.len());
     for (at, spring) in springs.iter().enumerate() {
-        if check_indices(place, "springs", at, spring, node_count, report) {
+        if check_indices(source, "springs", at, spring, node_count, report) {
             spring.iter().for_each(|&node| held[node as usize] = true);
-            repeated(place, "springs", at, |at| &springs[at], &mut known, report);
+            repeated(source, "springs", at, |at| &springs[at], &mut known, report);
         } else {
             sound = false;
         }
     }
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
-        check_indices(place, "faces", at, face, node_count, report);
+        check_indices(source, "faces", at, face, node_count, report);
     }
     // A wrong index leaves the node that was meant without an element: said once is enough.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        place.tell(report, "nodes", &[node], message, "take it out, or list it in an element".to_owned());
+        source.tell(report, "nodes", &[node], message, "take it out, or list it in an element".to_owned());
     }
 }
 
@@ -71,13 +71,13 @@ impl Lists {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
-        let name = || self.place.name("elements", &[at]);
-        let mut tell = |message, help| self.place.tell(report, "elements", &[at], message, help);
+        let name = || self.source.name("elements", &[at]);
+        let mut tell = |message, help| self.source.tell(report, "elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
             return tell(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
         }
-        let kind = topology::kind(self.dimension, solids, element.len());
+        let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
             // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
             ElementKind::Segment => return,
@@ -140,15 +140,15 @@ struct Disorder {
 impl Disorder {
     /// Reports each; all at once, if all elements have the same mistake: it is one of whatever wrote them.
     fn tell(self, lists: &Lists, report: &mut Report<'_>) {
-        let place = &lists.place;
+        let source = &lists.source;
         match self.common(lists) {
-            Some((message, help)) => place.tell(report, "elements", &[], message, help),
+            Some((message, help)) => source.tell(report, "elements", &[], message, help),
             None => {
                 for (at, wrong, kind) in self.found {
                     // There may be millions.
                     if !report.only_counted() {
                         let (message, help) = told(lists, at, wrong, kind);
-                        place.tell(report, "elements", &[at], message, help);
+                        source.tell(report, "elements", &[at], message, help);
                     }
                 }
             }
@@ -193,14 +193,14 @@ impl Disorder {
                 ("are turned inside out at rest", help)
             }
         };
-        let (count, name) = (count(self.ordered as u128), lists.place.name("elements", &[]));
+        let (count, name) = (count(self.ordered as u128), lists.source.name("elements", &[]));
         Some((format!("all {count} elements of `{name}` {what}"), help))
     }
 }
 
 /// What is wrong with one element, and what helps.
 fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
-    let (name, element) = (lists.place.name("elements", &[at]), &lists.elements[at]);
+    let (name, element) = (lists.source.name("elements", &[at]), &lists.elements[at]);
     match (wrong, kind) {
         (Wrong::Flat, ElementKind::Polygon) => {
             (format!("`{name}` has no area: its nodes are on a line, or its sides cross"), None)
@@ -258,7 +258,14 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
 }
 
 /// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
-fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
+fn check_indices(
+    source: &ListSource,
+    key: &str,
+    at: usize,
+    list: &[u32],
+    nodes: usize,
+    report: &mut Report<'_>,
+) -> bool {
     /// So few are compared with each other faster than they are sorted.
     const FEW: usize = 16;
     let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
@@ -270,8 +277,8 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
     let mut order: Vec<usize> = (0..list.len()).collect();
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
-        let message = format!("node {} stands twice in `{}`", list[pair[1]], place.name(key, &[at]));
-        place.tell(report, key, &[at, pair[1]], message, None);
+        let message = format!("node {} stands twice in `{}`", list[pair[1]], source.name(key, &[at]));
+        source.tell(report, key, &[at, pair[1]], message, None);
         sound = false;
     }
     for (entry, &node) in list.iter().enumerate().filter(|&(_, &node)| node as usize >= nodes) {
@@ -279,7 +286,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        place.tell(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
+        source.tell(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
         sound = false;
     }
     sound
@@ -287,7 +294,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
 
 /// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
 fn repeated<'l>(
-    place: &Place,
+    source: &ListSource,
     key: &str,
     at: usize,
     list: impl Fn(usize) -> &'l [u32],
@@ -299,9 +306,9 @@ fn repeated<'l>(
         known.put(at, list(at));
     }
     if first != at {
-        let [this, other] = [at, first].map(|at| place.name(key, &[at]));
+        let [this, other] = [at, first].map(|at| source.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        place.tell(report, key, &[at], message, "take one of them out".to_owned());
+        source.tell(report, key, &[at], message, "take one of them out".to_owned());
     }
     first != at
 }

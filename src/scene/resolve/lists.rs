@@ -3,11 +3,10 @@
 use super::vector;
 use crate::reading::beside::{missing, similar};
 use crate::reading::report::{Report, Way, written};
-use crate::reading::words::size;
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
-use crate::scene::npz::{Array, Npz, Numbers};
+use crate::scene::npz::{Array, Npz, Values};
 use crate::scene::structure::LARGEST;
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
@@ -16,14 +15,14 @@ use std::path::Path;
 
 /// Where the lists stand.
 #[derive(Clone, Debug)]
-pub(super) enum Place {
+pub(super) enum ListSource {
     /// In the scene itself.
     Scene,
     /// In a file of this name.
     File(String),
 }
 
-impl Place {
+impl ListSource {
     /// How a list or an entry is called.
     pub(super) fn name(&self, key: &str, at: &[usize]) -> String {
         let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
@@ -71,7 +70,7 @@ impl Place {
 /// What a body lists.
 #[derive(Clone, Debug)]
 pub(super) struct Lists {
-    pub(super) place: Place,
+    pub(super) source: ListSource,
     pub(super) dimension: Dimension,
     /// Rest positions (m).
     pub(super) nodes: Vec<DVec3>,
@@ -102,7 +101,7 @@ impl Lists {
         let all =
             |typed: &Option<Vec<Vec<u32>>>| Some(typed.as_ref()?.iter().map(Vec::as_slice).collect::<IndexLists>());
         Some(Self {
-            place: Place::Scene,
+            source: ListSource::Scene,
             dimension,
             nodes: points(&file.nodes, "nodes")?,
             elements: all(&file.elements).unwrap_or_default(),
@@ -138,7 +137,7 @@ impl Lists {
             }
         };
         let before = report.total();
-        let mut reader = Reader { npz, place: Place::File(name.to_owned()), limits, left: limits.memory, report };
+        let mut reader = Reader { npz, source: ListSource::File(name.to_owned()), limits, report };
         let lists = reader.lists();
         (report.total() == before).then_some(lists).flatten()
     }
@@ -203,21 +202,19 @@ const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions",
 /// Reads the arrays of one archive.
 struct Reader<'a, 't> {
     npz: Npz,
-    place: Place,
+    source: ListSource,
     limits: &'a Limits,
-    /// What may still be read (bytes).
-    left: u64,
     report: &'a mut Report<'t>,
 }
 
 impl Reader<'_, '_> {
     fn tell(&mut self, key: &str, at: &[usize], message: String, help: Option<String>) {
-        self.place.tell(self.report, key, at, message, help);
+        self.source.tell(self.report, key, at, message, help);
     }
 
     /// Says something that begins with the name of an array or of one of its places.
     fn say(&mut self, key: &str, at: &[usize], message: &str) {
-        let message = format!("`{}` {message}", self.place.name(key, at));
+        let message = format!("`{}` {message}", self.source.name(key, at));
         self.tell(key, at, message, None);
     }
 
@@ -229,19 +226,11 @@ impl Reader<'_, '_> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
-            let message = format!("`{}` is no array that a body has", self.place.name(name, &[]));
+            let message = format!("`{}` is no array that a body has", self.source.name(name, &[]));
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
-            [rows, 2 | 3] => {
-                if rows > self.limits.nodes {
-                    let (rows, most) = (count(rows.into()), count(self.limits.nodes.into()));
-                    let message = format!("`{}` has {rows} nodes; the limit is {most}", self.place.name("nodes", &[]));
-                    self.tell("nodes", &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
-                    return None;
-                }
-                self.numbers("nodes", &array)
-            }
+            [_, 2 | 3] => self.numbers("nodes", &array),
             _ => {
                 self.wrong_shape("nodes", &array, "one row for each node with 2 or 3 coordinates");
                 None
@@ -256,15 +245,15 @@ impl Reader<'_, '_> {
         let positions = self.optional("positions").and_then(|array| self.vectors("positions", &array, columns));
         let velocities = self.optional("velocities").and_then(|array| self.vectors("velocities", &array, columns));
         let masses = self.optional("masses").and_then(|array| self.masses(&array));
-        let (nodes, elements, place) = (nodes?, elements?, self.place.clone());
-        Some(Lists { place, dimension, nodes, elements, springs, faces, positions, velocities, masses })
+        let (nodes, elements, source) = (nodes?, elements?, self.source.clone());
+        Some(Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
     }
 
     /// The head of an array that must be there.
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.optional_head(key);
         if found.is_none() {
-            let Place::File(file) = &self.place else { return None };
+            let ListSource::File(file) = &self.source else { return None };
             let message = format!("`{file}` has no array `{key}`");
             self.report.at(&[Way::Key("body"), Way::Key("file")], message, None);
         }
@@ -295,16 +284,21 @@ impl Reader<'_, '_> {
         self.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
     }
 
-    /// The numbers of an array with the length of its rows, unless all arrays together are too large.
-    fn numbers(&mut self, key: &str, array: &Array) -> Option<(u64, Numbers)> {
-        let bytes = array.bytes().unwrap_or(u64::MAX);
-        if bytes > self.left {
-            let (needed, most) = (array.size_in_words(), size(self.limits.memory.into()));
-            let message = format!("`{}` takes {needed}; the limit of all arrays is {most}", self.place.name(key, &[]));
+    /// The numbers of an array with the length of its rows, unless it is too large.
+    fn numbers(&mut self, key: &str, array: &Array) -> Option<(u64, Values)> {
+        let all: u64 = array.shape.iter().product();
+        let (length, limit, what) = match key {
+            "elements" | "faces" => (all, self.limits.corners, "entries"),
+            "springs" => (array.shape[0], self.limits.springs, "springs"),
+            "nodes" => (array.shape[0], self.limits.nodes, "nodes"),
+            _ => (array.shape[0], self.limits.nodes, "rows"),
+        };
+        if length > limit {
+            let (name, length, limit) = (self.source.name(key, &[]), count(length.into()), count(limit.into()));
+            let message = format!("`{name}` has {length} {what}; the limit is {limit}");
             self.tell(key, &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
             return None;
         }
-        self.left -= bytes;
         match self.npz.numbers(array) {
             Ok(numbers) => Some((array.shape.get(1).copied().unwrap_or(1), numbers)),
             Err(message) => {
@@ -315,7 +309,7 @@ impl Reader<'_, '_> {
     }
 
     /// A number that is finite and not too large; zero after a mistake.
-    fn number(&mut self, key: &str, numbers: &Numbers, at: &[usize]) -> f64 {
+    fn number(&mut self, key: &str, numbers: &Values, at: &[usize]) -> f64 {
         let number = numbers.double(at[0], at.get(1).copied().unwrap_or(0));
         if number.abs() <= LARGEST {
             return number;
@@ -326,7 +320,7 @@ impl Reader<'_, '_> {
         0.0
     }
 
-    fn points(&mut self, key: &str, numbers: &Numbers) -> Vec<DVec3> {
+    fn points(&mut self, key: &str, numbers: &Values) -> Vec<DVec3> {
         let flat = numbers.columns() == 2;
         let point = |row| {
             let z = if flat { 0.0 } else { self.number(key, numbers, &[row, 2]) };
@@ -369,7 +363,7 @@ impl Reader<'_, '_> {
     }
 
     /// The numbers of an array of indices with rows of a length.
-    fn indices(&mut self, key: &str, array: &Array, fits: impl Fn(u64) -> bool, expected: &str) -> Option<Numbers> {
+    fn indices(&mut self, key: &str, array: &Array, fits: impl Fn(u64) -> bool, expected: &str) -> Option<Values> {
         if array.shape.len() != 2 || !fits(array.shape[1]) {
             self.wrong_shape(key, array, expected);
             return None;
@@ -383,7 +377,7 @@ impl Reader<'_, '_> {
     }
 
     /// One index, or `None` after a mistake.
-    fn index(&mut self, key: &str, numbers: &Numbers, at: [usize; 2]) -> Option<u32> {
+    fn index(&mut self, key: &str, numbers: &Values, at: [usize; 2]) -> Option<u32> {
         let number = numbers.whole(at[0], at[1]);
         let index = u32::try_from(number).ok();
         if index.is_none() {
@@ -430,11 +424,11 @@ impl Reader<'_, '_> {
 }
 
 /// Reports a list that has not one entry for each node.
-pub(super) fn check_count(place: &Place, key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
+pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
     if length != nodes {
-        let (name, entries) = (place.name(key, &[]), if length == 1 { "entry" } else { "entries" });
+        let (name, entries) = (source.name(key, &[]), if length == 1 { "entry" } else { "entries" });
         let message = format!("`{name}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
-        place.tell_key(report, key, message);
+        source.tell_key(report, key, message);
     }
 }
 
@@ -442,7 +436,7 @@ pub(super) fn check_count(place: &Place, key: &str, length: usize, nodes: usize,
 pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
     if typed {
         let path = [Way::Key("body"), Way::Key(key)];
-        let message = format!("`{}` and `{}` exclude each other", written(&path), lists.place.name(array, &[]));
+        let message = format!("`{}` and `{}` exclude each other", written(&path), lists.source.name(array, &[]));
         report.at_key(&path, message, "keep one".to_owned());
     }
 }

@@ -205,7 +205,7 @@ fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut R
 fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<View> {
     let Physics { gravity, body, obstacles, grips, runs } = physics;
     let (body, obstacles) = (body.as_ref()?, obstacles.as_ref()?);
-    let around = look::Around {
+    let around = look::Subject {
         body: &body.body,
         initial: &body.initial,
         side: body.side,
@@ -260,7 +260,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
 
 /// The camera that a scene has if its file says nothing of one.
 pub(super) fn camera(scene: &Scene) -> Camera {
-    let around = look::Around {
+    let around = look::Subject {
         body: &scene.body,
         initial: &scene.initial,
         side: scene.view.side,

@@ -4,7 +4,7 @@ use super::{direction, vector};
 use crate::reading::report::{Report, Way, written};
 use crate::scene::file::{Coordinates, MotionFile, RotationFile, SwingFile};
 use crate::sim::body::Dimension;
-use crate::sim::motion::{Key, Motion, Place};
+use crate::sim::motion::{Key, Motion, Offset};
 use glam::DVec3;
 
 /// The unit axis of a turn; a mistake if there is one too few or too many.
@@ -35,25 +35,25 @@ pub(super) fn axis(
 }
 
 /// A shift and a turn.
-fn place(
+fn offset(
     shift: Option<&Coordinates>,
     rotation: Option<&RotationFile>,
     dimension: Dimension,
     path: &[Way<'_>],
     report: &mut Report<'_>,
-) -> Option<Place> {
+) -> Option<Offset> {
     let shift = match shift {
         Some(typed) => vector(typed, dimension, &[path, &[Way::Key("shift")]].concat(), report),
         None => Some(DVec3::ZERO),
     };
-    let turn = match rotation {
+    let rotation = match rotation {
         Some(typed) => {
             let axis = axis(typed.axis.as_ref(), dimension, &[path, &[Way::Key("rotation")]].concat(), report);
             axis.map(|axis| axis * typed.angle)
         }
         None => Some(DVec3::ZERO),
     };
-    Some(Place { shift: shift?, turn: turn? })
+    Some(Offset { shift: shift?, rotation: rotation? })
 }
 
 /// A path from key to key. With a single key it stays there.
@@ -79,8 +79,8 @@ pub(super) fn keys(
             );
             in_order = false;
         }
-        let place = place(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
-        keys.extend(place.map(|place| Key { time: key.time, place }));
+        let offset = offset(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
+        keys.extend(offset.map(|offset| Key { time: key.time, offset }));
     }
     if keys.len() < typed.keys.len() || !in_order {
         return None;
@@ -91,7 +91,7 @@ pub(super) fn keys(
             report.at(path, message, "add keys, or take `repeat` out".to_owned());
             return None;
         }
-        if !same(first.place, last.place) {
+        if !same(first.offset, last.offset) {
             let message = format!("`{}` repeats, but does not end where it begins: it would jump", written(path));
             let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
             report.at(&[path, &[Way::Key("keys"), Way::Index(keys.len() - 1)]].concat(), message, help);
@@ -101,13 +101,13 @@ pub(super) fn keys(
     Some(Motion::Keys { keys, ease: typed.ease, repeat: typed.repeat })
 }
 
-/// Whether two places are the same up to rounding and whole turns.
-fn same(one: Place, other: Place) -> bool {
+/// Whether two offsets are the same up to rounding and whole turns.
+fn same(one: Offset, other: Offset) -> bool {
     /// A rounding of what was typed is no jump.
     const CLOSE: f64 = 1e-6;
-    let [one_pose, other_pose] = [one, other].map(|place| Motion::at(place).pose(0.0));
+    let [one_pose, other_pose] = [one, other].map(|offset| Motion::at(offset).pose(0.0));
     one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)
-        && one_pose.turn.dot(other_pose.turn).abs() >= 1.0 - CLOSE * CLOSE
+        && one_pose.rotation.dot(other_pose.rotation).abs() >= 1.0 - CLOSE * CLOSE
 }
 
 /// A motion to and fro.
@@ -122,7 +122,7 @@ pub(super) fn swing(
         report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
         return None;
     }
-    let amplitude = place(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
+    let amplitude = offset(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
     Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
 }
 

@@ -74,7 +74,7 @@ fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &
         ObstacleFile::Box(cuboid) => {
             let [centre, size] =
                 [(&cuboid.centre, "centre"), (&cuboid.size, "size")].map(|(typed, key)| point(typed, key));
-            let turn = match &cuboid.rotation {
+            let rotation = match &cuboid.rotation {
                 Some(typed) => {
                     let axis = axis(typed.axis.as_ref(), dimension, &way("rotation"), report)?;
                     let (sine, cosine) = libm::sincos(0.5 * typed.angle);
@@ -86,7 +86,7 @@ fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &
             if dimension == Dimension::Plane {
                 half.z = f64::INFINITY;
             }
-            Some(Shape::Box { centre: centre?, half, turn })
+            Some(Shape::Box { centre: centre?, half, rotation })
         }
     }
 }
@@ -161,9 +161,9 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
             let ends = ball(from, radius).chain(ball(to, radius)).chain(ball(middle, radius));
             std::iter::once(middle).chain(along).chain(ends).collect()
         }
-        Shape::Box { centre, half, turn } => {
+        Shape::Box { centre, half, rotation } => {
             let half = DVec3::select(half.is_finite_mask(), half, DVec3::ZERO);
-            std::iter::once(middle).chain(cube().map(|at| centre + turn * (at * half))).collect()
+            std::iter::once(middle).chain(cube().map(|at| centre + rotation * (at * half))).collect()
         }
     }
 }

@@ -95,7 +95,7 @@ impl Obstacle {
             return Some((normal, height));
         }
         let (pose, pivot) = (self.pose(time), self.pivot);
-        let normal = pose.turn * normal;
+        let normal = pose.rotation * normal;
         Some((normal, normal.dot(pose.apply(pivot, pivot))))
     }
 
@@ -152,7 +152,7 @@ impl Placed<'_> {
             return None;
         }
         let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
-        Some((Contact { depth, normal: moving.now.turn * normal }, velocity))
+        Some((Contact { depth, normal: moving.now.rotation * normal }, velocity))
     }
 
     /// A region outside of which no node is met, with a margin (m) for round-off.
@@ -161,7 +161,7 @@ impl Placed<'_> {
         let middle = now(self.obstacle.shape.middle());
         match self.obstacle.shape {
             Shape::Floor { normal, .. } | Shape::Plate { normal, .. } => {
-                let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.turn * normal);
+                let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.rotation * normal);
                 Bound::HalfSpace { normal, height: normal.dot(middle) + margin }
             }
             // In the plane they are endless across it, but all nodes are at zero there.

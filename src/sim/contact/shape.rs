@@ -43,8 +43,8 @@ pub enum Shape {
         centre: DVec3,
         /// Half of its sides (m); infinite across the plane.
         half: DVec3,
-        /// How its sides are turned.
-        turn: DQuat,
+        /// How it is rotated.
+        rotation: DQuat,
     },
 }
 
@@ -78,13 +78,13 @@ impl Shape {
                 let share = if squared > 0.0 { ((point - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
                 round(point - from - along * share, radius, across(along))
             }
-            Self::Box { centre, half, turn } => {
-                let local = turn.conjugate() * (point - centre);
+            Self::Box { centre, half, rotation } => {
+                let local = rotation.conjugate() * (point - centre);
                 let depths = half - local.abs();
                 // The nearest face; of equal ones the first.
                 let axis = (0..3).fold(0, |best, axis| if depths[axis] < depths[best] { axis } else { best });
                 let sign = if local[axis] < 0.0 { -1.0 } else { 1.0 };
-                (depths[axis], turn * (DVec3::AXES[axis] * sign))
+                (depths[axis], rotation * (DVec3::AXES[axis] * sign))
             }
         };
         Contact { depth, normal }
@@ -151,7 +151,7 @@ mod tests {
             Shape::Box {
                 centre: DVec3::new(0.1, 0.0, 0.0),
                 half: DVec3::new(0.5, 0.4, 0.6),
-                turn: DQuat::from_xyzw(0.1, 0.3, -0.2, 0.9).normalize(),
+                rotation: DQuat::from_xyzw(0.1, 0.3, -0.2, 0.9).normalize(),
             },
         ]
     }

@@ -41,7 +41,7 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
 }
 
 /// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
-/// [`linearised::follow`](crate::sim::rotation::linearised::follow).
+/// [`linearised::iterate`](crate::sim::rotation::linearised::iterate).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arctangent {
     /// How often.
@@ -441,8 +441,9 @@ mod tests {
             for passes in [1, 2, 3] {
                 let found = assert_same_bits_for_all(Arctangent { passes }, &elements);
                 for (&(at_rest, last), found) in elements.iter().zip(found) {
-                    let reference =
-                        linearised::follow(at_rest, last, passes, |a| linearised::turn(linearised::solve(a)));
+                    let reference = linearised::iterate(at_rest, last, passes, |a| {
+                        linearised::rotation_by_arctangent(linearised::solve(a))
+                    });
                     let tolerance = if is_decided(at_rest) { 1e-13 } else { continue };
                     assert!(angle(found, reference) < tolerance, "{at_rest} {last}: {}", angle(found, reference));
                 }

@@ -5,14 +5,15 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, Share, TypedModel, blocks};
-use crate::sim::body::{Body, Dimension, ElementKind};
-use crate::sim::census::Census;
+use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
+use crate::sim::body::Body;
 use crate::sim::state::Nodes;
 use crate::sim::topology::Springs;
+use crate::sim::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What a scene types for this model.
@@ -56,7 +57,7 @@ impl TypedModel for Parameters {
         // The doubles that were taken out are several times as many.
         springs.shrink_to_fit();
         if springs.is_empty() {
-            let topology = self.springs.unwrap_or(DEFAULT).name();
+            let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
             let message = format!(
                 "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
             );
@@ -66,70 +67,25 @@ impl TypedModel for Parameters {
         Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs }))
     }
 
-    fn needs(&self, census: &Census) -> Needs {
-        /// A pair of nodes in a list that grows by doubling (bytes).
-        const PAIR: u128 = 16;
-        /// Its nodes twice, its natural length, its force, its two entries in the sums, and their sorting (bytes).
-        /// A block of 64³ cubes with both models took 1978 bytes a cube; the whole estimate says 2060.
-        const SPRING: u128 = 75;
-        let (written, springs) = match (self.springs, census.springs) {
-            (None, Some(listed)) => (listed, listed),
-            (named, _) => springs_at_most(named.unwrap_or(DEFAULT), census),
+    fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        if let (None, Some(listed)) = (self.springs, listed) {
+            return listed;
+        }
+        let on_one = |nodes: u128| {
+            let pairs = nodes.saturating_mul(nodes.saturating_sub(1)) / 2;
+            match self.springs.unwrap_or(DEFAULT) {
+                // A convex solid has 3n − 6 edges at most.
+                Springs::Edges => pairs.min(nodes.saturating_mul(3)),
+                _ => pairs,
+            }
         };
-        Needs { springs, making: written.saturating_mul(PAIR), working: springs.saturating_mul(SPRING) }
+        let each = elements.iter().map(|(&nodes, &count)| on_one(nodes as u128).saturating_mul(count));
+        each.fold(0, u128::saturating_add)
     }
 }
 
 /// The springs of bodies that list none.
 const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
-
-/// How many pairs are written down for a named topology, and how many springs these can be at most once each is kept
-/// only once.
-fn springs_at_most(topology: Springs, census: &Census) -> (u128, u128) {
-    let all = |nodes: usize| (nodes as u128) * (nodes as u128).saturating_sub(1) / 2;
-    let pairs = |kind, nodes: usize| {
-        // On the edges, one for each face with a diagonal, and all pairs of each face.
-        let (edges, one_diagonal, in_faces) = match kind {
-            ElementKind::Segment => (1, 0, 0),
-            ElementKind::Polygon => (nodes as u128, (nodes as u128).saturating_sub(3), all(nodes)),
-            ElementKind::Triangle => (3, 0, 3),
-            ElementKind::Tetrahedron => (6, 0, 12),
-            ElementKind::Pyramid => (8, 1, 18),
-            ElementKind::Wedge => (9, 3, 24),
-            ElementKind::Hexahedron => (12, 6, 36),
-            // A convex solid has at most 3n − 6 edges and 2n − 8 diagonals in fans over its faces; its edges are in
-            // two faces, any other pair in one at most.
-            ElementKind::Other => {
-                let edges = (3 * nodes as u128).saturating_sub(6);
-                (edges, (2 * nodes as u128).saturating_sub(8), all(nodes).saturating_add(edges))
-            }
-        };
-        match topology {
-            Springs::Edges => edges,
-            Springs::EdgesOneDiagonal => edges + one_diagonal,
-            Springs::EdgesFaceDiagonals => edges + in_faces,
-            Springs::EdgesBodyDiagonals => edges + all(nodes),
-            Springs::All => all(nodes),
-        }
-    };
-    let written = census.sum(pairs);
-    let mut kept = census.sum(|kind, nodes| pairs(kind, nodes).min(all(nodes)));
-    if census.lattice {
-        // Half of a node's neighbours along edges, across faces and through cells: each spring has two nodes.
-        let (edges, faces, cells) = match census.dimension {
-            Dimension::Plane => (2, 2, 0),
-            Dimension::Space => (3, 6, 4),
-        };
-        let to_each_node = match topology {
-            Springs::Edges => edges,
-            Springs::EdgesOneDiagonal | Springs::EdgesFaceDiagonals => edges + faces,
-            Springs::EdgesBodyDiagonals => edges + cells,
-            Springs::All => edges + faces + cells,
-        };
-        kept = kept.min(census.nodes.saturating_mul(to_each_node));
-    }
-    (written, kept)
-}
 
 impl ElasticModel for MassSpring {
     fn stiffness(&self) -> f64 {
@@ -226,22 +182,17 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::body::IndexLists;
-    use crate::sim::body::Solids;
-    use crate::sim::hull::Hulls;
-    use crate::sim::topology::{self, Elements};
-    use std::collections::BTreeMap;
-
-    const NAMED: [Springs; 5] = [
-        Springs::Edges,
-        Springs::EdgesOneDiagonal,
-        Springs::EdgesFaceDiagonals,
-        Springs::EdgesBodyDiagonals,
-        Springs::All,
-    ];
+    use crate::sim::body::{Dimension, IndexLists, Solids};
 
     #[test]
-    fn no_element_has_more_springs_than_are_counted_before() {
+    fn no_element_has_more_springs_than_are_said_before() {
+        let named = [
+            Springs::Edges,
+            Springs::EdgesOneDiagonal,
+            Springs::EdgesFaceDiagonals,
+            Springs::EdgesBodyDiagonals,
+            Springs::All,
+        ];
         let cases = [
             (Dimension::Plane, Solids::Ordered),
             (Dimension::Space, Solids::Ordered),
@@ -250,68 +201,17 @@ mod tests {
         for (nodes, (dimension, solids)) in (2..12).flat_map(|nodes| cases.map(|case| (nodes, case))) {
             let own: Vec<u32> = (0..nodes as u32).collect();
             let elements: IndexLists = [own.as_slice()].into_iter().collect();
-            let kinds = [topology::kind(dimension, solids, nodes)];
-            let census = Census {
-                dimension,
-                nodes: nodes as u128,
-                solids,
-                elements: BTreeMap::from([(nodes, 1)]),
-                lattice: false,
-                springs: None,
-            };
-            // A solid with triangles only, a prism, a flat polygon, and what has no faces at all.
-            let corner = |shape: usize, at: usize| {
-                let (half, at) = (nodes / 2, at as f64);
-                match shape {
-                    0 => DVec3::new(at, at * at, at * at * at),
-                    1 => DVec3::new(
-                        (at as usize % half) as f64,
-                        ((at as usize % half) as f64).powi(2),
-                        (at as usize / half) as f64,
-                    ),
-                    2 => DVec3::new(at, at * at, 0.0),
-                    _ => DVec3::new(at, 0.0, 0.0),
-                }
-            };
-            for shape in 0..4 {
-                let rest: Vec<_> = (0..nodes).map(|at| corner(shape, at)).collect();
-                let hulls = Hulls::new(&elements, &kinds, &rest);
-                for named in NAMED {
-                    let (written, kept) = springs_at_most(named, &census);
-                    let made = Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }
-                        .springs(named)
-                        .len() as u128;
-                    assert!(made <= kept && kept <= written, "{named:?} of {nodes}: {made}, {kept}, {written}");
-                }
+            // On this curve every face of the hull is a triangle: as many edges as there can be.
+            let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
+            let body = Body::new(dimension, rest, vec![1.0; nodes], elements, solids, None);
+            for springs in named {
+                let typed = Parameters { stiffness: 1.0, damping: None, damping_ratio: None, springs: Some(springs) };
+                let made = body.topology().springs(springs).len() as u128;
+                assert!(
+                    made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None),
+                    "{dimension:?}, {nodes} nodes, {springs:?}: {made}"
+                );
             }
-        }
-    }
-
-    #[test]
-    fn a_block_has_about_as_many_springs_as_are_counted_before() {
-        let cells = 6;
-        let at = |x: u32, y: u32, z: u32| x + (cells + 1) * (y + (cells + 1) * z);
-        let mut elements = IndexLists::default();
-        for (x, y, z) in (0..cells).flat_map(|z| (0..cells).flat_map(move |y| (0..cells).map(move |x| (x, y, z)))) {
-            elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| at(x + (bit & 1), y + (bit >> 1 & 1), z + (bit >> 2))));
-        }
-        let count = elements.len();
-        let census = Census {
-            dimension: Dimension::Space,
-            nodes: 343,
-            solids: Solids::Ordered,
-            elements: BTreeMap::from([(8, count as u128)]),
-            lattice: true,
-            springs: None,
-        };
-        for named in NAMED {
-            let (written, kept) = springs_at_most(named, &census);
-            let kinds = vec![ElementKind::Hexahedron; count];
-            let rest = vec![DVec3::ZERO; 343];
-            let made = Elements { nodes: &elements, kinds: &kinds, hulls: &Hulls::default(), rest: &rest }
-                .springs(named)
-                .len() as u128;
-            assert!(made <= kept && kept <= 2 * made && kept <= written, "{named:?}: {made}, {kept}, {written}");
         }
     }
 }

@@ -8,12 +8,12 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
-use super::census::Census;
 use super::state::{Nodes, State};
 use super::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -54,9 +54,10 @@ impl ModelParameters {
         self.typed().resolve(body, springs)
     }
 
-    /// What the model will need on a body, at most; asked before the body is made.
-    pub fn needs(&self, census: &Census) -> Needs {
-        self.typed().needs(census)
+    /// How many springs the model makes, at most, of so many elements of each number of nodes; `listed` is how many the
+    /// body lists, if it does.
+    pub(crate) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        self.typed().most_springs(elements, listed)
     }
 }
 
@@ -65,19 +66,10 @@ trait TypedModel {
     /// See [`ModelParameters::resolve`].
     fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit>;
 
-    /// See [`ModelParameters::needs`].
-    fn needs(&self, census: &Census) -> Needs;
-}
-
-/// What one run needs of memory besides the state of its nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Needs {
-    /// Springs, at most.
-    pub springs: u128,
-    /// While the model is resolved (bytes).
-    pub making: u128,
-    /// As long as the run lasts (bytes).
-    pub working: u128,
+    /// See [`ModelParameters::most_springs`].
+    fn most_springs(&self, _elements: &BTreeMap<usize, u128>, _listed: Option<u128>) -> u128 {
+        0
+    }
 }
 
 /// A parameter that does not fit, said about one key of the model's table.
@@ -245,7 +237,8 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
 
 /// The second line of a picture: what the model is made of, its stiffness and, if it has any, its damping.
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
-    let mut text = format!("{parts}, k = {}", with_prefix(stiffness, "N/m"));
+    let (factor, prefix) = words::prefix(stiffness);
+    let mut text = format!("{parts}, k = {} {prefix}N/m", words::rounded(stiffness / factor, 3));
     if damping > 0.0 {
         let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
         text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
@@ -259,11 +252,4 @@ fn elements_in_words(body: &Body) -> String {
         [(count, name)] => format!("{count} {name}"),
         _ => format!("{} elements", body.elements.len()),
     }
-}
-
-/// A number of a unit with the prefix that leaves one to three digits before the point, such as `10 kN/m`.
-fn with_prefix(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
-    let (scale, prefix) = PREFIXES.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-3, "m"));
-    format!("{} {prefix}{unit}", words::rounded(value / scale, 3))
 }

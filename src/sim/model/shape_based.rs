@@ -9,9 +9,8 @@
 //! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Needs, Report, Scratch, Share, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
-use crate::sim::census::Census;
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
 use crate::sim::state::Nodes;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -125,12 +124,6 @@ impl TypedModel for Parameters {
             damping_of: self.damping_of.unwrap_or_default(),
         }))
     }
-
-    fn needs(&self, census: &Census) -> Needs {
-        /// For each corner of an element its place at rest, its force and its entry in the sum (bytes).
-        const CORNER: u128 = 70;
-        Needs { working: census.corners().saturating_mul(CORNER), ..Needs::default() }
-    }
 }
 
 impl ElasticModel for ShapeBased {
@@ -208,22 +201,24 @@ impl ShapeBased {
     fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
         match solver {
             Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
-            Solver::Space => self.follow(at_rest, DQuat::from_slice(last)).write_to_slice(next),
+            Solver::Space => self.rotation_in_space(at_rest, DQuat::from_slice(last)).write_to_slice(next),
             Solver::Linear => {
-                linear_update::follow(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
+                linear_update::update(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
             }
         }
         solver.matrix(next)
     }
 
     /// The rotation of an element in space from its last one, as read.
-    fn follow(&self, at_rest: DMat3, last: DQuat) -> DQuat {
-        use linearised::{follow, solve, solve_symmetric, turn, turn_by_length};
+    fn rotation_in_space(&self, at_rest: DMat3, last: DQuat) -> DQuat {
+        use linearised::{iterate, rotation_by_arctangent, rotation_by_length, solve, solve_symmetric};
         match self.rotation {
-            RotationReading::VectorLength => follow(at_rest, last, self.passes, |a| turn_by_length(solve(a))),
-            RotationReading::Symmetric => follow(at_rest, last, self.passes, |a| turn(solve_symmetric(a))),
+            RotationReading::VectorLength => iterate(at_rest, last, self.passes, |a| rotation_by_length(solve(a))),
+            RotationReading::Symmetric => {
+                iterate(at_rest, last, self.passes, |a| rotation_by_arctangent(solve_symmetric(a)))
+            }
             RotationReading::Exact => davenport1968::optimum(at_rest, last),
-            _ => follow(at_rest, last, self.passes, |a| turn(solve(a))),
+            _ => iterate(at_rest, last, self.passes, |a| rotation_by_arctangent(solve(a))),
         }
     }
 }
@@ -248,7 +243,7 @@ struct Fit {
     /// `Σ R0 rᵀ` (m²).
     at_rest: DMat3,
     /// The rotation.
-    turn: DMat3,
+    rotation: DMat3,
 }
 
 impl Elements {
@@ -282,12 +277,12 @@ impl Elements {
         let (nodes, rest) = self.element(element);
         let centre = mean(nodes, position);
         let at_rest = moment_at_rest(rest, nodes, centre, position);
-        Fit { centre, at_rest, turn: self.model.rotation(self.solver, at_rest, last, next) }
+        Fit { centre, at_rest, rotation: self.model.rotation(self.solver, at_rest, last, next) }
     }
 
     /// α of an element with a rotation, for its `Σ R0 rᵀ` (m²).
-    fn residual(&self, element: usize, at_rest: DMat3, turn: DMat3) -> f64 {
-        angular_acceleration(turn * at_rest, self.model.stiffness, self.inertia[element])
+    fn residual(&self, element: usize, at_rest: DMat3, rotation: DMat3) -> f64 {
+        angular_acceleration(rotation * at_rest, self.model.stiffness, self.inertia[element])
     }
 
     /// Eq. (4) for one element: writes the force on each of its corners (N).
@@ -295,7 +290,7 @@ impl Elements {
     fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) {
         let ShapeBased { stiffness: k, damping: d, damping_of, .. } = self.model;
         let (nodes, rest) = self.element(element);
-        let Fit { centre, turn, .. } = self.fit(element, at.position, last, next);
+        let Fit { centre, rotation, .. } = self.fit(element, at.position, last, next);
         let drift = mean(nodes, at.velocity);
         let spin = match damping_of {
             DampingReading::RelativeMotion => None,
@@ -307,7 +302,7 @@ impl Elements {
         };
         for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
             let r = at.position[node as usize] - centre;
-            let displacement = r - turn * rest;
+            let displacement = r - rotation * rest;
             let mut relative_velocity = at.velocity[node as usize] - drift;
             if let Some(spin) = spin {
                 relative_velocity -= spin.cross(r);
@@ -324,11 +319,11 @@ impl ForceModel for Elements {
         for (element, memory) in memory.chunks_exact_mut(self.solver.width()).enumerate() {
             let (nodes, rest) = self.element(element);
             let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
-            let turn = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
+            let optimum = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
             match self.solver {
                 Solver::Plane => planar::solve(at_rest, DVec2::X).write_to_slice(memory),
-                Solver::Space => turn().write_to_slice(memory),
-                Solver::Linear => DMat3::from_quat(turn()).write_cols_to_slice(memory),
+                Solver::Space => optimum().write_to_slice(memory),
+                Solver::Linear => DMat3::from_quat(optimum()).write_cols_to_slice(memory),
             }
         }
         memory
@@ -352,12 +347,12 @@ impl ForceModel for Elements {
         blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
             let (nodes, rest) = self.element(element);
             let (last, mut next) = (self.of(element, memory), [0.0; 9]);
-            let Fit { centre, at_rest, turn } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            let Fit { centre, at_rest, rotation } = self.fit(element, at.position, last, &mut next[..last.len()]);
             for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
-                let squared = (at.position[node as usize] - centre - turn * rest).length_squared();
+                let squared = (at.position[node as usize] - centre - rotation * rest).length_squared();
                 *share = 0.5 * self.model.stiffness * squared;
             }
-            alpha[0] = self.residual(element, at_rest, turn);
+            alpha[0] = self.residual(element, at_rest, rotation);
         });
         for (element, nodes) in self.body.elements.iter().enumerate() {
             share(element, nodes, &shares[self.body.elements.range(element)]);

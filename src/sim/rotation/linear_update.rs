@@ -15,7 +15,7 @@ const SINGULAR: f64 = 1e-12;
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) has no solution (corners at a point or on a line) the last matrix is kept.
 #[doc(alias = "Eq. 16")]
 #[doc(alias = "Eq. 12")]
-pub fn follow(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
+pub fn update(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
     let mut matrix = last;
     for _ in 0..passes {
         let a = matrix * at_rest;
@@ -58,7 +58,7 @@ mod tests {
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.5);
         let now: Vec<_> = rest.iter().map(|&r| turn * (r * DVec3::new(1.2, 0.8, 1.1))).collect();
         let at_rest = moment(&rest, now);
-        let matrix = follow(at_rest, DMat3::IDENTITY, 1);
+        let matrix = update(at_rest, DMat3::IDENTITY, 1);
         assert!(torque(matrix * at_rest).length() < 1e-15);
         assert!((matrix.determinant() - 1.0) > 0.1, "it is larger than the shape at rest");
     }
@@ -69,7 +69,7 @@ mod tests {
         let mut matrix = DMat3::IDENTITY;
         for step in 1..=1000 {
             let turn = DQuat::from_axis_angle(DVec3::Z, 0.02 * f64::from(step));
-            matrix = follow(moment(&rest, rest.iter().map(|&r| turn * r)), matrix, 1);
+            matrix = update(moment(&rest, rest.iter().map(|&r| turn * r)), matrix, 1);
         }
         // (1 + w²)^(1000/2) with w = tan 0.02 at the most: some 22 %.
         let growth = matrix.x_axis.length();
@@ -82,7 +82,7 @@ mod tests {
         let rest = box_corners();
         for flatten in [DVec3::ZERO, DVec3::X] {
             let at_rest = moment(&rest, rest.iter().map(|&r| r * flatten));
-            assert_eq!(follow(at_rest, DMat3::IDENTITY, 3), DMat3::IDENTITY);
+            assert_eq!(update(at_rest, DMat3::IDENTITY, 3), DMat3::IDENTITY);
         }
     }
 }

@@ -13,7 +13,7 @@ pub fn solve(a: DMat3) -> DVec3 {
 
 /// Eq. (15) with the symmetric part of its matrix, `H w = Σ R × r` with `H = tr(A) I − (A + Aᵀ)/2`.
 ///
-/// That is the Hessian of the element's energy, and so Newton's method: with the angle of [`turn`] each pass takes the
+/// That is the Hessian of the element's energy, and so Newton's method: with the angle of [`rotation_by_arctangent`] each pass takes the
 /// error to its third power, where the printed matrix takes it to its second. Not in the paper. [`is_well_posed`] is
 /// about this matrix, too.
 pub fn solve_symmetric(a: DMat3) -> DVec3 {
@@ -44,13 +44,13 @@ fn columns(a: DMat3) -> [DVec3; 3] {
 /// `tan(θ/2) = |w| / (1 + √(1 + w²))` makes it a quaternion without any trigonometric function. The quaternion is not
 /// normalised.
 #[doc(alias = "Eq. 10")]
-pub fn turn(w: DVec3) -> DQuat {
+pub fn rotation_by_arctangent(w: DVec3) -> DQuat {
     DQuat::from_xyzw(w.x, w.y, w.z, 1.0 + (1.0 + w.length_squared()).sqrt())
 }
 
 /// The rotation with axis `u = w/|w|` and angle `θ = |w|`, the other reading of the paper. It overshoots and can spin a
 /// free body up; here for study.
-pub fn turn_by_length(w: DVec3) -> DQuat {
+pub fn rotation_by_length(w: DVec3) -> DQuat {
     let angle = w.length();
     if angle == 0.0 {
         return DQuat::IDENTITY;
@@ -85,19 +85,19 @@ pub fn is_well_posed(a: DMat3) -> bool {
 }
 
 /// The rotation of an element from its last one: `passes` solutions of Eq. (15), each made a true rotation and
-/// accumulated (Eq. (10) instead of Eq. (16), which is no rotation). `turn_at` makes one solution for `A` a rotation:
-/// `|a| turn(solve(a))` and its rivals.
+/// accumulated (Eq. (10) instead of Eq. (16), which is no rotation). `rotation_of` makes one solution for `A` a rotation:
+/// `|a| rotation_by_arctangent(solve(a))` and its rivals.
 ///
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) is no guide (turned inside out, flattened to a line or a point, more than
 /// a quarter turn away) the exact optimum nearest to `last` is taken instead.
-pub fn follow(at_rest: DMat3, last: DQuat, passes: u32, turn_at: impl Fn(DMat3) -> DQuat) -> DQuat {
+pub fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> DQuat {
     let mut rotation = last;
     for _ in 0..passes {
         let a = DMat3::from_quat(rotation) * at_rest;
         if !is_well_posed(a) {
             return davenport1968::optimum(at_rest, rotation);
         }
-        rotation = (turn_at(a) * rotation).normalize();
+        rotation = (rotation_of(a) * rotation).normalize();
     }
     rotation
 }
@@ -129,7 +129,8 @@ mod tests {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
             for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(turned, follow(a, DQuat::IDENTITY, passes, |a| turn(solve(a))));
+                let error =
+                    angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve(a))));
                 // Each pass squares the error, so a factor in the first is its power in the later ones.
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
@@ -144,7 +145,7 @@ mod tests {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
             for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(turned, follow(a, DQuat::IDENTITY, passes, |a| turn_by_length(solve(a))));
+                let error = angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))));
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
             }
@@ -154,7 +155,7 @@ mod tests {
         let turned = DQuat::from_axis_angle(DVec3::Y, 10f64.to_radians());
         let a = moment(&rest, rest.iter().map(|&r| turned * r));
         for (passes, expected) in [(1, 1.8e-3), (2, 1.9e-9)] {
-            let error = angle_error(turned, follow(a, DQuat::IDENTITY, passes, |a| turn_by_length(solve(a))));
+            let error = angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))));
             assert!((error / expected - 1.0).abs() < 0.05, "{passes}: {error:e}");
         }
     }
@@ -166,7 +167,10 @@ mod tests {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
             for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(turned, follow(a, DQuat::IDENTITY, passes, |a| turn(solve_symmetric(a))));
+                let error = angle_error(
+                    turned,
+                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve_symmetric(a))),
+                );
                 // The independent figures are for another axis; each pass takes a factor to its third power.
                 let factor = 2f64.powi(3i32.pow(passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
@@ -180,7 +184,7 @@ mod tests {
         for degrees in [1.0f64, 10.0, 45.0, 80.0, 89.0] {
             let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let error = angle_error(turned, follow(a, DQuat::IDENTITY, 1, |a| turn(solve(a))));
+            let error = angle_error(turned, iterate(a, DQuat::IDENTITY, 1, |a| rotation_by_arctangent(solve(a))));
             assert!(error < 1e-13, "{degrees}°: {error:e}");
         }
     }
@@ -203,7 +207,7 @@ mod tests {
         for degrees in [91.0f64, 120.0, 179.0, 180.0] {
             let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let found = follow(a, DQuat::IDENTITY, 4, |a| turn(solve(a)));
+            let found = iterate(a, DQuat::IDENTITY, 4, |a| rotation_by_arctangent(solve(a)));
             assert!(angle_error(turned, found) < 1e-9, "{degrees}°: {found}");
         }
     }

@@ -3,7 +3,6 @@
 use crate::picture::caption::{Writer, wrapped};
 use crate::picture::compose::cut;
 use crate::picture::layout::{CAPTION_LINE, Scale};
-use crate::picture::narrow::narrow;
 use crate::picture::text::Weight;
 use crate::picture::{Mark, MarkShape};
 use crate::scene::figure::Figure;
@@ -68,9 +67,9 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
         Some((text, baseline, if lines.is_empty() { width - margin - wide(text) } else { margin }))
     };
     if let Some((text, baseline, left)) = beside.or_else(below) {
-        let rectangle = [left.round(), (baseline - 0.36 * small - side / 2.0).round(), side, side].map(narrow);
-        let (colour, second, shape) = (palette.alarm, palette.alarm_line, MarkShape::Struck);
-        writer.marks.push(Mark { rectangle, along: Mark::UPRIGHT, colour, second, shape });
+        let rectangle = [left.round(), (baseline - 0.36 * small - side / 2.0).round(), side, side];
+        let square = Mark::upright(rectangle, MarkShape::Struck, palette.alarm);
+        writer.marks.push(Mark { second: palette.alarm_line, ..square });
         writer.left(text, Weight::Regular, small, palette.second_text, left + side + gap, baseline);
         last = last.max(baseline);
     }

@@ -1,14 +1,13 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, and the moments of the columns.
 
-use super::plan::ChartsRoom;
 use crate::history::History;
 use crate::picture::Curve;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Writer};
 use crate::picture::chart::{Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
 use crate::picture::course::{self, Line, OWN};
-use crate::picture::ends::{APART, Ends, spread};
-use crate::picture::layout::Scale;
+use crate::picture::ends::{Ends, spread};
+use crate::picture::layout::{CURVE_NAME, Scale};
 use crate::picture::narrow::narrow;
 use crate::picture::palette::Palette;
 use crate::picture::text::{Fonts, Weight};
@@ -44,6 +43,20 @@ const MOMENT_ALPHA: f64 = 0.62;
 /// of two charts (px in the reference picture).
 const NAMES: f64 = 0.16;
 const NAMES_APART: f64 = 3.0;
+
+/// Where charts stand (px).
+pub(super) struct ChartsRoom {
+    /// The middle of the rings above all charts.
+    pub(super) rings: f64,
+    /// Left and right end of all charts.
+    pub(super) span: [f64; 2],
+    /// Where their names begin.
+    pub(super) names: Option<f64>,
+    /// Top and bottom of each chart.
+    pub(super) charts: Vec<[f64; 2]>,
+    /// What is free between them.
+    pub(super) between: f64,
+}
 
 /// What charts show.
 pub(super) struct Charts<'a> {
@@ -93,7 +106,7 @@ impl<'a> Charts<'a> {
     /// The height that the names of all curves of a chart need (px in the reference picture).
     pub(super) fn ends_height(&self) -> f64 {
         let names = self.charts.iter().map(|one| one.lines.len()).max().unwrap_or(0);
-        self.ends.as_ref().map_or(0.0, |_| names as f64 * APART + 2.0 * NAMES_APART)
+        self.ends.as_ref().map_or(0.0, |_| names as f64 * CURVE_NAME + 2.0 * NAMES_APART)
     }
 
     pub(super) fn count(&self) -> usize {

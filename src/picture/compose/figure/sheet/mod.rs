@@ -13,10 +13,12 @@
 //! Turned over  ┴────┴────────────────────────┴─
 //! ```
 
+mod below;
 mod charts;
+mod headings;
 mod plan;
+mod rows;
 mod sight;
-mod words;
 
 use super::header;
 use crate::look::{Labels, View};
@@ -32,10 +34,11 @@ use crate::picture::{Colour, Curve, Framing, Picture};
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
 use crate::sim::snapshot::Frame;
+use below::Below;
 use charts::Charts;
 use glam::DVec2;
 use plan::Plan;
-use words::Below;
+use rows::RowLabels;
 
 /// Lengths hold for a picture of this size (px); of a larger or smaller one, they are as much longer or shorter.
 const REFERENCE: [f64; 2] = [1600.0, 900.0];
@@ -54,14 +57,17 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
     let scenes = plain(figure, sheet);
 
-    let header = header::write(&mut writer, figure, &words::key(&scenes));
+    let header = header::write(&mut writer, figure, &below::key(&scenes));
     let legend = legend(&scenes, size, scale);
     let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &writer, f64::from(size[0])));
-    let labels = words::RowLabels::new(sheet, &fonts, scale, charts.is_some(), f64::from(size[0]));
+    let labels = RowLabels::new(sheet, &fonts, scale, charts.is_some(), f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
-    let plan = Plan::new(sheet, &writer, [size[0], bottom], header, &labels, charts.as_ref());
+    let plan = Plan::new(sheet, &writer, [size[0], bottom], header, labels.width, charts.as_ref());
     labels.write(&mut writer, &plan, sheet);
-    words::write_headings(&mut writer, &plan, sheet);
+    for (column, heading) in plan.headings.iter().enumerate() {
+        let left = f64::from(plan.tile(0, column)[0]);
+        heading.write(&mut writer, [left, plan.headings_baseline]);
+    }
     if let (Some(charts), Some(room)) = (&charts, &plan.charts) {
         charts.draw(&mut writer, room);
     }

@@ -1,16 +1,15 @@
 //! Where everything stands on a contact sheet.
 
-use super::charts::Charts;
-use super::words::{Heading, RowLabels};
+use super::charts::{Charts, ChartsRoom};
+use super::headings::{HEADING_LINE, Heading};
 use crate::picture::caption::Writer;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::scene::figure::Sheet;
 use crate::sim::body::Dimension;
 
-/// From the last line of the header to the first of the headings, between their lines, and from the last of them to the
-/// tiles (px in the reference picture).
+/// From the last line of the header to the first of the headings, and from the last of these to the tiles (px in the
+/// reference picture).
 const ABOVE_HEADINGS: f64 = 37.0;
-pub(super) const HEADING_LINE: f64 = 20.0;
 const BELOW_HEADINGS: f64 = 9.0;
 /// Between the words of rows and the tiles (px in the reference picture).
 const BESIDE_LABELS: f64 = 18.0;
@@ -65,28 +64,14 @@ pub(super) struct Plan {
     pub(super) charts: Option<ChartsRoom>,
 }
 
-/// Where charts stand (px).
-pub(super) struct ChartsRoom {
-    /// The middle of the rings above all charts.
-    pub(super) rings: f64,
-    /// Left and right end of all charts.
-    pub(super) span: [f64; 2],
-    /// Where their names begin.
-    pub(super) names: Option<f64>,
-    /// Top and bottom of each chart.
-    pub(super) charts: Vec<[f64; 2]>,
-    /// What is free between them.
-    pub(super) between: f64,
-}
-
 impl Plan {
-    /// Plans a sheet of a size (px) below the last baseline of a header (px).
+    /// Plans a sheet of a size (px) below the last baseline of a header, with words of a width beside the rows (px).
     pub(super) fn new(
         sheet: &Sheet,
         writer: &Writer<'_>,
         size: [u32; 2],
         header: f64,
-        labels: &RowLabels,
+        labels: f64,
         charts: Option<&Charts<'_>>,
     ) -> Self {
         let scale = writer.scale;
@@ -94,9 +79,9 @@ impl Plan {
         let [unit, type_unit] = [scale.unit, scale.type_unit()];
         let (columns, rows) = (sheet.columns.len().max(1), sheet.rows.len().max(1));
         let margin = scale.margin();
-        let words = labels.width.max(charts.map_or(0.0, |charts| charts.names_width));
+        let words = labels.max(charts.map_or(0.0, |charts| charts.names_width));
         let numbers = charts.map_or(0.0, |charts| charts.numbers_width);
-        let labels_end = (labels.width + BESIDE_LABELS * unit).max(words + numbers);
+        let labels_end = (labels + BESIDE_LABELS * unit).max(words + numbers);
         let has_labels = words > 0.0 && margin + labels_end <= MOST_LABELS * width;
         let left = (margin + if has_labels { labels_end } else { numbers.min(0.1 * width) }).round();
         let pitch = ((width - margin - left) / columns as f64).floor().max(1.0);

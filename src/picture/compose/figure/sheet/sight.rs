@@ -96,11 +96,11 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
             Shape::Capsule { from, to, radius } => {
                 near.extend([from, to].map(|end| ball(place(end), radius).concat()).concat());
             }
-            Shape::Box { centre, half, turn } => {
+            Shape::Box { centre, half, rotation } => {
                 let half = half.min(DVec3::splat(1e3 * extent));
                 let corner = |at: i32| {
                     let sign = |bit: i32| if at >> bit & 1 == 1 { 1.0 } else { -1.0 };
-                    place(centre + turn * (half * DVec3::new(sign(0), sign(1), sign(2))))
+                    place(centre + rotation * (half * DVec3::new(sign(0), sign(1), sign(2))))
                 };
                 near.extend((0..8).map(corner));
             }

@@ -1,20 +1,13 @@
-//! Whether a camera can see anything.
+//! Whether a camera stands inside a body.
 
-use super::view::Camera;
 use crate::sim::body::Body;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Where a camera stands at the start (m).
-pub(crate) fn eye(camera: &Camera) -> DVec3 {
-    let [(across, along), (rise, level)] = [camera.azimuth, camera.elevation].map(libm::sincos);
-    camera.target + camera.distance * DVec3::new(across * level, rise, along * level)
-}
-
 /// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
 pub(crate) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
     let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
-    // A closed surface that is all around fills the whole sky, one that is not fills nothing.
+    // The solid angle of a closed surface is 4π seen from inside and 0 from outside.
     let sky: f64 = outside
         .flat_map(|(face, _)| (2..face.len()).map(move |at| [face[0], face[at - 1], face[at]]))
         .map(|nodes| solid_angle(nodes.map(|node| position[node as usize] - point)))
@@ -22,8 +15,8 @@ pub(crate) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
     sky.abs() > 2.0 * PI
 }
 
-/// The solid angle that a triangle fills, seen from the origin, positive if its corners run counter-clockwise from
-/// outside (A. van Oosterom, J. Strackee, 1983).
+/// The solid angle of a triangle seen from the origin, positive if its corners run counter-clockwise from outside (A. van
+/// Oosterom, J. Strackee, 1983).
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [x, y, z] = [a.length(), b.length(), c.length()];
     let above = a.dot(b.cross(c));

@@ -1,0 +1,99 @@
+//! Files of animations: what is told of them, and which may be replaced.
+
+use super::failure::{Failure, Status, with_causes};
+use crate::animation::{AnimationError, Written};
+use crate::golden::PictureError;
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// What stands at the beginning of each comment, by which a file is known as one of ours.
+const MARK: &str = "made by localshape ";
+
+/// What was made, on a line.
+pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
+    let bytes = path.metadata().map_or(0, |found| found.len());
+    let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
+    let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
+    let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
+    let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
+    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes))
+}
+
+/// The size of a file for people.
+fn file_size(bytes: u64) -> String {
+    if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
+}
+
+/// What an animation says about itself.
+pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
+    let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
+}
+
+/// Refuses to replace what this program did not make.
+pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
+    /// Comments stand near the beginning, in films behind tables of all pictures.
+    const BEGINNING: u64 = 1 << 20;
+    let Ok(found) = path.metadata() else { return Ok(()) };
+    let name = path.display();
+    if !found.is_file() {
+        return Err(Failure::usage(format!("{name} is no file; choose another name with -o")));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
+    read.map_err(|error| Failure::files(format!("cannot read {name}: {error}")))?;
+    if is_ours(&bytes) {
+        return Ok(());
+    }
+    let told = format!(
+        "{name} is there already, and was not made by this command; choose another name with -o, or replace it with --overwrite"
+    );
+    Err(Failure::usage(told))
+}
+
+/// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
+/// the comment.
+fn is_ours(beginning: &[u8]) -> bool {
+    /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
+    const KINDS: [(usize, &[u8], &[u8]); 6] = [
+        (0, b"GIF89a", b"\x21\xfe"),
+        (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
+        (0, b"\x89PNG\r\n\x1a\n", b"localshape:comment\0"),
+        (0, b"YUV4MPEG2 ", b" X"),
+        (4, b"ftyp", b"data\0\0\0\x01"),
+        (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
+    ];
+    /// Between that and the comment there is room for its length and language (bytes).
+    const BETWEEN: usize = 8;
+    let after = |at: usize| beginning.get(at..).unwrap_or_default();
+    KINDS.iter().any(|&(at, magic, before)| {
+        let mark = if magic == b"YUV4MPEG2 " { MARK.replace(' ', "_") } else { MARK.to_owned() };
+        let is_mark = |at: &usize| after(at + mark.len()).first().is_some_and(u8::is_ascii_digit);
+        let is_comment = |at: usize| {
+            let head = &beginning[at.saturating_sub(before.len() + BETWEEN)..at];
+            head.windows(before.len()).any(|part| part == before)
+        };
+        let places = beginning.windows(mark.len()).enumerate().filter(|(_, part)| *part == mark.as_bytes());
+        after(at).starts_with(magic) && places.map(|(at, _)| at).filter(is_mark).any(is_comment)
+    })
+}
+
+impl From<AnimationError> for Failure {
+    fn from(error: AnimationError) -> Self {
+        match error {
+            AnimationError::File(error) => error.into(),
+            AnimationError::Picture { source: PictureError::Read(_), .. }
+            | AnimationError::Ffmpeg { .. }
+            | AnimationError::Full(_) => Self::files(with_causes(&error)),
+            AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
+                Self::files("cannot write to standard output: its reader has ended before the animation has")
+            }
+            AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
+            AnimationError::Stopped => Self::silent(Status::Interrupted),
+            error => Self::usage(with_causes(&error)),
+        }
+    }
+}

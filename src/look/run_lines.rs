@@ -1,0 +1,92 @@
+//! The lines that stand for runs: colours and dashes.
+
+use super::palette::Palette;
+use crate::colour::{Colour, LINE_CONTRAST, least_difference, readable};
+
+/// The least difference of the colours of two runs, to anybody (CIEDE2000).
+const RUNS_APART: f64 = 15.0;
+/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They tell
+/// runs apart where colours do not: in grey print, and where there are more runs than colours.
+const DASHES: [&[f64]; 8] = [
+    &[],
+    &[7.0, 4.0],
+    &[18.0, 4.0],
+    &[2.2, 3.2],
+    &[11.0, 3.0, 2.5, 3.0],
+    &[18.0, 4.0, 6.0, 4.0],
+    &[7.0, 3.0, 2.5, 3.0, 2.5, 3.0],
+    &[4.0, 8.0],
+];
+
+/// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStyle {
+    /// Its colour.
+    pub colour: Colour,
+    /// Lengths of its dashes and of the gaps after them, by turns (px in the reference picture); empty for a solid line.
+    pub dash: &'static [f64],
+}
+
+impl Palette {
+    /// The line of a run, the same in every picture of its scene. Eight runs differ in colour and in dashes, more of them,
+    /// up to 64, in one of both. Colours are made lighter or darker where they could not be seen on the background.
+    /// `place` is that of the run ([`Self::places`]), `chosen` a colour of its own.
+    pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
+        let (colours, dashes) = (self.runs.len(), DASHES.len());
+        let colour = chosen.unwrap_or(self.runs[place % colours]);
+        LineStyle {
+            // The halo's colour is that of the background, whatever ground a picture is laid on.
+            colour: readable(colour, self.halo, LINE_CONTRAST),
+            dash: DASHES[(place + place / colours) % dashes],
+        }
+    }
+
+    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others leave out
+    /// colours that look like a chosen one, as far as there are any left.
+    pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
+        let (colours, dashes) = (self.runs.len(), DASHES.len());
+        let seen = |colour| readable(colour, self.halo, LINE_CONTRAST);
+        let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
+        let is_free = self.runs.map(|own| !chosen.iter().flatten().any(|other| is_like(own, other)));
+        let keeps = |at: usize| chosen[at].is_some() || is_free[at % colours];
+        let is_taken = |colour: usize| (colour..chosen.len()).step_by(colours).any(|at| chosen[at].is_none());
+        let free = || (0..colours).filter(|&colour| is_free[colour]);
+        let mut others = free().filter(|&colour| !is_taken(colour)).chain(free().cycle());
+        let place = |at: usize| {
+            if keeps(at) {
+                return at;
+            }
+            let dash = (at + at / colours) % dashes;
+            // The place of this colour that has these dashes.
+            others.next().map_or(at, |colour| colour + colours * ((dash + dashes - colour) % dashes))
+        };
+        (0..chosen.len()).map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::contrast;
+    use crate::look::Theme;
+
+    #[test]
+    fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
+        for theme in [Theme::Light, Theme::Dark].map(Palette::of) {
+            for (at, &colour) in theme.runs.iter().enumerate() {
+                let found = contrast(colour, theme.background);
+                assert!(found >= LINE_CONTRAST, "{colour:x?} has a contrast of {found:.2} with the background");
+                let found = least_difference(colour, theme.alarm);
+                assert!(found >= 20.0, "{colour:x?} and turned-over elements differ by {found:.1}");
+                for other in &theme.runs[..at] {
+                    let found = least_difference(colour, *other);
+                    assert!(found >= RUNS_APART, "{colour:x?} and {other:x?} differ by {found:.1}");
+                }
+            }
+        }
+        // Where there are no colours, dashes say it.
+        for (at, dash) in DASHES.iter().enumerate() {
+            assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The subject of a view: a body, its runs and what is around it.
+
+use crate::sim::body::{Body, bounds};
+use crate::sim::contact::{self, Obstacle};
+use crate::sim::field::Field;
+use crate::sim::grip::Grip;
+use crate::sim::model::ElasticModel;
+use crate::sim::state::State;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// What default values of a view depend on.
+pub(crate) struct Subject<'a> {
+    pub(crate) body: &'a Body,
+    pub(crate) initial: &'a State,
+    /// Mean length of the elements' edges (m).
+    pub(crate) side: f64,
+    /// Whether that is the side of a lattice's cells.
+    pub(crate) has_cells: bool,
+    pub(crate) gravity: DVec3,
+    pub(crate) obstacles: &'a [Obstacle],
+    pub(crate) grips: &'a [Grip],
+    /// Simulated time (s).
+    pub(crate) duration: f64,
+    /// The model of each run.
+    pub(crate) models: Vec<&'a dyn ElasticModel>,
+}
+
+impl Subject<'_> {
+    /// The largest expected value of a field in the scene.
+    pub(super) fn largest(&self, field: Field) -> f64 {
+        /// The strain, and the displacement in edges of an element, that count as large.
+        const LARGE: f64 = 0.5;
+        let side = self.side;
+        match field {
+            Field::Strain => LARGE,
+            Field::Displacement => LARGE * side,
+            Field::ElasticEnergy => {
+                let stiffness = self.models.iter().fold(0.0, |most: f64, model| most.max(model.stiffness()));
+                0.5 * stiffness * (LARGE * side) * (LARGE * side)
+            }
+            Field::Speed => {
+                let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
+                let (_, high) = bounds(&self.initial.position);
+                let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
+                let fall = (2.0 * self.gravity.length() * drop).sqrt();
+                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
+                let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
+                // A body that nothing else moves swings at its own frequency.
+                let periods = self.models.iter().map(|model| model.shortest_period(self.body));
+                let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
+                if fastest > 0.0 { fastest } else { swing }
+            }
+        }
+    }
+}

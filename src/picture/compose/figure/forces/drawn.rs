@@ -1,0 +1,282 @@
+//! A cell of a diagram of forces, drawn: the body, the rest shape behind it, arrows, vectors and numbers.
+
+use super::cell::Cell;
+use super::marks::{GHOST_LINE, ghost_colour, line, outlined};
+use crate::colour::Colour;
+use crate::picture::arrows::arrow;
+use crate::picture::caption::Writer;
+use crate::picture::chart::dot;
+use crate::picture::compose::figure::labels::Labels;
+use crate::picture::compose::panel::Draft;
+use crate::picture::layout::Scale;
+use crate::picture::narrow::narrow;
+use crate::picture::plane::is_inside;
+use crate::picture::text::Weight;
+use crate::picture::wire::Edges;
+use crate::picture::{Curve, Mark, MarkShape, Mesh, Panel, Second, Solid, Stroke, Vertex};
+use crate::scene::figure::{Figure, Forces};
+use glam::{DVec2, DVec3};
+
+/// Type of numbers at arrows, and the distance of two lines of it (px in the reference picture).
+const NUMBERS: f64 = 14.0;
+const LINE: f64 = 18.0;
+/// Width of the vectors (px in the reference picture).
+const VECTOR: f64 = 1.5;
+/// Dashes of the rest shape and gaps between them (px in the reference picture).
+const DASH: [f64; 2] = [5.0, 4.0];
+/// Radius of a node and of the centre (px in the reference picture).
+const NODE: f64 = 5.2;
+const CENTRE: f64 = 3.4;
+/// Half of an arrow's width, for labels (px in the reference picture).
+const ARROW: f64 = 5.0;
+/// Arrows shorter than this are not drawn (px in the reference picture).
+const SHORTEST: f64 = 3.0;
+/// Opacity of what a body hides.
+const HIDDEN: f64 = 0.3;
+
+/// A cell with its camera.
+pub(super) struct Drawn<'a> {
+    cell: &'a Cell<'a>,
+    draft: Draft<'a>,
+    scale: Scale,
+    figure: &'a Figure,
+}
+
+impl<'a> Drawn<'a> {
+    pub(super) fn new(cell: &'a Cell<'a>, pixels: f64, centre: DVec2, scale: Scale, figure: &'a Figure) -> Self {
+        Self { cell, draft: cell.draft(scale, pixels, centre), scale, figure }
+    }
+
+    fn pixel(&self, at: DVec3) -> DVec2 {
+        self.draft.lens.project(at).map_or(DVec2::ZERO, |(pixel, _)| DVec2::from(pixel))
+    }
+
+    /// The body with the ghost of its rest shape behind it.
+    pub(super) fn panel(&self, under: &mut Vec<Mark>) -> Panel {
+        // Signs, nodes and arrows of the film have no place here.
+        let mut panel = self.draft.panel(under, &mut Vec::new());
+        panel.floor = None;
+        panel.beads.clear();
+        if self.draft.flat {
+            panel.obstacles.solids.insert(0, self.ghost_in_plane());
+        } else {
+            panel.strokes.extend(self.ghost_in_space());
+        }
+        panel.region = panel.viewport;
+        panel
+    }
+
+    fn ghost_in_plane(&self) -> Solid {
+        let skin = &self.cell.composer.skin;
+        let vertex = |&node: &u32| Vertex {
+            position: self.draft.relative(self.cell.ghost[node as usize]),
+            normal: [0.0, 0.0, 1.0],
+            hatch: 0.0,
+        };
+        let mesh = Mesh {
+            vertices: skin.nodes.iter().map(vertex).collect(),
+            triangles: skin.triangles.clone(),
+            shades: Vec::new(),
+        };
+        Solid { mesh, colour: ghost_colour(&self.figure.look.palette), rim: None, near: Vec::new() }
+    }
+
+    /// The edges of all elements, each once.
+    fn edges(&self) -> Vec<[u32; 2]> {
+        Edges::new(&self.cell.scene.body).all
+    }
+
+    /// The shares of an edge's length at which dashes begin and end.
+    fn dashes(&self, ends: [DVec2; 2]) -> Vec<[f64; 2]> {
+        let [dash, gap] = DASH.map(|length| length * self.scale.unit.max(0.5));
+        let length = ends[0].distance(ends[1]);
+        // A dash at both ends.
+        let count = ((length - dash) / (dash + gap)).round().max(1.0);
+        let period = (length - dash) / count;
+        (0..=count as usize).map(|at| [at as f64 * period, at as f64 * period + dash].map(|at| at / length)).collect()
+    }
+
+    fn ghost_in_space(&self) -> Vec<Stroke> {
+        let palette = &self.figure.look.palette;
+        let edges = self.edges().into_iter().map(|edge| edge.map(|node| self.cell.ghost[node as usize]));
+        let strokes = edges.flat_map(|[from, to]| {
+            let dashes = self.dashes([from, to].map(|at| self.pixel(at)));
+            dashes.into_iter().map(move |dash| dash.map(|share| self.draft.relative(from.lerp(to, share))))
+        });
+        let stroke = |ends| Stroke {
+            ends,
+            colours: [palette.second_text; 2],
+            second: Second::None,
+            behind: (255.0 * HIDDEN) as u8,
+            width: narrow(GHOST_LINE * self.scale.line()),
+        };
+        strokes.map(stroke).collect()
+    }
+
+    /// The dashed outline of the ghost in the plane: as far as the body does not cover it, or all of it.
+    fn ghost_outline(&self, marks: &mut Vec<Mark>, also_inside: bool) {
+        let body = &self.cell.scene.body;
+        let pixels: Vec<_> = self.cell.snapshot().position.iter().map(|&at| self.pixel(at)).collect();
+        let polygons: Vec<Vec<DVec2>> =
+            body.elements.iter().map(|nodes| nodes.iter().map(|&node| pixels[node as usize]).collect()).collect();
+        for edge in self.edges() {
+            let [from, to] = edge.map(|node| self.pixel(self.cell.ghost[node as usize]));
+            for dash in self.dashes([from, to]) {
+                let ends = dash.map(|share| from.lerp(to, share));
+                let middle = ends[0].midpoint(ends[1]);
+                if also_inside || !polygons.iter().any(|polygon| is_inside(polygon, middle)) {
+                    let palette = &self.figure.look.palette;
+                    let colour = if also_inside { palette.second_text } else { palette.axis };
+                    marks.push(line(ends, GHOST_LINE * self.scale.line(), colour));
+                }
+            }
+        }
+    }
+
+    /// Everything above the body.
+    pub(super) fn draw(&self, forces: &Forces, writer: &mut Writer<'_>, above: &mut Vec<Mark>) {
+        let Self { cell, scale, .. } = self;
+        let palette = &self.figure.look.palette;
+        let unit = scale.unit;
+        let position = &cell.snapshot().position;
+        // In the plane all nodes are seen; in space those of no face are, too.
+        let visible = cell.composer.skin.visible(position, &self.draft.lens);
+        let on_skin = |node: usize| cell.composer.skin.holds(node as u32);
+        let seen: Vec<_> = (0..position.len()).map(|at| if on_skin(at) { visible[at] } else { 1.0 }).collect();
+        let [left, top, width, height] = cell.room;
+        let inset = 6.0 * unit;
+        let room = [left + inset, top + inset, left + width - inset, top + height - inset];
+        let mut labels = Labels::new(room, unit);
+        for [a, b] in self.edges() {
+            labels.lines.push([a, b].map(|node| self.pixel(position[node as usize])));
+            labels.lines.push([a, b].map(|node| self.pixel(cell.ghost[node as usize])));
+        }
+        let faces = cell.scene.body.faces.nodes.iter();
+        labels.surfaces =
+            faces.map(|nodes| nodes.iter().map(|&node| self.pixel(position[node as usize])).collect()).collect();
+        if self.draft.flat {
+            self.ghost_outline(above, forces.vectors);
+        }
+        let own = cell.scene.runs[cell.frame.run].line(palette).colour;
+        let ends = |ways: &[DVec3]| -> Vec<[DVec2; 2]> {
+            position.iter().zip(ways).map(|(&at, &way)| [self.pixel(at), self.pixel(at + way)]).collect()
+        };
+        let arrows = ends(&cell.ways);
+        labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
+        let shown = |[from, to]: &[DVec2; 2]| from.distance(*to) >= SHORTEST * unit;
+        if let Some((run, compared)) = &cell.compared {
+            let arrows = ends(compared);
+            labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
+            let colour = cell.scene.runs[*run].line(palette).colour;
+            for ends in arrows.iter().filter(|ends| shown(ends)) {
+                above.extend(outlined(*ends, *scale, colour, palette.background));
+            }
+        }
+        if forces.vectors {
+            self.vectors(writer, &mut labels, &seen);
+        }
+        let mut order: Vec<usize> = (0..arrows.len()).filter(|&at| shown(&arrows[at])).collect();
+        order.sort_by(|&a, &b| seen[a].total_cmp(&seen[b]));
+        for &at in &order {
+            let whole = arrow(arrows[at], scale.line(), own, palette.halo);
+            above.extend(whole.faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
+        }
+        for (&at, &seen) in position.iter().zip(&seen) {
+            if seen > 0.0 {
+                let disc = Mark::around(self.pixel(at), NODE * scale.line(), MarkShape::Node, palette.node);
+                above.push(Mark { second: palette.edge, ..disc });
+            }
+        }
+        if forces.numbers {
+            for &at in &order {
+                self.number(at, arrows[at], writer, &mut labels, palette.text_like(own));
+            }
+        }
+    }
+
+    /// The size of a force at its arrow, and the angle to the one that it is compared with.
+    fn number(&self, at: usize, [from, to]: [DVec2; 2], writer: &mut Writer<'_>, labels: &mut Labels, colour: Colour) {
+        let Self { cell, scale, .. } = self;
+        let palette = &self.figure.look.palette;
+        let size = NUMBERS * scale.type_unit();
+        let way = cell.ways[at];
+        let number = format!("{:.3}", way.length() / cell.scene.view.side);
+        let angle = cell.compared.as_ref().map(|(_, compared)| way.angle_between(compared[at]).to_degrees());
+        let angle = angle.filter(|angle| angle.is_finite() && *angle >= 0.5);
+        let second = angle.map_or(String::new(), |angle| format!("{angle:.0}° off"));
+        let wide = |text: &str| writer.fonts.width(text, Weight::Regular, size);
+        let line = scale.of_type(LINE * scale.unit);
+        let lines = if second.is_empty() { 1.0 } else { 2.0 };
+        let extent = DVec2::new(wide(&number).max(wide(&second)), size * 0.8 + (lines - 1.0) * line);
+        let corner = labels.place_at_arrow([from, to], extent);
+        // Towards the arrow, lines end or begin alike.
+        let on_left = corner.x + 0.5 * extent.x < if corner.x < from.x.min(to.x) { from.x } else { to.x };
+        for (row, (text, colour)) in [(number, colour), (second, palette.second_text)].into_iter().enumerate() {
+            let left = if on_left { corner.x + extent.x - wide(&text) } else { corner.x };
+            let baseline = corner.y + size * 0.78 + row as f64 * line;
+            over_lines(writer, |writer| writer.left(&text, Weight::Regular, size, colour, left, baseline));
+        }
+    }
+
+    /// The centre, and the vectors from there to a node and to its place in the equilibrium shape.
+    fn vectors(&self, writer: &mut Writer<'_>, labels: &mut Labels, seen: &[f64]) {
+        let Self { cell, scale, .. } = self;
+        let palette = &self.figure.look.palette;
+        let unit = scale.unit;
+        let position = &cell.snapshot().position;
+        let centre = self.pixel(cell.middle());
+        // The node that is displaced most among those that are seen.
+        let displaced = |node: &usize| self.pixel(position[*node]).distance(self.pixel(cell.ghost[*node]));
+        let visible = (0..position.len()).filter(|&node| seen[node] > 0.5);
+        let Some(node) = visible.max_by(|one, other| displaced(one).total_cmp(&displaced(other))) else { return };
+        let [now, equilibrium] = [position[node], cell.ghost[node]].map(|at| self.pixel(at));
+        let curve = |to: DVec2, dash: &[f64]| Curve {
+            points: [centre, to].map(|at| at.to_array().map(narrow)).to_vec(),
+            width: narrow(VECTOR * scale.line()),
+            dash: dash.iter().map(|length| narrow(length * unit)).collect(),
+            colour: palette.text,
+            alpha: 0.9,
+        };
+        writer.curves.push(curve(now, &[]));
+        writer.curves.push(curve(equilibrium, &DASH));
+        for (radius, colour) in [(CENTRE + 1.6, palette.halo), (CENTRE, palette.text)] {
+            writer.curves.push(dot(centre.to_array(), radius * unit, colour));
+        }
+        labels.lines.extend([[centre, now], [centre, equilibrium]]);
+        let across = |to: DVec2, other: DVec2| {
+            let way = to - centre;
+            let normal = way.perp().normalize_or_zero();
+            if normal.dot(other - centre) > 0.0 { -normal } else { normal }
+        };
+        let texts = [
+            (centre, centre - now.midpoint(equilibrium), "c", ""),
+            (centre.lerp(now, 0.55), across(now, equilibrium), "r", "i"),
+            (centre.lerp(equilibrium, 0.55), across(equilibrium, now), "R", "i"),
+        ];
+        for (at, away, letter, index) in texts {
+            let (size, small) = (scale.caption() * 1.1, scale.caption() * 0.78);
+            let [wide, narrow] =
+                [(letter, size), (index, small)].map(|(text, size)| writer.fonts.width(text, Weight::SemiBold, size));
+            let extent = DVec2::new(wide + narrow, size * 0.95);
+            let corner = labels.place(at, away, extent);
+            let baseline = corner.y + 0.76 * size;
+            over_lines(writer, |writer| {
+                writer.left(letter, Weight::SemiBold, size, palette.text, corner.x, baseline);
+                writer.left(index, Weight::SemiBold, small, palette.text, corner.x + wide, baseline + 0.2 * size);
+            });
+        }
+    }
+}
+
+/// What an arrow covers, for labels: its middle and both its sides.
+fn wide([from, to]: [DVec2; 2], half: f64) -> [[DVec2; 2]; 3] {
+    let across = (to - from).perp().normalize_or_zero() * half;
+    [-1.0, 0.0, 1.0].map(|side| [from + side * across, to + side * across])
+}
+
+/// Writes what stands out from the lines that it may lie on.
+fn over_lines(writer: &mut Writer<'_>, write: impl FnOnce(&mut Writer<'_>)) {
+    let before = writer.words.len();
+    write(writer);
+    writer.words[before..].iter_mut().for_each(|word| word.has_halo = true);
+}

@@ -1,0 +1,153 @@
+//! What stands below the bodies of a contact sheet: tallies, counts and diagnostics, and what the tallies mean.
+
+use super::plan::{Plan, TALLY_RAISED};
+use crate::picture::caption::Writer;
+use crate::picture::compose::Composer;
+use crate::picture::layout::Scale;
+use crate::picture::narrow::narrow;
+use crate::picture::tally::{self, Tally};
+use crate::picture::text::Weight;
+use crate::picture::{Mark, course, number};
+use crate::scene::Scene;
+use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
+use crate::sim::words::{elements, rounded};
+
+/// Size of diagnostics (px in the reference picture).
+const NUMBER: f64 = 14.0;
+/// How large tallies are beside those of panels, the part of a tile's width that they take at most, and between tally,
+/// count and number (px in the reference picture).
+const TALLY: f64 = 0.54;
+const TALLY_SHARE: f64 = 0.6;
+const COUNT_GAP: f64 = 10.0;
+const NUMBER_GAP: f64 = 18.0;
+/// Half the height of digits, in parts of the type's size.
+const X_MIDDLE: f64 = 0.36;
+
+/// What the key of turned-over elements may say, from the longest wording to the shortest.
+pub(super) fn key(scenes: &[Scene]) -> Vec<String> {
+    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
+    let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
+    let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
+    let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
+    let mut wordings = vec!["turned over".to_owned()];
+    let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
+    if several && tallies.iter().all(Tally::has_squares) {
+        wordings.push(format!("turned over (one square per {kind})"));
+        if tallies.iter().all(Tally::has_layers) {
+            wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
+        }
+    }
+    wordings.reverse();
+    wordings
+}
+
+/// What stands below the body of a tile.
+pub(super) struct Below {
+    /// The tally, as if the tile's lower left corner were the picture's left upper one.
+    tally: Vec<Mark>,
+    tally_width: f64,
+    /// How many elements have turned over; empty if that cannot be said.
+    count: String,
+    is_alarm: bool,
+    /// A diagnostic; empty for none.
+    said: String,
+    /// When the run has blown up (s).
+    diverged: Option<f64>,
+}
+
+impl Below {
+    /// What is said of a run, with a diagnostic if one is asked for.
+    pub(super) fn new(
+        writer: &Writer<'_>,
+        plan: &Plan,
+        composer: &Composer<'_>,
+        run: &RunFrame,
+        number: Option<Diagnostic>,
+    ) -> Self {
+        let over = &run.snapshot.turned_over;
+        let diverged = match run.snapshot.status {
+            Status::Diverged(divergence) => Some(divergence.time),
+            Status::Ok => None,
+        };
+        let (mut tally, mut tally_width) = (Vec::new(), 0.0);
+        if !over.is_empty() {
+            let scale = writer.scale.with_unit(TALLY * writer.scale.unit);
+            let room = TALLY_SHARE * plan.words_width(writer.scale);
+            tally_width = composer.tally.draw(over, writer.palette, scale, room, [0.0; 2], &mut tally);
+        }
+        let count = run.snapshot.diagnostics.turned_over;
+        Self {
+            tally,
+            tally_width,
+            count: if over.is_empty() { String::new() } else { count.to_string() },
+            is_alarm: count > 0,
+            said: number.and_then(|diagnostic| said(diagnostic, composer.scene, run)).unwrap_or_default(),
+            diverged,
+        }
+    }
+
+    /// Width of tally and count (px).
+    fn counted(&self, writer: &Writer<'_>) -> f64 {
+        let gap = if self.count.is_empty() { 0.0 } else { COUNT_GAP * writer.scale.type_unit() };
+        self.tally_width + gap + writer.fonts.width(&self.count, Weight::SemiBold, writer.scale.caption())
+    }
+
+    /// Whether there is room for the diagnostic, too.
+    pub(super) fn has_room(&self, writer: &Writer<'_>, plan: &Plan) -> bool {
+        let size = NUMBER * writer.scale.type_unit();
+        let said = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.said, Weight::Regular, size);
+        self.said.is_empty() || Scale::legible(size) && self.counted(writer) + said <= plan.words_width(writer.scale)
+    }
+
+    /// Writes tally, count and, if there is room in all tiles, the diagnostic; or that the run has blown up.
+    pub(super) fn write(self, writer: &mut Writer<'_>, plan: &Plan, [row, column]: [usize; 2], with_number: bool) {
+        let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
+        let size = scale.caption();
+        if !plan.has_tally || !Scale::legible(size) {
+            return;
+        }
+        let [left, top, width, height] = plan.tile(row, column).map(f64::from);
+        let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
+        let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * size;
+        if let Some(time) = self.diverged {
+            let wordings = [format!("diverged at {}", number::time(time)), "diverged".to_owned()];
+            let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
+            let Some(text) = wordings.iter().find(|text| wide(text) <= plan.words_width(scale)) else { return };
+            return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
+        }
+        let small = NUMBER * scale.type_unit();
+        let said = if with_number { &self.said[..] } else { "" };
+        let gap = if said.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
+        let counted = self.counted(writer);
+        let left = (middle - 0.5 * (counted + gap + fonts.width(said, Weight::Regular, small))).round();
+        writer.marks.extend(self.tally.into_iter().map(|mut mark| {
+            mark.rectangle[0] += narrow(left);
+            mark.rectangle[1] += narrow(bottom.round());
+            mark
+        }));
+        let colour = if self.is_alarm { palette.alarm_text } else { palette.second_text };
+        let count_left = left + counted - fonts.width(&self.count, Weight::SemiBold, size);
+        writer.left(&self.count, Weight::SemiBold, size, colour, count_left, baseline);
+        writer.left(said, Weight::Regular, small, palette.second_text, left + counted + gap, baseline);
+    }
+}
+
+/// A diagnostic with its name; `None` if it has no value.
+fn said(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
+    let value = diagnostic.of(&run.snapshot.diagnostics);
+    let name = course::name(diagnostic, scene);
+    let name = name.strip_suffix(" ratio").unwrap_or(name);
+    let value = match diagnostic {
+        _ if !value.is_finite() => return None,
+        Diagnostic::TurnedOver => return None,
+        Diagnostic::VolumeRatio => number::ratio(value),
+        Diagnostic::ShapeError => number::length(value, scene.body.extent()),
+        _ => {
+            let unit = diagnostic.unit();
+            let value = rounded(value, 3);
+            let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
+            number::with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
+        }
+    };
+    Some(format!("{name} {value}"))
+}
