@@ -59,7 +59,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
             if array.bytes().is_none_or(|bytes| bytes > LARGEST) {
                 return Err(told("is too large to be read".to_owned()));
             }
-            archive.numbers(&array).map_err(told)
+            archive.values(&array).map_err(told)
         };
         let [position, velocity] = [vectors("position")?, vectors("velocity")?];
         if position.columns() != velocity.columns() {

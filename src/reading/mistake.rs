@@ -25,7 +25,8 @@ pub struct Mistake {
 
 /// All mistakes of one file in the order in which they stand there.
 ///
-/// They print with the source line and a mark under the place:
+/// They print with the source line and a mark under the place (own code, as `annotate-snippets` would replace the printing
+/// alone, and not the lines, columns and excerpts that programs are given):
 ///
 /// ```text
 /// drop.toml:12:33: unknown key `stifness` in `run[0].model`

@@ -32,7 +32,7 @@ pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use schema::schema;
-pub use summary::{RunSummary, Summary};
+pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};

@@ -1,7 +1,10 @@
 //! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them.
 //!
-//! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
-//! only with what is really there.
+//! Archives are untrusted: sizes are compared with the file before anything is allocated, and memory grows only with what
+//! is really there.
+//!
+//! No library reads the arrays: `npyz` allocates as much as a header says that it is long, up to 4 GiB, before it reads it,
+//! brings twelve crates to parse it, and would leave the checks and messages, which are most of this file.
 
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
@@ -228,7 +231,7 @@ impl Npz {
 
     /// The numbers of an array: of one with a single direction as one column, of one with three directions with the last
     /// two in one row.
-    pub(crate) fn numbers(&mut self, array: &Array) -> Result<Values, String> {
+    pub(crate) fn values(&mut self, array: &Array) -> Result<Values, String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;

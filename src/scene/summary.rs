@@ -13,7 +13,7 @@ use std::fmt;
 
 /// What a scene holds. It prints as a short table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct SceneSummary {
     /// The scene's title.
     pub title: String,
     /// The scene's name.
@@ -52,7 +52,7 @@ pub struct Summary {
     pub picture: String,
 }
 
-/// One run of a [`Summary`].
+/// One run of a [`SceneSummary`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunSummary {
     /// Its name.
@@ -69,7 +69,7 @@ pub struct RunSummary {
 
 impl Scene {
     /// What the scene holds.
-    pub fn summary(&self) -> Summary {
+    pub fn summary(&self) -> SceneSummary {
         let body = &self.body;
         let coordinates = |vector: DVec3| match body.dimension {
             Dimension::Plane => vec![vector.x, vector.y],
@@ -85,7 +85,7 @@ impl Scene {
             step: run.step,
             steps: self.frame_step(at, last),
         };
-        Summary {
+        SceneSummary {
             title: self.title.clone(),
             name: self.name.clone(),
             digest: self.digest.clone(),
@@ -195,7 +195,7 @@ fn vector(coordinates: &[f64]) -> String {
     format!("({})", numbers.join(", "))
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for SceneSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = |name: &str, text: &str| writeln!(f, "  {name:<9} {text}");
         line("scene", &format!("{} ({})", self.title, self.name))?;

@@ -1,10 +1,11 @@
-//! Hands: nodes that are held, or grabbed, dragged along a path and let go (the manipulation of the paper's title).
+//! Kinematic constraints: nodes that are held, or grabbed, dragged along a path and let go (the manipulation of the
+//! paper's title).
 
 use super::motion::{Motion, Pose};
 use super::state::State;
 use glam::DVec3;
 
-/// Nodes that follow a hand from one time to another, whatever forces act on them.
+/// Nodes that follow a path from one time to another, whatever forces act on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grip {
     /// The nodes.
@@ -13,18 +14,18 @@ pub struct Grip {
     pub from: f64,
     /// When they are let go (s); infinite for never.
     pub until: f64,
-    /// How the hand moves. Only the way since `from` counts; it turns about the mean of the nodes as they were gripped.
+    /// How they move. Only the displacement since `from` counts; it rotates about the mean of the nodes as they were gripped.
     pub motion: Motion,
 }
 
 impl Grip {
-    /// How far the hand has gone since it gripped, at a time (s), turning about the mean of the nodes then.
+    /// The displacement since the nodes were gripped, at a time (s), about the mean of the nodes then.
     pub fn way(&self, time: f64) -> Pose {
         let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
         Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
     }
 
-    /// Whether the nodes follow the hand at a time (s).
+    /// Whether the nodes follow the path at a time (s).
     pub fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until
     }

@@ -1,4 +1,8 @@
 //! Convex hulls of a few points, with faces that are polygons: what the faces of an element of any shape are.
+//!
+//! Libraries (`chull`, `parry3d-f64`) give triangles. To join those that are coplanar to round-off, and to leave out nodes
+//! along edges and within faces, takes the tolerances that are most of this file; and their order of faces, on which springs
+//! and sums depend, may change with any version.
 
 use super::element::{ElementKind, around};
 use super::lists::IndexLists;

@@ -1,4 +1,4 @@
-//! How rigid things are moved: obstacles, and the hands that drag nodes.
+//! Motions of obstacles and of grips.
 
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -130,7 +130,8 @@ impl Motion {
         }
     }
 
-    /// The longest way (m) from one point of the path to another, at a distance from the pivot (m).
+    /// The longest way (m) from one point of the path to another, at a distance from the pivot (m). A grip may stretch a
+    /// body as far, and when it lets go nodes fly back at a speed that no bound by the size of the body at rest allows.
     pub fn longest_way(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length().min(PI) * distance;
         match self {

@@ -76,25 +76,25 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
     }
 }
 
-/// Reports nodes that two hands have at the same time.
+/// Reports nodes that two grips have at the same time.
 fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
     }
-    // One node says it all: others of the same two hands follow from the same mistake.
+    // One node says it all: others of the same two grips follow from the same mistake.
     let mut clashes: BTreeMap<[usize; 2], u32> = BTreeMap::new();
-    for (node, mut hands) in holders {
-        let time = |hand: usize| (named[hand].2.from, named[hand].2.until);
-        hands.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
-        // A hand that comes before another lets go, comes before the last of all lets go.
-        let mut last = hands[0];
-        for &hand in &hands[1..] {
-            if time(hand).0 < time(last).1 {
-                clashes.entry([hand.max(last), hand.min(last)]).or_insert(node);
+    for (node, mut grips) in holders {
+        let time = |grip: usize| (named[grip].2.from, named[grip].2.until);
+        grips.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
+        // A grip that comes before another lets go, comes before the last of all lets go.
+        let mut last = grips[0];
+        for &grip in &grips[1..] {
+            if time(grip).0 < time(last).1 {
+                clashes.entry([grip.max(last), grip.min(last)]).or_insert(node);
             }
-            if time(hand).1 > time(last).1 {
-                last = hand;
+            if time(grip).1 > time(last).1 {
+                last = grip;
             }
         }
     }

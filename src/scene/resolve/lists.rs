@@ -230,15 +230,15 @@ impl Reader<'_, '_> {
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
-            [_, 2 | 3] => self.numbers("nodes", &array),
+            [_, 2 | 3] => self.values("nodes", &array),
             _ => {
                 self.wrong_shape("nodes", &array, "one row for each node with 2 or 3 coordinates");
                 None
             }
         });
-        let columns = nodes.as_ref().map(|(columns, _)| *columns);
+        let columns = nodes.as_ref().map(|values| values.columns() as u64);
         let dimension = if columns == Some(2) { Dimension::Plane } else { Dimension::Space };
-        let nodes = nodes.map(|(_, numbers)| self.points("nodes", &numbers));
+        let nodes = nodes.map(|values| self.points("nodes", &values));
         let elements = self.array("elements").and_then(|array| self.rows_of_indices("elements", &array, 2));
         let springs = self.optional("springs").and_then(|array| self.pairs("springs", &array));
         let faces = self.optional("faces").and_then(|array| self.rows_of_indices("faces", &array, 3));
@@ -284,8 +284,8 @@ impl Reader<'_, '_> {
         self.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
     }
 
-    /// The numbers of an array with the length of its rows, unless it is too large.
-    fn numbers(&mut self, key: &str, array: &Array) -> Option<(u64, Values)> {
+    /// The values of an array, unless it is too large.
+    fn values(&mut self, key: &str, array: &Array) -> Option<Values> {
         let all: u64 = array.shape.iter().product();
         let (length, limit, what) = match key {
             "elements" | "faces" => (all, self.limits.corners, "entries"),
@@ -299,8 +299,8 @@ impl Reader<'_, '_> {
             self.tell(key, &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
             return None;
         }
-        match self.npz.numbers(array) {
-            Ok(numbers) => Some((array.shape.get(1).copied().unwrap_or(1), numbers)),
+        match self.npz.values(array) {
+            Ok(values) => Some(values),
             Err(message) => {
                 self.say(key, &[], &message);
                 None
@@ -309,8 +309,8 @@ impl Reader<'_, '_> {
     }
 
     /// A number that is finite and not too large; zero after a mistake.
-    fn number(&mut self, key: &str, numbers: &Values, at: &[usize]) -> f64 {
-        let number = numbers.double(at[0], at.get(1).copied().unwrap_or(0));
+    fn number(&mut self, key: &str, values: &Values, at: &[usize]) -> f64 {
+        let number = values.double(at[0], at.get(1).copied().unwrap_or(0));
         if number.abs() <= LARGEST {
             return number;
         }
@@ -320,13 +320,13 @@ impl Reader<'_, '_> {
         0.0
     }
 
-    fn points(&mut self, key: &str, numbers: &Values) -> Vec<DVec3> {
-        let flat = numbers.columns() == 2;
+    fn points(&mut self, key: &str, values: &Values) -> Vec<DVec3> {
+        let flat = values.columns() == 2;
         let point = |row| {
-            let z = if flat { 0.0 } else { self.number(key, numbers, &[row, 2]) };
-            DVec3::new(self.number(key, numbers, &[row, 0]), self.number(key, numbers, &[row, 1]), z)
+            let z = if flat { 0.0 } else { self.number(key, values, &[row, 2]) };
+            DVec3::new(self.number(key, values, &[row, 0]), self.number(key, values, &[row, 1]), z)
         };
-        (0..numbers.rows()).map(point).collect()
+        (0..values.rows()).map(point).collect()
     }
 
     /// Points with as many coordinates as the nodes have, if that is known.
@@ -340,8 +340,8 @@ impl Reader<'_, '_> {
             self.wrong_shape(key, array, &expected);
             return None;
         }
-        let (_, numbers) = self.numbers(key, array)?;
-        Some(self.points(key, &numbers))
+        let values = self.values(key, array)?;
+        Some(self.points(key, &values))
     }
 
     fn masses(&mut self, array: &Array) -> Option<Vec<f64>> {
@@ -349,11 +349,11 @@ impl Reader<'_, '_> {
             self.wrong_shape("masses", array, "one number for each node");
             return None;
         }
-        let (_, numbers) = self.numbers("masses", array)?;
-        let mut masses = Vec::with_capacity(numbers.rows());
-        for row in 0..numbers.rows() {
+        let values = self.values("masses", array)?;
+        let mut masses = Vec::with_capacity(values.rows());
+        for row in 0..values.rows() {
             let before = self.report.total();
-            let mass = self.number("masses", &numbers, &[row]);
+            let mass = self.number("masses", &values, &[row]);
             if mass <= 0.0 && self.report.total() == before {
                 self.say("masses", &[row], &format!("is {mass}; expected a number greater than 0"));
             }
@@ -362,7 +362,7 @@ impl Reader<'_, '_> {
         Some(masses)
     }
 
-    /// The numbers of an array of indices with rows of a length.
+    /// The values of an array of indices with rows of a length.
     fn indices(&mut self, key: &str, array: &Array, fits: impl Fn(u64) -> bool, expected: &str) -> Option<Values> {
         if array.shape.len() != 2 || !fits(array.shape[1]) {
             self.wrong_shape(key, array, expected);
@@ -373,12 +373,12 @@ impl Reader<'_, '_> {
             self.say(key, &[], &format!("is {kind}; expected integers, as by astype(\"<i4\")"));
             return None;
         }
-        Some(self.numbers(key, array)?.1)
+        self.values(key, array)
     }
 
     /// One index, or `None` after a mistake.
-    fn index(&mut self, key: &str, numbers: &Values, at: [usize; 2]) -> Option<u32> {
-        let number = numbers.whole(at[0], at[1]);
+    fn index(&mut self, key: &str, values: &Values, at: [usize; 2]) -> Option<u32> {
+        let number = values.whole(at[0], at[1]);
         let index = u32::try_from(number).ok();
         if index.is_none() {
             self.say(key, &at, &format!("is {number}; expected the number of a node"));
@@ -387,10 +387,10 @@ impl Reader<'_, '_> {
     }
 
     fn pairs(&mut self, key: &str, array: &Array) -> Option<Vec<[u32; 2]>> {
-        let numbers = self.indices(key, array, |columns| columns == 2, "one row for each spring with 2 nodes")?;
-        let mut pairs = Vec::with_capacity(numbers.rows());
-        for row in 0..numbers.rows() {
-            let pair = [0, 1].map(|column| self.index(key, &numbers, [row, column]));
+        let values = self.indices(key, array, |columns| columns == 2, "one row for each spring with 2 nodes")?;
+        let mut pairs = Vec::with_capacity(values.rows());
+        for row in 0..values.rows() {
+            let pair = [0, 1].map(|column| self.index(key, &values, [row, column]));
             pairs.push(pair.map(Option::unwrap_or_default));
         }
         Some(pairs)
@@ -399,18 +399,18 @@ impl Reader<'_, '_> {
     /// Rows of nodes without the places that they do not use.
     fn rows_of_indices(&mut self, key: &str, array: &Array, least: usize) -> Option<IndexLists> {
         let expected = format!("one row for each of the {key} with at least {least} nodes");
-        let numbers = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
+        let values = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
         let mut lists = IndexLists::default();
-        let mut row_of = Vec::with_capacity(numbers.columns());
-        for row in 0..numbers.rows() {
+        let mut row_of = Vec::with_capacity(values.columns());
+        for row in 0..values.rows() {
             row_of.clear();
             let before = self.report.total();
-            let used = (0..numbers.columns()).rev().find(|&column| numbers.whole(row, column) != -1);
+            let used = (0..values.columns()).rev().find(|&column| values.whole(row, column) != -1);
             let used = used.map_or(0, |last| last + 1);
             for column in 0..used {
-                match numbers.whole(row, column) {
+                match values.whole(row, column) {
                     -1 => self.say(key, &[row, column], "is -1, and a node follows it; unused places come last"),
-                    _ => row_of.extend(self.index(key, &numbers, [row, column])),
+                    _ => row_of.extend(self.index(key, &values, [row, column])),
                 }
             }
             if used < least && self.report.total() == before {
