@@ -1,4 +1,4 @@
-//! One panel: its parts, one after the other.
+//! Composes one panel from its parts.
 
 use super::Composer;
 use crate::look::FloorStyle;
@@ -23,15 +23,15 @@ use crate::sim::snapshot::{RunFrame, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// Coordinates of what blew up are kept within this (sides).
+/// Coordinates of diverged runs are clamped to this (sides).
 const FARTHEST: f64 = 1e12;
 
-/// At its widest, a body of the second size has contours of the usual width, and a smaller one narrower ones, down to the
-/// first size (px in the reference picture) and this part of the usual width: else it would be mostly outline.
+/// Contours become narrower for bodies smaller than the second size, down to this part of their width at the first size (px
+/// in the reference picture); otherwise small bodies would be mostly outline.
 const SMALL_BODY: [f64; 2] = [30.0, 150.0];
 const LEAST_CONTOUR: f64 = 0.4;
 
-/// One panel that is being composed, and what all its parts need to know.
+/// One panel while it is composed: the data that all its parts need.
 pub(super) struct Draft<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
@@ -62,7 +62,7 @@ pub(super) struct Draft<'a> {
 }
 
 impl<'a> Draft<'a> {
-    /// What is known of a panel before anything is drawn.
+    /// Collects the data of a panel.
     pub(super) fn new(
         composer: &'a Composer<'a>,
         viewport: Rectangle,
@@ -73,7 +73,7 @@ impl<'a> Draft<'a> {
         let scene = composer.scene;
         let (view, body) = (&scene.view, &*scene.body);
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
-        // A body of which no node is known is drawn as nothing.
+        // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
         let mut position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
         let mut field = Cow::Borrowed(&run.snapshot.field[..]);
@@ -331,7 +331,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Coordinates beyond all bounds are brought to where arithmetic still works.
+/// Clamps coordinates, so that arithmetic with them stays finite.
 fn finite(point: DVec3, farthest: f64) -> DVec3 {
     let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
     DVec3::new(one(point.x), one(point.y), one(point.z))
