@@ -4,9 +4,9 @@ use super::camera::Lens;
 use super::layout::Rectangle;
 use super::narrow::narrow;
 use super::order::farthest_first;
-use super::palette::Colour;
 use super::plane::{clipped, sides};
 use super::{Mark, MarkShape};
+use crate::colour::Colour;
 use crate::sim::snapshot::Placement;
 use glam::{DVec2, DVec3};
 

@@ -1,10 +1,11 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
-use super::palette::{Colour, LineStyle, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
 use super::{Curve, Mark, MarkShape, number};
+use crate::colour::Colour;
+use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Divergence, Snapshot};
 

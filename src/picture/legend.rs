@@ -6,9 +6,9 @@ use super::caption::Writer;
 use super::chart::filled;
 use super::layout::Scale;
 use super::number;
-use super::palette::Colour;
 use super::text::Weight;
 use super::{Mark, MarkShape};
+use crate::colour::Colour;
 use glam::DVec2;
 
 /// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).

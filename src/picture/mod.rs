@@ -26,10 +26,8 @@ mod narrow;
 mod number;
 mod obstacle;
 mod order;
-mod palette;
 mod plane;
 mod pointer;
-mod ramp;
 mod series;
 mod shadow;
 mod shell;
@@ -40,11 +38,11 @@ mod tally;
 mod text;
 mod wire;
 
+pub use crate::colour::Colour;
+pub use crate::look::{Palette, SHADES};
 pub use camera::{Framing, Lens, Middles, framing};
 pub use compose::{Composer, NoRoom, compose, compose_figure};
 pub use layout::Rectangle;
-pub use palette::{Colour, Palette};
-pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Face, Fonts, Glyph, TextRun, Weight};
 

@@ -4,7 +4,7 @@ use super::Mark;
 use super::arrows::arrow;
 use super::camera::Lens;
 use super::layout::{Rectangle, Scale};
-use super::palette::Palette;
+use crate::look::Palette;
 use glam::{DVec2, DVec3};
 
 /// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).

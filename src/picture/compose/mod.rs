@@ -13,18 +13,18 @@ use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
-use super::palette::{LineStyle, Palette};
 use super::plane::LEVEL;
-use super::ramp;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
 use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
-use super::{Colour, Framing, Picture, number};
+use super::{Framing, Picture, number};
+use crate::colour::Colour;
 use crate::history::History;
-use crate::look::StrainScale;
+use crate::look::ramp::ramp;
+use crate::look::{LineStyle, Palette, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -141,11 +141,8 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
-            spring_ramp: scene
-                .view
-                .spring_strain
-                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
+            spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette,

@@ -4,14 +4,13 @@ use super::Composer;
 use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
-use crate::picture::field::{NOWHERE, Shades};
+use crate::picture::field::{self, NOWHERE, Shades};
 use crate::picture::grip::Hands;
 use crate::picture::layout::{self, Rectangle, Scale};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
-use crate::picture::ramp;
 use crate::picture::shadow::key_light;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
@@ -220,7 +219,7 @@ impl<'a> Draft<'a> {
         if visible.nodes && !self.diverged {
             let colour = |node: usize| {
                 let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
-                place.filter(|_| !visible.surfaces).map(|place| ramp::colour(&self.composer.ramp, place))
+                place.filter(|_| !visible.surfaces).map(|place| field::colour(&self.composer.ramp, place))
             };
             flat.nodes(self.element, &colour, above);
         }

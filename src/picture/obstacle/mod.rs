@@ -17,8 +17,8 @@ pub(super) use space::Staging;
 
 use super::camera::Lens;
 use super::narrow::narrow_point;
-use super::palette::Palette;
 use super::pointer::Going;
+use crate::look::Palette;
 use crate::sim::contact::Obstacle;
 use glam::DVec3;
 

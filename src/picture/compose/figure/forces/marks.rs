@@ -1,10 +1,10 @@
 //! The marks of diagrams of forces: outlined arrows, smooth lines, the tint of the rest shape.
 
 use crate::colour::{Colour, mixed};
+use crate::look::Palette;
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
-use crate::picture::palette::Palette;
 use crate::picture::{Mark, MarkShape};
 use glam::DVec2;
 

@@ -1,6 +1,7 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, and the moments of the columns.
 
 use crate::history::History;
+use crate::look::Palette;
 use crate::picture::Curve;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Writer};
@@ -8,7 +9,6 @@ use crate::picture::chart::{Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wi
 use crate::picture::ends::{Ends, spread};
 use crate::picture::layout::{CURVE_NAME, Scale};
 use crate::picture::narrow::narrow;
-use crate::picture::palette::Palette;
 use crate::picture::series::{self, OWN, Series};
 use crate::picture::text::{Fonts, Weight};
 use crate::scene::figure::Sheet;
