@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn letters_come_from_the_scene_then_from_the_built_in_font_then_there_is_a_box() {
-        // A font whose table of characters has been emptied knows no letter, like one of another script.
+        // A font with an empty character map has no letters, like one of another script.
         let mut blank = REGULAR.to_vec();
         let tables = usize::from(u16::from_be_bytes([blank[4], blank[5]]));
         let entry = (0..tables).map(|at| 12 + 16 * at).find(|&at| &blank[at..at + 4] == b"cmap").unwrap();

@@ -19,10 +19,10 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// The same behind one that hides nothing.
+/// The same behind a surface of opacity 0.
 const CLEAR: f64 = 160.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
-/// or there would be nothing but lines.
+/// or lines would cover everything.
 const SMALL_ELEMENT: f64 = 26.0;
 const THINNEST: f64 = 0.2;
 /// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.

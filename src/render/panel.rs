@@ -48,7 +48,7 @@ pub(super) struct OccluderUniform {
 }
 
 impl OccluderUniform {
-    /// Reaches nothing.
+    /// An unused entry, which reaches nothing.
     const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, rotation: Vec4::W };
 
     fn new(occluder: &Occluder) -> Self {

@@ -56,7 +56,7 @@ pub(super) struct Draft<'a> {
     pub(super) element: f64,
     /// Whether the body lies in the plane.
     pub(super) flat: bool,
-    /// Whether the run has blown up.
+    /// Whether the run diverged.
     pub(super) diverged: bool,
 }
 
@@ -301,7 +301,7 @@ impl<'a> Draft<'a> {
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
 
-    /// The nodes that get arrows, and how much is seen of these: nothing where surfaces in space hide every face.
+    /// The nodes that get arrows, and the opacity of these: 0 where all faces of a node in space are turned away.
     fn facing_bearers(&self) -> Vec<(u32, f64)> {
         let Composer { skin, bearers, .. } = self.composer;
         if !self.scene.view.visible.surfaces {

@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 const FLATNESS: f64 = 0.1;
 /// Into how many segments something round is cut, at least and at most.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
-/// Thickness of outlines (px in the reference picture). The shader knows it, too.
+/// Thickness of outlines (px in the reference picture). The shader has the same constant.
 const RIM: f64 = 2.0;
 /// Room for a smooth border on both sides of an outline (px).
 const BORDER: f64 = 0.75;

@@ -24,7 +24,7 @@ const FARTHEST_EDGE: f64 = 4.0;
 const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
 /// How far walls and slopes are drawn around the point looked at (body sizes).
 const WALL: f64 = 2.1;
-/// Opacity of a wall, seen from the side of the body and through what is solid.
+/// Opacity of a wall, seen from its front and from its solid back.
 const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
 /// Above so many slabs they are sorted by distance alone.
 const MANY_SLABS: usize = 64;

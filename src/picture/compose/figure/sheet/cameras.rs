@@ -32,7 +32,7 @@ const STEPS: usize = 12;
 /// The points that a tile has to show.
 pub(super) struct Cell {
     scene: usize,
-    /// Corners (m); none of a run that has blown up.
+    /// Corners (m); none of a diverged run.
     points: Vec<DVec3>,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn cells(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<V
     moments.cells.iter().map(row).collect()
 }
 
-/// What is seen of a run at a moment (m).
+/// The points of a run at a time (m): nodes and obstacles near them.
 fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVec3> {
     let snapshot = &run.snapshot;
     if matches!(snapshot.status, Status::Diverged(_)) || snapshot.position.len() != scene.body.len() {
