@@ -5,9 +5,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Normal colour vision and two kinds of colour blindness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sight {
+pub enum Vision {
     /// Those with three kinds of cones.
-    Usual,
+    Normal,
     /// Those without green cones, some 1 % of all men.
     Deuteranopia,
     /// Those without red cones, some 1 % of all men.
@@ -31,14 +31,14 @@ const VIENOT_1999: [Loss; 2] = [
     [[0.112_38, 0.887_62, 0.0], [0.112_38, 0.887_62, 0.0], [0.004_01, -0.004_01, 1.0]],
 ];
 
-impl Sight {
+impl Vision {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Usual, Self::Deuteranopia, Self::Protanopia];
+    pub const ALL: [Self; 3] = [Self::Normal, Self::Deuteranopia, Self::Protanopia];
 
     /// Its name within a sentence, after *to*.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Usual => "eyes with all cones",
+            Self::Normal => "eyes with all cones",
             Self::Deuteranopia => "eyes without green cones (deuteranopia)",
             Self::Protanopia => "eyes without red cones (protanopia)",
         }
@@ -46,25 +46,25 @@ impl Sight {
 }
 
 /// Linear light as somebody sees it, simulated by each of two models of colour blindness: Machado 2009 and Viénot 1999.
-pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
+pub fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
-    match sight {
-        Sight::Usual => [light; 2],
-        Sight::Deuteranopia => [&MACHADO_2009[0], &VIENOT_1999[0]].map(through),
-        Sight::Protanopia => [&MACHADO_2009[1], &VIENOT_1999[1]].map(through),
+    match vision {
+        Vision::Normal => [light; 2],
+        Vision::Deuteranopia => [&MACHADO_2009[0], &VIENOT_1999[0]].map(through),
+        Vision::Protanopia => [&MACHADO_2009[1], &VIENOT_1999[1]].map(through),
     }
 }
 
 /// The difference of two colours to somebody: the smaller CIEDE2000 of both models of that vision. A difference of about 1
 /// is just noticeable between colours that touch; colours that differ by 20 are not confused.
-pub fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
-    let [one, other] = [one, other].map(|colour| seen_by(sight, linear(colour)).map(lab));
+pub fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
+    let [one, other] = [one, other].map(|colour| seen_by(vision, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
 
 /// The smallest difference of two colours to anybody (CIEDE2000).
 pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
-    Sight::ALL.into_iter().map(|sight| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
+    Vision::ALL.into_iter().map(|vision| difference(one, other, vision)).fold(f64::INFINITY, f64::min)
 }
 
 /// A colour in CIELAB: lightness from 0 to 100, how red rather than green, how yellow rather than blue.
@@ -156,15 +156,15 @@ mod tests {
 
     #[test]
     fn losses_keep_greys_and_take_red_from_green() {
-        for sight in Sight::ALL {
-            for seen in seen_by(sight, [0.5; 3]) {
-                assert!(seen.iter().all(|light| (light - 0.5).abs() < 0.01), "{sight:?} {seen:?}");
+        for vision in Vision::ALL {
+            for seen in seen_by(vision, [0.5; 3]) {
+                assert!(seen.iter().all(|light| (light - 0.5).abs() < 0.01), "{vision:?} {seen:?}");
             }
         }
         // A red and a green of the same lightness to those who lack a kind of cones.
         let [red, green] = [[0xb8, 0x60, 0x40], [0x80, 0x7c, 0x40]];
-        assert!(difference(red, green, Sight::Usual) > 25.0);
-        assert!(difference(red, green, Sight::Deuteranopia) < 12.0);
-        assert_eq!(difference(red, red, Sight::Protanopia), 0.0);
+        assert!(difference(red, green, Vision::Normal) > 25.0);
+        assert!(difference(red, green, Vision::Deuteranopia) < 12.0);
+        assert_eq!(difference(red, red, Vision::Protanopia), 0.0);
     }
 }

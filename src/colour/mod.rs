@@ -11,7 +11,7 @@ mod oklab;
 mod typed;
 
 pub(crate) use difference::least_difference;
-pub use difference::{Lab, Sight, cie76, ciede2000, difference, lab, seen_by};
+pub use difference::{Lab, Vision, cie76, ciede2000, difference, lab, seen_by};
 pub use oklab::{Oklab, from_oklab, oklab};
 pub(crate) use typed::names;
 pub use typed::{UnknownColour, parse, written};

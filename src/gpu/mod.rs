@@ -118,7 +118,7 @@ pub enum InitError {
     Device {
         /// Which adapter.
         adapter: Box<AdapterDescription>,
-        /// What its driver says.
+        /// The error of its driver.
         #[source]
         source: Box<wgpu::RequestDeviceError>,
     },

@@ -1,7 +1,7 @@
 //! The processor that a software driver draws with. Shaders are compiled for it, and approximate square roots and
 //! quotients differ between processors: some pixels differ by 1 of 255.
 
-/// The processor in a few words, such as `GenuineIntel 6 167 avx512f`; empty where the system does not say.
+/// The processor in a few words, such as `GenuineIntel 6 167 avx512f`; empty if unknown.
 pub(super) fn processor() -> String {
     std::fs::read_to_string("/proc/cpuinfo").map(|text| described(&text)).unwrap_or_default()
 }

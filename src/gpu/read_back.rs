@@ -50,7 +50,7 @@ impl ReadBack {
         Self { buffer, width, height }
     }
 
-    /// Adds the copy of a texture to the commands, hands them all to the device and returns at once.
+    /// Adds the copy of a texture to the commands, submits them and returns at once.
     pub fn submit(&self, gpu: &Gpu, mut commands: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Pending {
         commands.copy_texture_to_buffer(
             texture.as_image_copy(),

@@ -5,8 +5,9 @@ use super::palette::{Palette, Theme};
 use super::ramp::ramp;
 use super::typed::{BackgroundFile, ColoursFile};
 use super::view::{FloorStyle, FontFiles, Look};
-use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Sight, contrast, difference, readable, written};
+use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
+use std::fmt;
 
 /// The least difference of turned-over elements from sound ones, to anybody (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
@@ -69,11 +70,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
 /// Checks the colours that a scene gives runs: their contrast with the background, and their difference from turned-over
 /// elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Report<'_>) {
-    let like_alarm = |colour: Colour| {
-        let measured = Sight::ALL.map(|sight| (difference(colour, palette.alarm, sight), sight));
-        let nearest = measured.into_iter().min_by(|one, other| one.0.total_cmp(&other.0));
-        nearest.filter(|(found, _)| *found < LEAST_DIFFERENCE)
-    };
+    let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
         let path = [Way::Key("run"), Way::Index(at), Way::Key("colour")];
@@ -92,14 +89,9 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
                 Some(_) => format!("choose another hue; this one, made {towards}, would be like turned-over elements"),
             };
             report.at(&path, message, help);
-        } else if let Some((found, sight)) = like_alarm(colour) {
-            let message = format!(
-                "`run[{at}].colour` is too like that of turned-over elements, {}: to {} they differ by {} (CIEDE2000); \
-                 expected at least {LEAST_DIFFERENCE}",
-                written(palette.alarm),
-                sight.name(),
-                rounded_down(found)
-            );
+        } else if let Some(found) = like_alarm(colour) {
+            let alarm = written(palette.alarm);
+            let message = format!("`run[{at}].colour` is too like that of turned-over elements, {alarm}: {found}");
             report.at(&path, message, "choose another hue, or leave it out".to_owned());
         }
     }
@@ -112,19 +104,10 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
         (None, Some(_)) => ("body", "that of turned-over elements,"),
         (None, None) => return,
     };
-    let pairs = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
-    let seen = pairs.iter().flat_map(|&(sound, place)| Sight::ALL.map(|sight| (sound, place, sight)));
-    let measured = seen.map(|(sound, place, sight)| (difference(sound, palette.alarm, sight), sound, place, sight));
-    let nearest = measured.min_by(|one, other| one.0.total_cmp(&other.0));
-    let Some((found, sound, place, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
-    let opposite: Colour = if key == "body" { palette.alarm } else { sound };
-    let message = format!(
-        "`view.colours.{key}` is too like {other} {} {place}: to {} they differ by {} (CIEDE2000); expected at least \
-         {LEAST_DIFFERENCE}",
-        written(opposite),
-        sight.name(),
-        rounded_down(found)
-    );
+    let sound = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
+    let Some(found) = TooLike::find(sound, palette.alarm) else { return };
+    let opposite = written(if key == "body" { palette.alarm } else { found.colour });
+    let message = format!("`view.colours.{key}` is too like {other} {opposite} {}: {found}", found.place);
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
 }
 
@@ -132,21 +115,45 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
 fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut Report<'_>) {
     let shows_surfaces = typed.show.as_ref().is_none_or(|shown| shown.contains(&ShowFile::Surfaces));
     let Some(colour) = typed.colour.as_ref().filter(|_| !typed.hatch && shows_surfaces) else { return };
-    let shades = ramp(colour.map, theme);
-    let seen = shades.iter().flat_map(|&shade| Sight::ALL.map(|sight| (shade, sight)));
-    let measured = seen.map(|(shade, sight)| (difference(shade, palette.alarm, sight), shade, sight));
-    let nearest = measured.min_by(|one, other| one.0.total_cmp(&other.0));
-    let Some((found, shade, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
+    let shades = ramp(colour.map, theme).into_iter().map(|shade| (shade, ()));
+    let Some(found) = TooLike::find(shades, palette.alarm) else { return };
     let message = format!(
         "without a hatch, turned-over elements are told from the field by their colour alone, and {} is too like {} on \
-         its scale: to {} they differ by {} (CIEDE2000); expected at least {LEAST_DIFFERENCE}",
+         its scale: {found}",
         written(palette.alarm),
-        written(shade),
-        sight.name(),
-        rounded_down(found)
+        written(found.colour)
     );
     let help = "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
     report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
+}
+
+/// A colour that somebody may take for that of turned-over elements.
+struct TooLike<T> {
+    colour: Colour,
+    /// Where it is used.
+    place: T,
+    difference: f64,
+    vision: Vision,
+}
+
+impl<T: Copy> TooLike<T> {
+    /// The colour that is most like that of turned-over elements to anybody; `None` if all are different enough.
+    fn find(colours: impl IntoIterator<Item = (Colour, T)>, alarm: Colour) -> Option<Self> {
+        let seen = colours.into_iter().flat_map(|(colour, place)| Vision::ALL.map(|vision| (colour, place, vision)));
+        let measured = seen.map(|(colour, place, vision)| {
+            let difference = difference(colour, alarm, vision);
+            Self { colour, place, difference, vision }
+        });
+        let nearest = measured.min_by(|one, other| one.difference.total_cmp(&other.difference));
+        nearest.filter(|nearest| nearest.difference < LEAST_DIFFERENCE)
+    }
+}
+
+impl<T> fmt::Display for TooLike<T> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (eyes, found) = (self.vision.name(), rounded_down(self.difference));
+        write!(out, "to {eyes} they differ by {found} (CIEDE2000); expected at least {LEAST_DIFFERENCE}")
+    }
 }
 
 /// A number rounded down to one decimal, so that a value just below a limit does not look as if it met it.

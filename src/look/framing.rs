@@ -103,7 +103,7 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 }
 
 /// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
-/// already, or if there is nothing, nothing changes.
+/// already, or if there is nothing near, the camera stays.
 fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Subject<'_>) {
     let (low, high) = bounds(start);
     let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);

@@ -19,6 +19,7 @@ mod view;
 pub(crate) use contrast::check_runs;
 pub(crate) use framing::camera;
 pub use palette::{Palette, Theme};
+pub use ramp::SHADES;
 pub(crate) use resolve::{columns, resolve};
 pub use run_lines::LineStyle;
 pub(crate) use subject::Subject;

@@ -210,7 +210,7 @@ const DARK: Palette = Palette {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::colour::{Lab, Sight, cie76, ciede2000, encoded, lab, linear, seen_by};
+    use crate::colour::{Lab, Vision, cie76, ciede2000, encoded, lab, linear, seen_by};
 
     const WHITE: Colour = [255; 3];
 
@@ -274,8 +274,8 @@ pub(super) mod tests {
     /// The smallest difference of two colours to anybody who does not see as most do.
     fn apart(one: [f64; 3], other: [f64; 3], measure: fn(Lab, Lab) -> f64) -> f64 {
         let [one, other] = [one, other].map(|light| linear(encoded(light)));
-        let sights = [Sight::Usual, Sight::Deuteranopia, Sight::Protanopia];
-        let seen = sights.iter().flat_map(|&sight| seen_by(sight, one).into_iter().zip(seen_by(sight, other)));
+        let visions = [Vision::Normal, Vision::Deuteranopia, Vision::Protanopia];
+        let seen = visions.iter().flat_map(|&vision| seen_by(vision, one).into_iter().zip(seen_by(vision, other)));
         seen.map(|(one, other)| measure(lab(one), lab(other))).fold(f64::INFINITY, f64::min)
     }
 

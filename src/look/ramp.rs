@@ -6,7 +6,7 @@ use crate::colour::{Colour, Oklab, from_oklab};
 use colorous::Gradient;
 
 /// The number of colours of a scale; linear interpolation between them is visually exact.
-pub(crate) const SHADES: usize = 64;
+pub const SHADES: usize = 64;
 
 /// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent
 /// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
@@ -80,7 +80,7 @@ fn grey(share: f64) -> Oklab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Sight, contrast, difference, oklab};
+    use crate::colour::{Vision, contrast, difference, oklab};
     use crate::look::Palette;
 
     const USUAL: ColourMap = ColourMap::MintIndigo;
@@ -152,10 +152,10 @@ mod tests {
         for theme in [Theme::Light, Theme::Dark] {
             let ramp = ramp(ColourMap::VioletGreen, theme);
             let [low, middle, high] = [0, SHADES / 2, SHADES - 1].map(|at| ramp[at]);
-            for sight in Sight::ALL {
+            for vision in Vision::ALL {
                 for (one, other) in [(low, high), (low, middle), (middle, high)] {
-                    let found = difference(one, other, sight);
-                    assert!(found >= 15.0, "{theme:?} {}: {one:x?} and {other:x?} differ by {found}", sight.name());
+                    let found = difference(one, other, vision);
+                    assert!(found >= 15.0, "{theme:?} {}: {one:x?} and {other:x?} differ by {found}", vision.name());
                 }
             }
             // The middle is seen on the ground of its theme.

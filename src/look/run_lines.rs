@@ -84,7 +84,7 @@ mod tests {
                 }
             }
         }
-        // Where there are no colours, dashes say it.
+        // Without colours, dashes tell runs apart.
         for (at, dash) in DASHES.iter().enumerate() {
             assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
         }

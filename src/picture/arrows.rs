@@ -4,8 +4,9 @@ use super::camera::Lens;
 use super::layout::Rectangle;
 use super::narrow::narrow;
 use super::order::farthest_first;
-use super::palette::Colour;
+use super::plane::{clipped, sides};
 use super::{Mark, MarkShape};
+use crate::colour::Colour;
 use crate::sim::snapshot::Placement;
 use glam::{DVec2, DVec3};
 
@@ -109,20 +110,11 @@ impl Arrows<'_> {
     /// The part of an arrow inside the room, and its opacity: the shortest fade. Long arrows are cut, not left out, or the
     /// remaining small ones would mislead.
     fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
-        let [left, top, width, height] = self.room.map(f64::from);
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
-        let (mut begin, mut end) = (0.0, 1.0);
-        for (at, way, low, length) in [(from.x, to.x - from.x, left, width), (from.y, to.y - from.y, top, height)] {
-            let [one, other] = [low, low + length].map(|border| (border - at) / way);
-            match way == 0.0 {
-                true if at < low || at > low + length => return None,
-                true => {}
-                false => (begin, end) = (one.min(other).max(begin), one.max(other).min(end)),
-            }
-        }
-        let ends = [begin, end].map(|share| from.lerp(to, share));
+        let shares = clipped(from, to - from, sides(self.room.map(f64::from)), [0.0, 1.0])?;
+        let ends = shares.map(|share| from.lerp(to, share));
         let longer = ends[0].distance(ends[1]) / shortest - 1.0;
-        (begin < end && longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
+        (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Framing {
 }
 
 impl Framing {
-    /// What a camera looks at that follows nothing.
+    /// The framing of a camera that does not follow.
     pub fn still(camera: &Camera) -> Self {
         let Camera { target, distance, rise, .. } = *camera;
         Self { target, base: target, distance, rise }

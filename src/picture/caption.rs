@@ -1,16 +1,17 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
-use super::palette::{Colour, LineStyle, Palette};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
 use super::{Curve, Mark, MarkShape, number};
+use crate::colour::Colour;
+use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Divergence, Snapshot};
 
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
-/// The widest times that a clock shows: room is kept for them, so that nothing moves when the digits change.
+/// The widest time of a clock; room for it is reserved, so that nothing moves when the digits change.
 const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
@@ -76,7 +77,7 @@ pub(super) struct Heading<'a> {
 pub(super) struct Number {
     /// The number with its unit.
     value: String,
-    /// The widest value of its kind: its room is kept free, so that nothing comes and goes.
+    /// The widest value of its kind; room for it is reserved, so that text does not appear and disappear.
     widest: String,
     /// What it is, in words and in fewer words.
     wordings: [String; 2],

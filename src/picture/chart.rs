@@ -3,10 +3,9 @@
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::narrow::narrow;
-use super::palette::Colour;
 use super::text::{Fonts, Weight};
 use super::{Curve, Mark, MarkShape};
-use crate::colour::mixed;
+use crate::colour::{Colour, mixed};
 
 /// Size of the numbers at ticks (px in the reference picture).
 pub(super) const NUMBERS: f64 = 14.0;

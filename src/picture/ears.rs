@@ -81,7 +81,7 @@ pub(super) fn bare_elements(body: &Body) -> Vec<usize> {
     let mut has_face = vec![false; body.elements.len()];
     let owners = body.faces.inner.iter().chain(&body.faces.outer).flatten();
     owners.for_each(|&element| has_face[element as usize] = true);
-    // Faces given by hand are drawn instead of the elements' own, and then elements inside need not be seen.
+    // Listed faces are drawn instead of the elements' own, and then elements inside may stay hidden.
     let own = (0..body.elements.len()).all(|element| {
         let mut expected = false;
         body.topology().for_each_face(element, |_| expected = true);

@@ -4,9 +4,9 @@
 use super::Curve;
 use super::caption::Writer;
 use super::chart::{Chart, NUMBERS};
-use super::course::{Line, OWN};
 use super::layout::{CURVE_NAME, Scale};
 use super::narrow::narrow;
+use super::series::{OWN, Series};
 use super::text::{Fonts, Weight};
 
 /// From the chart to the names: the mark of the present moment has room there (px in the reference picture).
@@ -40,18 +40,17 @@ pub(super) struct Ends {
 impl Ends {
     /// The names of curves in a room of a width and a height (px). `None` for a single curve, which needs no name, and if
     /// no name would be legible or unique.
-    pub(super) fn new(fonts: &Fonts, lines: &[Line], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
+    pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
         let size = NUMBERS * unit;
-        let shown = lines.iter().filter(|line| !line.points.is_empty()).count();
+        let shown = series.iter().filter(|one| !one.points.is_empty()).count();
         let sample = if shown > FEW { SAMPLE.iter().sum::<f64>() * unit } else { 0.0 };
         let room = width - GAP * unit - sample;
         if shown < 2 || fitting(height, unit) == 0 || room < LEAST_ROOM * size || !Scale::legible(size) {
             return None;
         }
-        let names: Vec<_> =
-            lines.iter().map(|line| fonts.shortened(&line.name, Weight::SemiBold, size, room)).collect();
+        let names: Vec<_> = series.iter().map(|one| fonts.shortened(&one.name, Weight::SemiBold, size, room)).collect();
         let is_alike =
-            |at: usize| lines.iter().zip(&names).any(|(line, name)| names[at] == *name && line.name != lines[at].name);
+            |at: usize| series.iter().zip(&names).any(|(one, name)| names[at] == *name && one.name != series[at].name);
         let are_clear: Vec<_> = (0..names.len()).map(|at| !is_alike(at)).collect();
         let widest = names.iter().map(|name| fonts.width(name, Weight::SemiBold, size)).fold(0.0, f64::max);
         let width = GAP * unit + sample + widest;
@@ -64,14 +63,14 @@ impl Ends {
         &self,
         writer: &mut Writer<'_>,
         chart: Chart,
-        lines: &[Line],
+        series: &[Series],
         ends: &[Option<[f64; 2]>],
         strong: Option<usize>,
         [top, bottom]: [f64; 2],
     ) {
         let (unit, size) = (chart.unit, NUMBERS * chart.unit);
-        let own = lines.iter().position(|line| strong == Some(line.run));
-        let all = (0..lines.len()).filter(|&at| self.names[at].1 || own == Some(at));
+        let own = series.iter().position(|one| strong == Some(one.run));
+        let all = (0..series.len()).filter(|&at| self.names[at].1 || own == Some(at));
         let all: Vec<_> = all.filter_map(|at| Some((at, ends[at]?))).collect();
         let mut order = farthest(all, own, fitting(bottom - top, unit));
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
@@ -80,7 +79,7 @@ impl Ends {
         let places = spread(&heights, CURVE_NAME * unit, [top + half, bottom - half]);
         let left = chart.right + GAP * unit;
         for (&(at, [x, y]), &place) in order.iter().zip(&places) {
-            let line = &lines[at];
+            let one = &series[at];
             let is_early = x < chart.right - 1.0;
             if is_early || (place - y).abs() > HARDLY * unit {
                 let free = FREE * unit;
@@ -91,23 +90,23 @@ impl Ends {
                     points: points.into_iter().map(|point| point.map(narrow)).collect(),
                     width: narrow(LEADER * chart.thin),
                     dash: if is_early { DOTS.map(|length| narrow(length * unit)).to_vec() } else { Vec::new() },
-                    colour: line.style.colour,
+                    colour: one.style.colour,
                     alpha: narrow(LEADER_ALPHA),
                 });
             }
             if self.sample > 0.0 {
                 let length = SAMPLE[0] * unit;
-                let dash = line.style.dash.iter().map(|length| narrow(length * chart.thickness()));
+                let dash = one.style.dash.iter().map(|length| narrow(length * chart.thickness()));
                 writer.curves.push(Curve {
                     points: vec![[left, place].map(narrow), [left + length, place].map(narrow)],
                     width: narrow(OWN * chart.thickness()),
                     dash: dash.collect(),
-                    colour: line.style.colour,
+                    colour: one.style.colour,
                     alpha: 1.0,
                 });
             }
-            let weight = if strong == Some(line.run) { Weight::SemiBold } else { Weight::Regular };
-            let colour = writer.palette.text_like(line.style.colour);
+            let weight = if strong == Some(one.run) { Weight::SemiBold } else { Weight::Regular };
+            let colour = writer.palette.text_like(one.style.colour);
             writer.left(&self.names[at].0, weight, size, colour, left + self.sample, place + 0.36 * size);
         }
     }

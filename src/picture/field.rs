@@ -1,6 +1,7 @@
 //! The values of a scalar field as places on their scale of colours.
 
 use super::narrow::narrow;
+use crate::colour::Colour;
 use crate::look::ColourScale;
 use crate::sim::body::Body;
 use crate::sim::field::Support;
@@ -71,6 +72,13 @@ pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
     narrow(share.clamp(0.0, 1.0))
 }
 
+/// The colour of a place on a scale, from 0 to 1.
+pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
+    let last = ramp.len().saturating_sub(1);
+    let at = (f64::from(place).clamp(0.0, 1.0) * last as f64).round() as usize;
+    ramp.get(at).copied().unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,6 +101,16 @@ mod tests {
         assert_eq!(place(f64::NAN, [1.0, 3.0]), NOWHERE);
         assert_eq!(place(0.0, [-f64::MAX, f64::MAX]), 0.5);
         assert_eq!(place(5.0, [0.0, 5e-324]), 1.0);
+    }
+
+    #[test]
+    fn any_place_has_a_colour() {
+        let ramp = [[1; 3], [2; 3], [3; 3]];
+        assert_eq!(
+            [-3.0, 0.0, 0.5, 1.0, 9.0].map(|place| colour(&ramp, place)),
+            [[1; 3], [1; 3], [2; 3], [3; 3], [3; 3]]
+        );
+        assert_eq!(colour(&[], 0.5), [0; 3]);
     }
 
     #[test]

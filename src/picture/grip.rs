@@ -1,10 +1,10 @@
 //! Marks on nodes that grips hold or drag.
 
 use super::layout::{Rectangle, Scale};
-use super::palette::Palette;
 use super::pointer::{Going, Pointers};
 use super::skin::Skin;
 use super::{Mark, MarkShape};
+use crate::look::Palette;
 use crate::sim::grip::Grip;
 use crate::sim::motion::Motion;
 use glam::DVec3;

@@ -6,9 +6,9 @@ use super::caption::Writer;
 use super::chart::filled;
 use super::layout::Scale;
 use super::number;
-use super::palette::Colour;
 use super::text::Weight;
 use super::{Mark, MarkShape};
+use crate::colour::Colour;
 use glam::DVec2;
 
 /// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
@@ -121,7 +121,7 @@ impl Legend {
         }
     }
 
-    /// An arrow and what it stands for; says where that ends (px).
+    /// An arrow and the length that it stands for; returns where the text ends (px).
     fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
@@ -202,7 +202,7 @@ impl Legend {
         }
     }
 
-    /// Writes a text of a size in the reference picture and says where it ends (px).
+    /// Writes a text of a size in the reference picture and returns where it ends (px).
     #[expect(clippy::too_many_arguments, reason = "a line of text is all of these")]
     fn write(
         self,

@@ -15,7 +15,6 @@ mod camera;
 mod caption;
 mod chart;
 mod compose;
-mod course;
 mod ears;
 mod ends;
 mod exploded;
@@ -27,10 +26,9 @@ mod narrow;
 mod number;
 mod obstacle;
 mod order;
-mod palette;
 mod plane;
 mod pointer;
-mod ramp;
+mod series;
 mod shadow;
 mod shell;
 mod skin;
@@ -40,11 +38,11 @@ mod tally;
 mod text;
 mod wire;
 
+pub use crate::colour::Colour;
+pub use crate::look::{Palette, SHADES};
 pub use camera::{Framing, Lens, Middles, framing};
 pub use compose::{Composer, NoRoom, compose, compose_figure};
 pub use layout::Rectangle;
-pub use palette::{Colour, Palette};
-pub use ramp::SHADES;
 pub use shadow::{CELLS, Shade};
 pub use text::{Face, Fonts, Glyph, TextRun, Weight};
 
@@ -81,7 +79,7 @@ pub struct Panel {
     pub viewport: Rectangle,
     /// The part of the viewport that the body and its lines may touch. Its width or height is 0 if there is none.
     pub region: Rectangle,
-    /// How it is seen.
+    /// Camera and light.
     pub sight: Sight,
     /// What the body stands on, if it is drawn.
     pub floor: Option<Floor>,
@@ -147,8 +145,8 @@ pub struct Solid {
     pub mesh: Mesh,
     /// Its colour, before light falls on it.
     pub colour: Colour,
-    /// The colour of its rim, in the plane. There `hatch` says how far inside its outline a corner is (px), and corners
-    /// reach beyond it by more than half a pixel.
+    /// The colour of its rim, in the plane. There `hatch` of a corner is its distance inside the outline (px), and
+    /// corners reach beyond the outline by more than half a pixel.
     pub rim: Option<Colour>,
     /// How much the body occludes the ambient light at each corner, in space: 1 where they touch face to face, 0 where it
     /// does not. Empty if the body is not near.
@@ -295,7 +293,7 @@ pub enum LineKind {
     Contour = 2,
     /// The same of the turned-over set.
     AlarmContour = 3,
-    /// An edge of an element without faces, which nothing else shows.
+    /// An edge of an element without faces.
     Bar = 4,
     /// An edge of a solid obstacle.
     ObstacleEdge = 8,

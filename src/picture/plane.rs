@@ -5,8 +5,9 @@ use super::ears::Ears;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;
-use super::palette::{Colour, Palette};
 use super::{Mark, MarkShape};
+use crate::colour::Colour;
+use crate::look::Palette;
 use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use glam::{DVec2, DVec3};
@@ -91,7 +92,7 @@ impl Flat<'_> {
             // Walls may stand beside the text.
             (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
         }
-        let Some([from, to]) = within(start, along, clear) else { return };
+        let Some([from, to]) = clipped(start, along, sides(clear), WHOLE) else { return };
         // Nothing of one panel appears in its neighbour.
         let inward = along.perp();
         let ends = [from, to].map(|at| start + at * along);
@@ -271,22 +272,35 @@ pub(super) fn node_radius(scale: Scale, element: f64) -> f64 {
     (NODE * scale.line()).min((CROWDED * element).max(SMALLEST_NODE))
 }
 
-/// From where to where a straight line, given by a point and a direction of length one, lies in a rectangle.
-fn within(start: DVec2, along: DVec2, [left, top, width, height]: [f64; 4]) -> Option<[f64; 2]> {
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    for (at, step, low, length) in [(start.x, along.x, left, width), (start.y, along.y, top, height)] {
+/// From where to where a straight line lies in a rectangle given by its four sides, in multiples of a direction from a
+/// point of the line, within a range (Liang and Barsky).
+pub(super) fn clipped(
+    start: DVec2,
+    along: DVec2,
+    [left, top, right, bottom]: [f64; 4],
+    [mut from, mut to]: [f64; 2],
+) -> Option<[f64; 2]> {
+    for (at, step, low, high) in [(start.x, along.x, left, right), (start.y, along.y, top, bottom)] {
         if step.abs() < 1e-12 {
             // It runs beside the rectangle or between these two sides.
-            if at < low || at > low + length {
+            if at < low || at > high {
                 return None;
             }
         } else {
-            let [one, other] = [low, low + length].map(|side| (side - at) / step);
+            let [one, other] = [low, high].map(|side| (side - at) / step);
             (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
         }
     }
     (to > from).then_some([from, to])
 }
+
+/// The left, top, right and bottom side of a rectangle of a width and a height (px).
+pub(super) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
+    [left, top, left + width, top + height]
+}
+
+/// All of a line.
+const WHOLE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// Whether a polygon winds around a point.
 pub(super) fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
@@ -351,13 +365,14 @@ mod tests {
 
     #[test]
     fn lines_are_cut_to_their_rectangle() {
-        let (rectangle, slant) = ([10.0, 20.0, 40.0, 30.0], DVec2::ONE.normalize());
-        assert_eq!(within(DVec2::new(0.0, 30.0), DVec2::X, rectangle), Some([10.0, 50.0]));
-        assert_eq!(within(DVec2::new(0.0, 10.0), DVec2::X, rectangle), None);
-        assert_eq!(within(DVec2::new(30.0, 0.0), -DVec2::Y, rectangle), Some([-50.0, -20.0]));
-        let [from, to] = within(DVec2::new(10.0, 20.0), slant, rectangle).unwrap();
+        let (rectangle, slant) = (sides([10.0, 20.0, 40.0, 30.0]), DVec2::ONE.normalize());
+        let clip = |start, along| clipped(start, along, rectangle, WHOLE);
+        assert_eq!(clip(DVec2::new(0.0, 30.0), DVec2::X), Some([10.0, 50.0]));
+        assert_eq!(clip(DVec2::new(0.0, 10.0), DVec2::X), None);
+        assert_eq!(clip(DVec2::new(30.0, 0.0), -DVec2::Y), Some([-50.0, -20.0]));
+        let [from, to] = clip(DVec2::new(10.0, 20.0), slant).unwrap();
         assert!(from.abs() < 1e-12 && (to - 30.0 * 2.0_f64.sqrt()).abs() < 1e-12, "{from} {to}");
-        assert_eq!(within(DVec2::new(60.0, 0.0), slant, rectangle), None);
+        assert_eq!(clip(DVec2::new(60.0, 0.0), slant), None);
     }
 
     #[test]

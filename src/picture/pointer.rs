@@ -4,7 +4,7 @@ use super::Mark;
 use super::arrows::arrow;
 use super::camera::Lens;
 use super::layout::{Rectangle, Scale};
-use super::palette::Palette;
+use crate::look::Palette;
 use glam::{DVec2, DVec3};
 
 /// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).
@@ -36,7 +36,7 @@ pub(super) struct Pointers<'a> {
 
 impl Pointers<'_> {
     /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
-    /// of the speed, so that it comes and goes gently; nothing is drawn of what rests, and nothing outside the panel.
+    /// of the speed, so that it fades gently; there is none for what rests, and none outside the panel.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);

@@ -51,8 +51,8 @@ impl Skin {
         self.places[node as usize] != INSIDE
     }
 
-    /// How much of each node of the body is seen, from 0 to 1: all of those on a side of the skin that is turned towards
-    /// the viewer, and less of it the more it is seen from the side. In the plane all are seen.
+    /// The visibility of each node of the body, from 0 to 1: 1 on faces towards the viewer, less as they turn to the side,
+    /// 0 on those turned away. In the plane all are visible.
     pub(super) fn visible(&self, position: &[DVec3], lens: &Lens) -> Vec<f64> {
         if lens.orthographic {
             return vec![1.0; position.len()];

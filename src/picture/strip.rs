@@ -4,9 +4,9 @@
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
-use super::course::{self, Line, OWN};
 use super::ends::Ends;
 use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, MOST_OTHERS, Rectangle, Scale};
+use super::series::{self, OWN, Series};
 use super::text::Weight;
 use crate::history::History;
 use crate::scene::Scene;
@@ -37,7 +37,7 @@ pub(super) struct Strips {
     name: &'static str,
     /// The last time shown (s).
     end: f64,
-    lines: Vec<Line>,
+    series: Vec<Series>,
     /// The values that all strips show; `None` if there are none.
     range: Option<[f64; 2]>,
 }
@@ -46,12 +46,12 @@ impl Strips {
     /// Prepares to show a diagnostic of all runs of a history.
     pub(super) fn new(diagnostic: Diagnostic, history: &History, scene: &Scene) -> Self {
         let palette = &scene.view.look.palette;
-        let line = |course| Line::new(diagnostic, course, scene, palette);
-        let lines: Vec<_> = history.courses.iter().map(line).collect();
+        let one = |course| Series::new(diagnostic, course, scene, palette);
+        let series: Vec<_> = history.courses.iter().map(one).collect();
         // Counts are bounded by the number of elements, so diverged runs are shown whole.
-        let range = course::range(&lines, diagnostic != Diagnostic::TurnedOver);
-        let name = course::name(diagnostic, scene);
-        Self { diagnostic, name, end: history.end, range, lines }
+        let range = series::range(&series, diagnostic != Diagnostic::TurnedOver);
+        let name = series::name(diagnostic, scene);
+        Self { diagnostic, name, end: history.end, series, range }
     }
 
     /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
@@ -75,7 +75,7 @@ impl Strips {
         let kind = if self.is_count() { Kind::Count } else { Kind::Value };
         let rows = ((bottom - top) / (ROWS_APART * unit)) as usize + 1;
         let values = self.range.map(|range| Axis::new(kind, range, self.diagnostic.unit(), rows.min(MOST_TICKS)));
-        let own = self.lines.iter().find(|line| line.run == shown.run && !line.points.is_empty());
+        let own = self.series.iter().find(|one| one.run == shown.run && !one.points.is_empty());
         let unit_text = values.as_ref().map_or("", |axis| &axis.unit);
         let note = match (unit_text, own) {
             ("", Some(_)) => String::new(),
@@ -87,9 +87,9 @@ impl Strips {
             values.iter().flat_map(|axis| &axis.texts).map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
         let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
         let between = [chart.top - NAMES_ABOVE * unit, top_of_all + height];
-        let few = self.lines.len() <= MOST_OTHERS + 1;
+        let few = self.series.len() <= MOST_OTHERS + 1;
         let room = [NAMES * width, between[1] - between[0]];
-        let names = few.then(|| Ends::new(writer.fonts, &self.lines, unit, room)).flatten();
+        let names = few.then(|| Ends::new(writer.fonts, &self.series, unit, room)).flatten();
         let taken = names.as_ref().map_or(0.0, |names| names.width);
         let chart = Chart { left: (left + indent).round(), right: (chart.right - taken).round(), ..chart };
         if chart.right - chart.left < LEAST_WIDTH {
@@ -106,23 +106,23 @@ impl Strips {
         chart.columns(writer, &times, values.is_none(), f64::NEG_INFINITY);
         let palette = writer.palette;
         if let Some(values) = &values {
-            let others = self.lines.iter().filter(|line| line.run != shown.run);
-            for line in others.filter(|_| few) {
-                line.draw(writer, chart, [&times, values], [OTHER, FAINT]);
+            let others = self.series.iter().filter(|one| one.run != shown.run);
+            for one in others.filter(|_| few) {
+                one.draw(writer, chart, [&times, values], [OTHER, FAINT]);
             }
             if let Some(names) = &names {
-                let ends: Vec<_> = self.lines.iter().map(|line| line.end(chart, [&times, values])).collect();
-                names.write(writer, chart, &self.lines, &ends, Some(shown.run), between);
+                let ends: Vec<_> = self.series.iter().map(|one| one.end(chart, [&times, values])).collect();
+                names.write(writer, chart, &self.series, &ends, Some(shown.run), between);
             }
         }
         let now = chart.x(&times, shown.snapshot.time);
         writer.curves.push(chart.moment(now, palette.text));
-        let Some((line, values)) = own.zip(values.as_ref()) else { return };
-        line.draw(writer, chart, [&times, values], [OWN, 1.0]);
+        let Some((own, values)) = own.zip(values.as_ref()) else { return };
+        own.draw(writer, chart, [&times, values], [OWN, 1.0]);
         let value = self.diagnostic.of(&shown.snapshot.diagnostics);
         let y = chart.y(values, value);
         if shown.snapshot.status == Status::Ok && (chart.top - 1.0..=chart.bottom + 1.0).contains(&y) {
-            for (radius, colour) in [(DOT + HALO, palette.background), (DOT, line.style.colour)] {
+            for (radius, colour) in [(DOT + HALO, palette.background), (DOT, own.style.colour)] {
                 writer.curves.push(dot([now, y], radius * chart.thickness(), colour));
             }
         }

@@ -26,7 +26,7 @@ const VERY_MANY_FACES: usize = 12_000;
 
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 1.5;
-/// Edges of elements smaller than this (px) are not seen through the body.
+/// Edges of elements smaller than this (px) do not show through the body.
 const SEEN_THROUGH: f64 = 6.5;
 /// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
 /// small ones would cover everything.

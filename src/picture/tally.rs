@@ -1,8 +1,8 @@
 //! The tally: one square for each element, a row for each layer, with the turned-over elements marked.
 
 use super::layout::Scale;
-use super::palette::Palette;
 use super::{Mark, MarkShape};
+use crate::look::Palette;
 use crate::sim::body::Body;
 use glam::DVec3;
 

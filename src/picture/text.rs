@@ -1,6 +1,7 @@
 //! Text layout: glyphs and widths. The renderer rasterises them.
 
 use super::narrow::narrow;
+use crate::colour::Colour;
 use crate::look::FontFiles;
 use ab_glyph::{Font, FontArc, FontRef, GlyphId, OutlinedGlyph, PxScale, point};
 use sha2::{Digest, Sha256};
@@ -38,7 +39,7 @@ pub struct TextRun {
     /// Height of the baseline, down from the top of the picture (px).
     pub baseline: f32,
     /// Its colour.
-    pub colour: super::palette::Colour,
+    pub colour: Colour,
     /// Left and right end (px).
     pub span: [f32; 2],
     /// Its glyphs from left to right.
@@ -208,7 +209,7 @@ impl Fonts {
         text: &str,
         weight: Weight,
         size: f64,
-        colour: super::palette::Colour,
+        colour: Colour,
         left: f64,
         baseline: f64,
     ) -> TextRun {
@@ -296,7 +297,7 @@ mod tests {
 
     #[test]
     fn letters_come_from_the_scene_then_from_the_built_in_font_then_there_is_a_box() {
-        // A font whose table of characters has been emptied knows no letter, like one of another script.
+        // A font with an empty character map has no letters, like one of another script.
         let mut blank = REGULAR.to_vec();
         let tables = usize::from(u16::from_be_bytes([blank[4], blank[5]]));
         let entry = (0..tables).map(|at| 12 + 16 * at).find(|&at| &blank[at..at + 4] == b"cmap").unwrap();

@@ -3,10 +3,9 @@
 use super::field::{self, NOWHERE};
 use super::narrow::{narrow, narrow_point};
 use super::order::farthest_first;
-use super::palette::{Colour, Palette};
-use super::ramp;
 use super::{Bead, Second, Stroke};
-use crate::colour::mixed;
+use crate::colour::{Colour, mixed};
+use crate::look::Palette;
 use crate::sim::body::Body;
 use glam::DVec3;
 
@@ -20,10 +19,10 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// The same behind one that hides nothing.
+/// The same behind a surface of opacity 0.
 const CLEAR: f64 = 160.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
-/// or there would be nothing but lines.
+/// or lines would cover everything.
 const SMALL_ELEMENT: f64 = 26.0;
 const THINNEST: f64 = 0.2;
 /// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.
@@ -113,7 +112,7 @@ impl Wire<'_> {
     fn strained(&self, ends: [u32; 2], ramp: &[Colour], range: [f64; 2], haze: &dyn Fn(DVec3) -> f64) -> Placed {
         let ends_now = ends.map(|node| self.position[node as usize]);
         let place = field::place(spring_strain(self.body, self.position, ends), range);
-        let own = if place == NOWHERE { self.palette.spring } else { ramp::colour(ramp, place) };
+        let own = if place == NOWHERE { self.palette.spring } else { field::colour(ramp, place) };
         let middle = ends_now[0].midpoint(ends_now[1]);
         let faded = |colour| mixed(colour, self.palette.background, haze(middle));
         let (depth, plain) = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
@@ -226,7 +225,7 @@ impl Wire<'_> {
         for piece in 0..pieces as usize {
             let shares = [piece, piece + 1].map(|at| at as f64 / pieces);
             let ends = shares.map(|share| from.lerp(to, share));
-            let colours = shares.map(|share| ramp::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
+            let colours = shares.map(|share| field::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
             let casing = faded(self.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
             let (depth, plain) = self.straight(ends, colours, CASED * width);
             strokes.push((depth, Stroke { second: Second::Casing(casing), ..plain }));
@@ -255,7 +254,7 @@ impl Wire<'_> {
     fn place_colour(&self, node: u32) -> Option<Colour> {
         let (ramp, places) = self.shades?;
         let place = places.get(node as usize).copied().filter(|&place| place != NOWHERE)?;
-        Some(ramp::colour(ramp, place))
+        Some(field::colour(ramp, place))
     }
 
     fn relative(&self, point: DVec3) -> [f32; 3] {

@@ -9,8 +9,8 @@ const UNSEEN: f64 = 1.6 / 255.0;
 
 /// What two drawings of one picture, on white and on black ground, have in common: the colour and opacity of each pixel.
 ///
-/// Where nothing was drawn the drawings are white and black, and the opacity is 0; where nothing of the ground is seen
-/// they are equal, and it is exactly 255. Between, a pixel of opacity α shows `drawn + (1 − α) ground`. Blending as sRGB
+/// Where nothing was drawn the drawings are white and black, and the opacity is 0; where the ground is covered they are
+/// equal, and it is exactly 255. Between, a pixel of opacity α shows `drawn + (1 − α) ground`. Blending as sRGB
 /// values, as words are blended and pages are put together, that is the same α for all channels. Blending linear light,
 /// as borders of bodies and soft shadows are, each channel would need one of its own. There is only one, so it is the
 /// middle one, and the colour is the one that looks exactly as drawn on the ground that the picture is made for,
@@ -35,7 +35,7 @@ pub(super) fn recover(on_white: &RgbImage, on_black: &RgbImage, on_light: bool, 
     RgbaImage::from_raw(width, height, recovered.collect()).expect("four bytes a pixel")
 }
 
-/// Whether next to none of the ground's light is seen.
+/// Whether hardly any of the ground's light shows through.
 fn is_solid(white: [u8; 3], black: [u8; 3]) -> bool {
     let [light, dark] = [white, black].map(linear);
     (0..3).all(|at| white[at].saturating_sub(black[at]) <= 1 || light[at] - dark[at] <= UNSEEN)
@@ -43,11 +43,11 @@ fn is_solid(white: [u8; 3], black: [u8; 3]) -> bool {
 
 /// One pixel, from what it looks like on white and on black.
 fn pixel(white: [u8; 3], black: [u8; 3], on_light: bool) -> Rgba<u8> {
-    // How much of the ground is seen in each channel.
+    // How much of the ground shows through in each channel.
     let seen: [u8; 3] = std::array::from_fn(|at| white[at].saturating_sub(black[at]));
     let [least, most] = [seen.iter().min(), seen.iter().max()].map(|end| end.copied().unwrap_or_default());
     let middle = least.midpoint(most);
-    // Neither less than nothing nor more than everything can be added to the ground.
+    // The colour must stay in the range of bytes.
     let through = if on_light {
         middle.min(white.into_iter().min().unwrap_or_default())
     } else {

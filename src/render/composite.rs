@@ -21,16 +21,9 @@ impl Composite {
         let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::reading_shader(samples), SHADER]);
         let layout = group_layout(gpu, "bodies", &[texture_entry(0, false, samples), texture_entry(2, false, 1)]);
         let recipe = Recipe {
-            label: "composite",
-            shader: &module,
-            entries: ["corner", "layered"],
             groups: &[&panels.layout, &layout],
-            vertices: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: PICTURE_FORMAT,
             blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            depth: false,
-            samples: 1,
+            ..Recipe::rectangles("composite", &module, ["corner", "layered"], PICTURE_FORMAT)
         };
         Self { pipeline: recipe.build(gpu), layout, textures: None }
     }

@@ -1,7 +1,7 @@
 //! Flat curves over the finished picture.
 
 use super::overlay::CanvasUniform;
-use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, uniform_entry};
+use super::pipeline::{ENCODED_FORMAT, Recipe, bind, for_instances, group_layout, shader, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Curve, Picture};
 use bytemuck::{Pod, Zeroable};
@@ -41,24 +41,13 @@ impl Curves {
         let module = shader(gpu, "curve", &[SHADER]);
         let layout = group_layout(gpu, "curve", &[uniform_entry(0, size_of::<CanvasUniform>(), false)]);
         let recipe = Recipe {
-            label: "curve",
-            shader: &module,
-            entries: ["piece", "piece_colour"],
             groups: &[&layout],
             vertices: &[Some(for_instances::<Piece>(&ATTRIBUTES))],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: ENCODED_FORMAT,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            depth: false,
-            samples: 1,
+            ..Recipe::rectangles("curve", &module, ["piece", "piece_colour"], ENCODED_FORMAT)
         };
         let mut canvas = GrowingBuffer::new(gpu, "canvas of curves", wgpu::BufferUsages::UNIFORM, 1);
         canvas.write(gpu, &[CanvasUniform { size: size.map(|length| length as f32), unused: [0.0; 2] }]);
-        let canvas = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("curve"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: canvas.buffer().as_entire_binding() }],
-        });
+        let canvas = bind(gpu, "curve", &layout, &[(0, canvas.buffer().as_entire_binding())]);
         Self {
             pipeline: recipe.build(gpu),
             canvas,

@@ -1,5 +1,6 @@
 //! The glyph atlas: each glyph in use is rasterised once and kept in one texture.
 
+use super::pipeline::written_texture;
 use crate::gpu::Gpu;
 use crate::picture::{Face, Fonts, Glyph, TextRun};
 use std::collections::HashMap;
@@ -128,14 +129,5 @@ impl Glyphs {
 }
 
 fn create(gpu: &Gpu, height: u32) -> wgpu::Texture {
-    gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("glyphs"),
-        size: wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
+    written_texture(gpu, "glyphs", [WIDTH, height, 1])
 }

@@ -1,7 +1,7 @@
 //! The floor with its grid and the soft shadows on it.
 
 use super::panel::{Panels, limit, linear};
-use super::pipeline::{PICTURE_FORMAT, Recipe, group_layout, shader, uniform_entry};
+use super::pipeline::{PICTURE_FORMAT, Recipe, bind, element, group_layout, shader, uniform_entry, written_texture};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{CELLS, Floor, Panel, Picture, Shade};
 use bytemuck::{Pod, Zeroable};
@@ -61,16 +61,9 @@ impl Grounds {
         let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades), entry(2, sampler)];
         let layout = group_layout(gpu, "ground", &entries);
         let recipe = Recipe {
-            label: "ground",
-            shader: &module,
-            entries: ["corner", "floor_colour"],
             groups: &[&panels.layout, &layout],
-            vertices: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: PICTURE_FORMAT,
             blend: None,
-            depth: false,
-            samples: 1,
+            ..Recipe::rectangles("ground", &module, ["corner", "floor_colour"], PICTURE_FORMAT)
         };
         let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shades"),
@@ -129,22 +122,10 @@ impl Grounds {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("ground"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                        buffer: self.uniforms.buffer(),
-                        offset: 0,
-                        size: wgpu::BufferSize::new(size_of::<GroundUniform>() as u64),
-                    }),
-                },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            ],
-        })
+        let uniform = element::<GroundUniform>(self.uniforms.buffer());
+        let shades = wgpu::BindingResource::TextureView(&view);
+        let sampler = wgpu::BindingResource::Sampler(&self.sampler);
+        bind(gpu, "ground", &self.layout, &[(0, uniform), (1, shades), (2, sampler)])
     }
 
     /// Draws the floors of all panels that have one.
@@ -190,14 +171,5 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
 }
 
 fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
-    gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("shades"),
-        size: wgpu::Extent3d { width: CELLS as u32, height: CELLS as u32, depth_or_array_layers: layers },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
+    written_texture(gpu, "shades", [CELLS as u32, CELLS as u32, layers])
 }

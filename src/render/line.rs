@@ -144,16 +144,10 @@ impl Variant {
         };
         let build = |label, fragment| {
             let recipe = Recipe {
-                label,
-                shader: &module,
-                entries: ["segment", fragment],
                 groups: &[&panels.layout, &layout],
                 vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                target: LINE_FORMAT,
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-                depth: false,
-                samples: 1,
+                ..Recipe::rectangles(label, &module, ["segment", fragment], LINE_FORMAT)
             };
             recipe.build(gpu)
         };

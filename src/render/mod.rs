@@ -186,8 +186,8 @@ impl Renderer {
         Ok(alpha::recover(&white, &black, made_for_light, &solid))
     }
 
-    /// Hands a picture to the device and returns at once. It must be collected before the next one is submitted, for
-    /// there is one buffer for the way back.
+    /// Submits a picture and returns at once. It must be collected before the next one is submitted, because there is one
+    /// buffer for reading back.
     fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
         if picture.size != self.size {
             return Err(RenderError::OtherSize { found: picture.size, expected: self.size });

@@ -3,8 +3,7 @@
 
 use super::panel::{Panels, is_visible, limit, linear};
 use super::pipeline::{
-    BODY_FORMAT, PICTURE_FORMAT, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader,
-    texture_entry,
+    PICTURE_FORMAT, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader, texture_entry,
 };
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -101,16 +100,9 @@ impl Solids {
         // The light is that on bodies.
         let module = shader(gpu, "obstacle", &[&super::surface::parts(samples, 0)[..], &[SHADER]].concat());
         let recipe = Recipe {
-            label: "obstacle",
-            shader: &module,
-            entries: ["solid_corner", fragment],
             groups: &[&panels.layout],
             vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            target: BODY_FORMAT,
-            blend: None,
-            depth: true,
-            samples,
+            ..Recipe::bodies("obstacle", &module, ["solid_corner", fragment], samples)
         };
         recipe.build(gpu)
     }
@@ -203,16 +195,10 @@ impl Slabs {
         let group = group_layout(gpu, "pane", &entries);
         let build = |entries, vertices, topology| {
             let recipe = Recipe {
-                label: "pane",
-                shader: &module,
-                entries,
                 groups: &[&panels.layout, &group],
                 vertices: &[Some(vertices)],
                 topology,
-                target: PICTURE_FORMAT,
-                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                depth: false,
-                samples: 1,
+                ..Recipe::rectangles("pane", &module, entries, PICTURE_FORMAT)
             };
             recipe.build(gpu)
         };

@@ -1,7 +1,9 @@
 //! Marks and words on top of everything.
 
 use super::glyphs::Glyphs;
-use super::pipeline::{ENCODED_FORMAT, Recipe, for_instances, group_layout, shader, texture_entry, uniform_entry};
+use super::pipeline::{
+    ENCODED_FORMAT, Recipe, bind, for_instances, group_layout, shader, texture_entry, uniform_entry,
+};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{self, Colour, Fonts, MarkShape, Picture, TextRun};
 use bytemuck::{Pod, Zeroable};
@@ -65,16 +67,9 @@ impl Overlay {
         let entries = [uniform_entry(0, size_of::<CanvasUniform>(), false), texture_entry(1, false, 1)];
         let layout = group_layout(gpu, "overlay", &entries);
         let recipe = Recipe {
-            label: "overlay",
-            shader: &module,
-            entries: ["corner", "mark_colour"],
             groups: &[&layout],
             vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: ENCODED_FORMAT,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            depth: false,
-            samples: 1,
+            ..Recipe::rectangles("overlay", &module, ["corner", "mark_colour"], ENCODED_FORMAT)
         };
         Self {
             pipeline: recipe.build(gpu),
@@ -128,14 +123,8 @@ impl Overlay {
     }
 
     fn bind(&self, gpu: &Gpu) -> wgpu::BindGroup {
-        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("overlay"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.canvas.buffer().as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&self.glyphs.view()) },
-            ],
-        })
+        let (canvas, glyphs) = (self.canvas.buffer().as_entire_binding(), self.glyphs.view());
+        bind(gpu, "overlay", &self.layout, &[(0, canvas), (1, wgpu::BindingResource::TextureView(&glyphs))])
     }
 
     /// Draws what lies below the bodies.

@@ -1,5 +1,6 @@
 //! The data of a panel that every pass reads, and the places of bodies in the textures that hold them.
 
+use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
@@ -47,7 +48,7 @@ pub(super) struct OccluderUniform {
 }
 
 impl OccluderUniform {
-    /// Reaches nothing.
+    /// An unused entry, which reaches nothing.
     const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, rotation: Vec4::W };
 
     fn new(occluder: &Occluder) -> Self {
@@ -160,12 +161,9 @@ pub(super) struct Panels {
 
 impl Panels {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("panel"),
-            entries: &[super::pipeline::uniform_entry(0, size_of::<PanelUniform>(), true)],
-        });
+        let layout = group_layout(gpu, "panel", &[uniform_entry(0, size_of::<PanelUniform>(), true)]);
         let buffer = GrowingBuffer::new(gpu, "panels", wgpu::BufferUsages::UNIFORM, 4 * STRIDE);
-        let bind_group = bind(gpu, &layout, &buffer);
+        let bind_group = bind(gpu, "panel", &layout, &[(0, element::<PanelUniform>(buffer.buffer()))]);
         Self { generation: buffer.generation(), buffer, bind_group, layout }
     }
 
@@ -182,7 +180,8 @@ impl Panels {
         }
         self.buffer.write(gpu, &bytes);
         if self.buffer.generation() != self.generation {
-            self.bind_group = bind(gpu, &self.layout, &self.buffer);
+            let uniform = element::<PanelUniform>(self.buffer.buffer());
+            self.bind_group = bind(gpu, "panel", &self.layout, &[(0, uniform)]);
             self.generation = self.buffer.generation();
         }
     }
@@ -196,21 +195,6 @@ impl Panels {
     pub(super) fn bind_whole(&self, pass: &mut wgpu::RenderPass<'_>, panel: usize) {
         pass.set_bind_group(0, &self.bind_group, &[((2 * panel + 1) * STRIDE) as u32]);
     }
-}
-
-fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, buffer: &GrowingBuffer<u8>) -> wgpu::BindGroup {
-    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("panel"),
-        layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: buffer.buffer(),
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<PanelUniform>() as u64),
-            }),
-        }],
-    })
 }
 
 /// Limits drawing to a rectangle of the target.

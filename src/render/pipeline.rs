@@ -27,7 +27,40 @@ pub(super) struct Recipe<'a> {
     pub(super) samples: u32,
 }
 
-impl Recipe<'_> {
+impl<'a> Recipe<'a> {
+    /// Rectangles of four corners without depth, blended into a target by their opacity.
+    pub(super) fn rectangles(
+        label: &'static str,
+        shader: &'a wgpu::ShaderModule,
+        entries: [&'static str; 2],
+        target: wgpu::TextureFormat,
+    ) -> Self {
+        Self {
+            label,
+            shader,
+            entries,
+            groups: &[],
+            vertices: &[],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target,
+            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+            depth: false,
+            samples: 1,
+        }
+    }
+
+    /// Opaque triangles with depth, in the textures that hold bodies.
+    pub(super) fn bodies(
+        label: &'static str,
+        shader: &'a wgpu::ShaderModule,
+        entries: [&'static str; 2],
+        samples: u32,
+    ) -> Self {
+        let topology = wgpu::PrimitiveTopology::TriangleList;
+        let rectangles = Self::rectangles(label, shader, entries, BODY_FORMAT);
+        Self { topology, blend: None, depth: true, samples, ..rectangles }
+    }
+
     pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
         let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
         let layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -125,16 +158,48 @@ pub(super) fn group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLay
     gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
-/// Textures bound in order, from binding `first`.
+/// Resources bound to the numbers given with them.
+pub(super) fn bind(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[(u32, wgpu::BindingResource<'_>)],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+        .collect();
+    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// Textures bound to the numbers given with them.
 pub(super) fn bind_textures(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     views: &[(u32, &wgpu::TextureView)],
 ) -> wgpu::BindGroup {
-    let entries: Vec<_> = views
-        .iter()
-        .map(|&(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) })
-        .collect();
-    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    let resources: Vec<_> =
+        views.iter().map(|&(binding, view)| (binding, wgpu::BindingResource::TextureView(view))).collect();
+    bind(gpu, label, layout, &resources)
+}
+
+/// One element of a type in a buffer of uniforms, to be moved by a dynamic offset.
+pub(super) fn element<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    let size = wgpu::BufferSize::new(size_of::<T>() as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
+}
+
+/// A texture of a width, a height and a number of layers, with one sample a pixel, written by the processor.
+pub(super) fn written_texture(gpu: &Gpu, label: &str, [width, height, layers]: [u32; 3]) -> wgpu::Texture {
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
 }

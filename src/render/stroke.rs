@@ -49,16 +49,9 @@ impl Strokes {
         let module = shader(gpu, "stroke", &parts);
         let layout = group_layout(gpu, "depth of bodies", &[texture_entry(1, true, samples)]);
         let recipe = Recipe {
-            label: "stroke",
-            shader: &module,
-            entries: ["stroke", "stroke_colour"],
             groups: &[&panels.layout, &layout],
             vertices: &[Some(for_instances::<Instance>(&ATTRIBUTES))],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target: PICTURE_FORMAT,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            depth: false,
-            samples: 1,
+            ..Recipe::rectangles("stroke", &module, ["stroke", "stroke_colour"], PICTURE_FORMAT)
         };
         Self {
             pipeline: recipe.build(gpu),

@@ -1,7 +1,7 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
 
 use super::panel::{Panels, is_visible, limit};
-use super::pipeline::{BODY_FORMAT, Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
+use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
@@ -104,18 +104,8 @@ impl Surfaces {
     fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, samples: u32, occluders: usize) -> Pipelines {
         let module = shader(gpu, "surface", &parts(samples, occluders));
         let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
-            let recipe = Recipe {
-                label,
-                shader: &module,
-                entries,
-                groups,
-                vertices: &[Some(vertices())],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                target: BODY_FORMAT,
-                blend: None,
-                depth: true,
-                samples,
-            };
+            let recipe =
+                Recipe { groups, vertices: &[Some(vertices())], ..Recipe::bodies(label, &module, entries, samples) };
             recipe.build(gpu)
         };
         Pipelines {

@@ -1,7 +1,7 @@
 //! Surfaces coloured by a scalar field, in place of the plain ones.
 
 use super::panel::{Panels, linear};
-use super::pipeline::{BODY_FORMAT, Recipe, for_vertices, group_layout, shader, uniform_entry};
+use super::pipeline::{Recipe, bind, for_vertices, group_layout, shader, uniform_entry};
 use super::surface::{self, Colouring, ForOccluders, Pipelines};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -35,15 +35,10 @@ impl Tint {
         let behind = [depth, colour, scale()];
         let sound_layout = group_layout(gpu, "scale, turned over", &behind);
         let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
-        let alarm_entries = [wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() }];
         Self {
             pipelines: ForOccluders::default(),
             samples,
-            alarm_group: gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("scale"),
-                layout: &alarm_layout,
-                entries: &alarm_entries,
-            }),
+            alarm_group: bind(gpu, "scale", &alarm_layout, &[(4, ramp.buffer().as_entire_binding())]),
             alarm_layout,
             sound_group: sound_group(gpu, &sound_layout, &ramp, bodies),
             sound_layout,
@@ -63,16 +58,9 @@ impl Tint {
         let vertices = [Some(surface::vertices()), Some(for_vertices::<f32>(&ATTRIBUTES))];
         let build = |label, entries, layout| {
             let recipe = Recipe {
-                label,
-                shader: &module,
-                entries,
                 groups: &[&panels.layout, layout],
                 vertices: &vertices,
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                target: BODY_FORMAT,
-                blend: None,
-                depth: true,
-                samples,
+                ..Recipe::bodies(label, &module, entries, samples)
             };
             recipe.build(gpu)
         };
@@ -121,13 +109,6 @@ fn sound_group(
     ramp: &GrowingBuffer<Vec4>,
     bodies: &Bodies,
 ) -> wgpu::BindGroup {
-    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("scale, turned over"),
-        layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&bodies.alarm_colour) },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&bodies.alarm_depth) },
-            wgpu::BindGroupEntry { binding: 4, resource: ramp.buffer().as_entire_binding() },
-        ],
-    })
+    let [depth, colour] = [&bodies.alarm_depth, &bodies.alarm_colour].map(wgpu::BindingResource::TextureView);
+    bind(gpu, "scale, turned over", layout, &[(2, depth), (3, colour), (4, ramp.buffer().as_entire_binding())])
 }

@@ -2,7 +2,7 @@
 
 use super::mistakes::{PLANE, case};
 use super::{WORLD, good};
-use localshape::colour::{Sight, contrast, difference};
+use localshape::colour::{Vision, contrast, difference};
 use localshape::look::{ColourMap, Look, Palette, Theme};
 use localshape::scene::{Limits, Scene, SceneError};
 
@@ -80,7 +80,7 @@ fn runs_have_their_places_colours_or_their_own() {
 fn least_apart(scene: &Scene) -> f64 {
     let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
     let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
-    let seen = pairs.flat_map(|two| Sight::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
+    let seen = pairs.flat_map(|two| Vision::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
     seen.map(|([one, other], sight)| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
 }
 
@@ -296,8 +296,8 @@ fn turned_over_elements_that_anybody_could_overlook_are_refused() {
     // A red and a green that most can tell.
     let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
     let [body, alarm] = [[0x7c, 0x8c, 0x40], [0xb8, 0x70, 0x3c]];
-    assert!(difference(body, alarm, Sight::Usual) > 25.0);
-    assert!(difference(body, alarm, Sight::Deuteranopia) < 20.0);
+    assert!(difference(body, alarm, Vision::Normal) > 25.0);
+    assert!(difference(body, alarm, Vision::Deuteranopia) < 20.0);
     view(colours, &[(20, 45, "to eyes without green cones (deuteranopia) they differ by")]);
 }
 

@@ -34,14 +34,14 @@ impl Draft<'_> {
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
         surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
-        // What a field colours has strokes instead.
+        // With a field, strokes are drawn instead.
         if self.shades.is_none() {
             self.bare_lines(lines);
         }
         [sound, turned_over]
     }
 
-    /// Elements without faces can be seen, too: by their edges, and those that have none by lines from their middle.
+    /// Lines for elements without faces: their edges or, if they have none, lines from their middle.
     fn bare_lines(&self, lines: &mut Vec<Line>) {
         for &element in &self.composer.bare {
             let nodes = &self.body.elements[element];
@@ -94,7 +94,7 @@ impl Draft<'_> {
         if !springs.is_empty() {
             strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
-                // Which elements have turned over is told in any case.
+                // Turned-over elements are marked in any case.
                 strokes.extend(wire.edges(edges, over, true));
             }
         }

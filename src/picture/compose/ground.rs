@@ -13,20 +13,20 @@ use std::borrow::Cow;
 
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
-/// As far as its shadow goes beyond the first distance from the point looked at, up to the third one, the floor is drawn
-/// farther, less by the second one where that begins (sizes of the body).
+/// The floor is drawn farther by as much as the shadow lies beyond the first distance from the point looked at, up to the
+/// third one; that begins gently over the second one (sizes of the body).
 const STILL_NEAR: f64 = 0.5;
 const GENTLY: f64 = 0.3;
 const FARTHEST_SHADOW: f64 = 3.0;
 /// Distance of the camera above which the floor is drawn wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// So far above the room for words below the body the floor begins to fade (px at type of the reference size): words
-/// stand on clean ground.
+/// The floor begins to fade so far above the room for text below the body (px at type of the reference size), so that no
+/// grid lies behind the text.
 const FADE_ABOVE: f64 = 9.0;
-/// The grid's lines are a side apart, or more if that were more cells than this beside a body that is a lattice, whose
-/// cells the grid repeats, and beside one that is not: there a fine grid would only be restless.
+/// The lines of the grid are a side apart, or more if a body would cover more cells than this: a lattice, whose cells the
+/// grid repeats, and any other body, beside which a fine grid would distract.
 const MOST_CELLS: [f64; 2] = [10.0, 5.0];
-/// How dark the shadow of a body without surfaces is, in parts of that of one with surfaces.
+/// The darkness of the shadow of a body without surfaces, in parts of that of one with surfaces.
 const SHEER: f64 = 0.38;
 
 impl Draft<'_> {
@@ -69,7 +69,7 @@ impl Draft<'_> {
         let middle = self.position.iter().sum::<DVec3>() / self.position.len() as f64;
         let size = self.composer.extent * self.composer.spread / self.side;
         let gone = plane.shadow((middle - self.origin) / self.side, self.key).length();
-        // It begins gently.
+        // A smooth start.
         let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
         beyond * beyond / (beyond + GENTLY * size)
     }
@@ -99,7 +99,7 @@ impl Draft<'_> {
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
-        // What one sees through lets most of the light through.
+        // A transparent body lets most of the light through.
         let opacity = if self.scene.view.visible.surfaces { self.scene.view.opacity } else { 0.0 };
         if opacity < 1.0 {
             let left = SHEER + (1.0 - SHEER) * opacity;
@@ -109,7 +109,7 @@ impl Draft<'_> {
         shades
     }
 
-    /// What throws shadows, the body and solid obstacles: points (sides) and triangles.
+    /// The shadow casters, body and solid obstacles: points (sides) and triangles.
     fn casters(&self, staged: &Staged) -> (Vec<DVec3>, Cow<'_, [[u32; 3]]>) {
         let skin = &self.composer.skin;
         let relative = |at: &DVec3| (at - self.origin) / self.side;

@@ -1,4 +1,4 @@
-//! Putting a picture together. Each of its panels is a [`Draft`] first, whose parts have files of their own.
+//! Composes pictures. Each panel starts as a [`Draft`], whose parts are in separate files.
 
 mod body;
 mod figure;
@@ -13,18 +13,18 @@ use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
-use super::palette::{LineStyle, Palette};
 use super::plane::LEVEL;
-use super::ramp;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
 use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
-use super::{Colour, Framing, Picture, number};
+use super::{Framing, Picture, number};
+use crate::colour::Colour;
 use crate::history::History;
-use crate::look::StrainScale;
+use crate::look::ramp::ramp;
+use crate::look::{LineStyle, Palette, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -35,7 +35,7 @@ use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;
 
-/// Bodies of more elements than this along a side have softer light, as if their elements were larger.
+/// Bodies with more elements than this along a side get softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
 
 /// Captions are never longer than this (lines).
@@ -77,7 +77,7 @@ pub struct Composer<'a> {
     bearers: Vec<u32>,
     /// The size of the body (m).
     extent: f64,
-    /// How many times that what is drawn of it takes.
+    /// How many times larger it is drawn where its elements are drawn apart.
     spread: f64,
     /// The middle of the nodes at the start (m).
     start: DVec3,
@@ -85,7 +85,7 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-    /// The curves below the panels, once the scene's course is known.
+    /// The curves below the panels, once the time series are set.
     strips: Option<Strips>,
 }
 
@@ -106,9 +106,8 @@ impl<'a> Composer<'a> {
         Self::with(scene, scene.view.look.palette)
     }
 
-    /// The same on a ground of one colour, into which the floor goes over without a border and what is far fades; all
-    /// else keeps its colours. Pictures on white and on black are what
-    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs.
+    /// The same on a plain background, into which the floor and what is far fade; everything else keeps its colours.
+    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs pictures on white and on black.
     pub fn on_ground(scene: &'a Scene, ground: Colour) -> Self {
         Self::with(scene, scene.view.look.palette.on_ground(ground))
     }
@@ -142,11 +141,8 @@ impl<'a> Composer<'a> {
         let visible = scene.view.visible;
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
-            spring_ramp: scene
-                .view
-                .spring_strain
-                .map_or_else(Vec::new, |scale| ramp::ramp(scale.map, scene.view.look.theme)),
+            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
+            spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette,
@@ -169,8 +165,8 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Takes note of the scene's course for the strips below the panels: that of all runs to be shown, whichever frames
-    /// of them are. Scenes without strips have no use for it.
+    /// Sets the time series for the strips below the panels: those of all runs to be shown, over the whole scene. Scenes
+    /// without strips do not need them.
     pub fn set_history(&mut self, history: &History) {
         self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
     }
@@ -208,7 +204,7 @@ impl<'a> Composer<'a> {
         let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
         let viewports = layout.panels.iter().map(|place| place.viewport);
         let panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
-        // Words and tallies lie above bodies, and stand out from them.
+        // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
             word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
@@ -385,7 +381,7 @@ fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
 }
 
-/// The middle of a body's nodes (m); `None` for a run that blew up, which no camera can follow.
+/// The middle of a body's nodes (m); `None` for a diverged run, which the camera does not follow.
 fn middle(snapshot: &Snapshot) -> Option<DVec3> {
     let followed = !matches!(snapshot.status, Status::Diverged(_));
     mean(&snapshot.position).filter(|middle| followed && middle.is_finite())

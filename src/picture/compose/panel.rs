@@ -1,17 +1,16 @@
-//! One panel: its parts, one after the other.
+//! Composes one panel from its parts.
 
 use super::Composer;
 use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
-use crate::picture::field::{NOWHERE, Shades};
+use crate::picture::field::{self, NOWHERE, Shades};
 use crate::picture::grip::Hands;
 use crate::picture::layout::{self, Rectangle, Scale};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
-use crate::picture::ramp;
 use crate::picture::shadow::key_light;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
@@ -23,15 +22,15 @@ use crate::sim::snapshot::{RunFrame, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// Coordinates of what blew up are kept within this (sides).
+/// Coordinates of diverged runs are clamped to this (sides).
 const FARTHEST: f64 = 1e12;
 
-/// At its widest, a body of the second size has contours of the usual width, and a smaller one narrower ones, down to the
-/// first size (px in the reference picture) and this part of the usual width: else it would be mostly outline.
+/// Contours become narrower for bodies smaller than the second size, down to this part of their width at the first size (px
+/// in the reference picture); otherwise small bodies would be mostly outline.
 const SMALL_BODY: [f64; 2] = [30.0, 150.0];
 const LEAST_CONTOUR: f64 = 0.4;
 
-/// One panel that is being composed, and what all its parts need to know.
+/// One panel while it is composed: the data that all its parts need.
 pub(super) struct Draft<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
@@ -57,12 +56,12 @@ pub(super) struct Draft<'a> {
     pub(super) element: f64,
     /// Whether the body lies in the plane.
     pub(super) flat: bool,
-    /// Whether the run has blown up.
+    /// Whether the run diverged.
     pub(super) diverged: bool,
 }
 
 impl<'a> Draft<'a> {
-    /// What is known of a panel before anything is drawn.
+    /// Collects the data of a panel.
     pub(super) fn new(
         composer: &'a Composer<'a>,
         viewport: Rectangle,
@@ -73,7 +72,7 @@ impl<'a> Draft<'a> {
         let scene = composer.scene;
         let (view, body) = (&scene.view, &*scene.body);
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
-        // A body of which no node is known is drawn as nothing.
+        // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
         let mut position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
         let mut field = Cow::Borrowed(&run.snapshot.field[..]);
@@ -220,7 +219,7 @@ impl<'a> Draft<'a> {
         if visible.nodes && !self.diverged {
             let colour = |node: usize| {
                 let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
-                place.filter(|_| !visible.surfaces).map(|place| ramp::colour(&self.composer.ramp, place))
+                place.filter(|_| !visible.surfaces).map(|place| field::colour(&self.composer.ramp, place))
             };
             flat.nodes(self.element, &colour, above);
         }
@@ -302,7 +301,7 @@ impl<'a> Draft<'a> {
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
 
-    /// The nodes that get arrows, and how much is seen of these: nothing where surfaces in space hide every face.
+    /// The nodes that get arrows, and the opacity of these: 0 where all faces of a node in space are turned away.
     fn facing_bearers(&self) -> Vec<(u32, f64)> {
         let Composer { skin, bearers, .. } = self.composer;
         if !self.scene.view.visible.surfaces {
@@ -331,7 +330,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Coordinates beyond all bounds are brought to where arithmetic still works.
+/// Clamps coordinates, so that arithmetic with them stays finite.
 fn finite(point: DVec3, farthest: f64) -> DVec3 {
     let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
     DVec3::new(one(point.x), one(point.y), one(point.z))

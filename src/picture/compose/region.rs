@@ -5,7 +5,7 @@ use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};
 
-/// Bodies as wide as their panel and higher than this part of it are kept off the words.
+/// Bodies as wide as their panel and higher than this part of it are cut off at the text.
 const FILLED: f64 = 0.7;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
@@ -21,7 +21,7 @@ impl Draft<'_> {
         let region = region(self.viewport, touched, &self.lens, room);
         let fills_panel = region[2] == self.viewport[2] && f64::from(region[3]) > FILLED * f64::from(self.viewport[3]);
         if self.diverged || fills_panel {
-            // What blows up may lie across everything; the words that say so stay on clean ground.
+            // A diverged body may cover everything, but not the text that reports it.
             return overlap(region, self.clear_of_words());
         }
         region
@@ -47,7 +47,7 @@ fn region<'p>(viewport: Rectangle, points: impl Iterator<Item = &'p DVec3>, lens
                 low = low.min(DVec2::from(pixel));
                 high = high.max(DVec2::from(pixel));
             }
-            // What reaches behind the viewer may appear anywhere.
+            // Points behind the camera may appear anywhere.
             None => return viewport,
         }
     }

@@ -1,4 +1,4 @@
-//! Half-spaces, which floors and plates fill, and what they leave of polygons and lines.
+//! Half-spaces, which floors and plates fill, and clipping polygons and lines at them.
 
 use crate::sim::contact::{Obstacle, Shape};
 use glam::DVec3;

@@ -1,6 +1,5 @@
-//! Obstacles: what bodies bounce off. In space balls, rods and boxes are solids with light on them; plates and all floors
-//! but the ground are transparent slabs, so that body and alarm stay visible behind them. In the plane everything is
-//! flat.
+//! Obstacles. In space spheres, capsules and boxes are lit solids; plates and all floors but the ground are transparent
+//! slabs, so that bodies stay visible behind them. In the plane everything is flat.
 
 mod half_space;
 mod near;
@@ -18,8 +17,8 @@ pub(super) use space::Staging;
 
 use super::camera::Lens;
 use super::narrow::narrow_point;
-use super::palette::Palette;
 use super::pointer::Going;
+use crate::look::Palette;
 use crate::sim::contact::Obstacle;
 use glam::DVec3;
 
@@ -56,18 +55,18 @@ impl Site<'_> {
     }
 }
 
-/// What the rest of the picture has to know of solids.
+/// Points and triangles of solid obstacles that other parts of the picture need.
 #[derive(Debug, Default)]
 pub(super) struct Staged {
-    /// Points around them (m), for the part of the panel that they may touch.
+    /// Points around them (m), for the part of the panel that they may cover.
     pub(super) outermost: Vec<DVec3>,
-    /// What throws shadows: corners (m) and triangles.
+    /// Shadow casters: corners (m) and triangles.
     pub(super) shadow_points: Vec<DVec3>,
     pub(super) shadow_triangles: Vec<[u32; 3]>,
 }
 
 impl Staged {
-    /// Adds something that throws a shadow.
+    /// Adds a shadow caster.
     fn add(&mut self, points: &[DVec3], triangles: &[[u32; 3]]) {
         let base = self.shadow_points.len() as u32;
         self.shadow_points.extend(points);

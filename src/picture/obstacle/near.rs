@@ -1,12 +1,12 @@
-//! Where a body is near a solid obstacle, and takes light away from it.
+//! The ambient occlusion of solid obstacles by a body near them.
 
 use super::space::Staging;
 use glam::DVec3;
 
-/// So far apart a body and an obstacle begin to take light away from each other (soft units). The shader that lights
-/// bodies knows it, too.
+/// The distance at which occlusion between a body and an obstacle begins (soft units). The shader that lights bodies has
+/// the same constant.
 pub(super) const REACH: f64 = 1.3;
-/// Nearer than this part of that, the way to the body counts for nothing: where both touch it has no direction.
+/// Nearer than this part of that distance, the direction to the body loses its influence: where both touch it is undefined.
 const TOUCHING: f64 = 0.3;
 
 /// A triangle with a ball around it.
@@ -17,7 +17,7 @@ struct Piece {
     radius: f64,
 }
 
-/// What of a body is near something.
+/// The part of a body near something.
 #[derive(Debug)]
 pub(super) struct Near {
     pieces: Vec<Piece>,
@@ -28,7 +28,7 @@ pub(super) struct Near {
 }
 
 impl Staging<'_> {
-    /// What of the body is near points that lie in a box (m); `None` if that is nothing.
+    /// The part of the body near the box around points (m); `None` if that is empty.
     pub(super) fn near(&self, points: impl Iterator<Item = DVec3>) -> Option<Near> {
         let skin = self.skin?;
         let reach = REACH * self.soft;
@@ -49,7 +49,7 @@ impl Staging<'_> {
 }
 
 impl Near {
-    /// How near the body is to a point of a surface with a unit normal: 1 where it touches, 0 from the reach on.
+    /// The occlusion of a point of a surface with a unit normal: 1 where the body touches it, 0 from the reach on.
     pub(super) fn to(&self, point: DVec3, normal: DVec3) -> f64 {
         let [low, high] = self.bounds;
         if point.cmplt(low).any() || point.cmpgt(high).any() {
@@ -66,7 +66,7 @@ impl Near {
             }
         }
         let apart = nearest / self.reach;
-        // A surface that is turned from the body sees little of it.
+        // A surface that faces away from the body is occluded less.
         let turned = 0.5 + 0.5 * normal.dot(way) / nearest.max(f64::MIN_POSITIVE);
         let counts = (apart / TOUCHING).min(1.0);
         (1.0 + counts * counts * (3.0 - 2.0 * counts) * (turned - 1.0)) * (1.0 - apart) * (1.0 - apart)

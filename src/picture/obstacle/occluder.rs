@@ -1,4 +1,4 @@
-//! The obstacles that take light away from a body near them.
+//! The obstacles that occlude the ambient light of a body near them.
 
 use super::half_space::half_space;
 use super::near::REACH;
@@ -36,7 +36,7 @@ impl Staging<'_> {
     fn occluder(&self, obstacle: &Obstacle) -> Occluder {
         let pose = obstacle.pose(self.site.time);
         let place = |point: DVec3| pose.apply(obstacle.pivot, point);
-        // Just inside of a box with round edges, too, there is a way out.
+        // Rounded edges, so that the direction out of the box is defined just inside, too.
         let round = |half: DVec3| half.min_element().min(ROUND * self.soft);
         let (centre, half, turn, radius) = match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => {

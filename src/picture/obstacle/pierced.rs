@@ -1,4 +1,4 @@
-//! Where bodies go into solid obstacles: only nodes bounce off, so faces may be pierced.
+//! The lines in which bodies intersect solid obstacles: only nodes collide, so faces may be pierced.
 
 use super::space::Staging;
 use crate::picture::{Line, LineKind, Mesh};
@@ -9,7 +9,7 @@ use glam::DVec3;
 const CUT: usize = 10;
 
 impl Staging<'_> {
-    /// The lines in which surfaces of the body go into solid obstacles.
+    /// The lines in which surfaces of the body intersect solid obstacles.
     pub(in crate::picture) fn pierced(&self, meshes: &[&Mesh], lines: &mut Vec<Line>) {
         for obstacle in self.site.obstacles {
             let (pose, pivot, reach) = (obstacle.pose(self.site.time), obstacle.pivot, obstacle.shape.reach());

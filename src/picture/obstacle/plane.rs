@@ -1,5 +1,4 @@
-//! Obstacles in the plane: discs, rods with round ends and rectangles, flat and behind the body. Plates are drawn as
-//! floors are.
+//! Obstacles in the plane: discs, capsules and rectangles, flat and behind the body. Plates are drawn like floors.
 
 use super::half_space::{HalfSpace, clipped_polygon, half_space};
 use super::{Site, Staged};
@@ -14,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 const FLATNESS: f64 = 0.1;
 /// Into how many segments something round is cut, at least and at most.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
-/// Thickness of outlines (px in the reference picture). The shader knows it, too.
+/// Thickness of outlines (px in the reference picture). The shader has the same constant.
 const RIM: f64 = 2.0;
 /// Room for a smooth border on both sides of an outline (px).
 const BORDER: f64 = 0.75;
@@ -60,7 +59,7 @@ impl Flat<'_> {
     fn solid(&self, obstacle: &Obstacle, half_spaces: &[HalfSpace]) -> Option<Solid> {
         let pixels = self.site.lens.focal;
         let inward = (RIM * self.line_scale + BORDER).min(0.999 * thinnest(&obstacle.shape) * pixels);
-        // The coordinate that the plane leaves free says how far inside the outline a point is (px).
+        // The unused z-coordinate holds the distance inside the outline (px).
         let around = |inward: f64| {
             let outline = self.outline(obstacle, inward / pixels)?;
             Some(outline.into_iter().map(move |at| at.with_z(inward)).collect::<Vec<_>>())

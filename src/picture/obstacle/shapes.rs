@@ -4,7 +4,7 @@ use crate::picture::shadow::Plane;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A surface of quadrilaterals, flat each, in a grid that is closed in one direction.
+/// A surface of revolution, as rings of flat quadrilaterals.
 pub(super) struct Lathe {
     /// Corners and normals, ring by ring.
     pub(super) rings: Vec<Vec<(DVec3, DVec3)>>,

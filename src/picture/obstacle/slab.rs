@@ -1,4 +1,4 @@
-//! Plates and walls: transparent slabs, and the order in which they are drawn.
+//! Plates and walls: transparent slabs, sorted by depth.
 
 use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
 use super::shapes::{FACES, corners, edges};
@@ -24,12 +24,12 @@ const FARTHEST_EDGE: f64 = 4.0;
 const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
 /// How far walls and slopes are drawn around the point looked at (body sizes).
 const WALL: f64 = 2.1;
-/// Opacity of a wall, seen from the side of the body and through what is solid.
+/// Opacity of a wall, seen from its front and from its solid back.
 const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
 /// Above so many slabs they are sorted by distance alone.
 const MANY_SLABS: usize = 64;
 
-/// A slab that has not been put in order yet.
+/// A slab before sorting.
 pub(super) struct Loose {
     slab: Slab,
     /// The plane of its surface (m).
@@ -55,7 +55,7 @@ impl Staging<'_> {
         let [first, second] = Plane::new(normal, 0.0).axes;
         let farthest = FARTHEST_EDGE * self.site.extent;
         let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
-        // Over where the body starts.
+        // It covers the place where the body starts.
         let before = obstacle.pose(0.0);
         let place = |pose: &Pose, point: DVec3| {
             let own = pose.undo(pivot, point) - pivot;
@@ -72,7 +72,7 @@ impl Staging<'_> {
             low = low.min(from - margin).max(DVec2::splat(-farthest));
             high = high.max(to + margin).min(DVec2::splat(farthest));
         }
-        // Over nodes near it, the more the nearer they are.
+        // It extends over nodes near it, more over nearer ones.
         let (still_low, still_high) = (low, high);
         for &node in self.position {
             let (at, above) = place(pose, node);
@@ -216,7 +216,7 @@ impl Staging<'_> {
         if slabs.len() > MANY_SLABS {
             return slabs.into_iter().map(|loose| loose.slab).collect();
         }
-        // One is drawn when nothing that is left lies behind it; where they cross, the farthest goes first.
+        // A slab is drawn when none of the rest lies behind it; where slabs cross, the farthest goes first.
         let mut ordered = Vec::with_capacity(slabs.len());
         while !slabs.is_empty() {
             let covers_none = |at: &usize| {
@@ -228,7 +228,7 @@ impl Staging<'_> {
         ordered
     }
 
-    /// Whether one slab lies before another, and cannot just as well be said to lie behind it.
+    /// Whether one slab lies before another, and not also behind it.
     fn covers(&self, front: &Loose, back: &Loose) -> bool {
         self.is_before(front, back) && !self.is_before(back, front)
     }

@@ -1,4 +1,4 @@
-//! Balls, rods and boxes: solids with light on them, and their outlines.
+//! Spheres, capsules and boxes: lit solids and their outlines.
 
 use super::Staged;
 use super::half_space::clipped_line;
@@ -39,7 +39,7 @@ impl Staging<'_> {
         let lathe = shape(segments.next_multiple_of(4));
         let near = self.near(lathe.points().into_iter());
         let (mesh, near) = match near {
-            // Its light changes where the body is near.
+            // Finer where the body occludes its light.
             Some(near) => {
                 let fine = lathe.refined(CELL * self.soft);
                 let near: Vec<f32> = fine.rings.iter().flatten().map(|&(at, out)| narrow(near.to(at, out))).collect();
@@ -88,7 +88,7 @@ impl Staging<'_> {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
             let base = mesh.vertices.len() as u32;
             let polygon = nodes.map(|node| corners[node]);
-            // Its light changes where the body is near: there it is cut into cells.
+            // Where the body occludes its light it is cut into cells.
             let cells = |one: usize, other: usize| match near {
                 Some(_) => (polygon[one].distance(polygon[other]) / (CELL * self.soft)).ceil().clamp(1.0, MOST_CELLS),
                 None => 1.0,

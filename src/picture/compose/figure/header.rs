@@ -1,4 +1,4 @@
-//! What stands above a figure: title and caption at the left, a key at the right.
+//! The header of a figure: title and caption at the left, a key at the right.
 
 use crate::picture::caption::{Writer, wrapped};
 use crate::picture::compose::cut;
@@ -20,7 +20,7 @@ const SQUARE_GAP: f64 = 9.0;
 const APART: f64 = 36.0;
 
 /// Writes title, caption and a key of what a struck square means, in the first of its wordings that fits, into a
-/// picture of a width (px). Says where the last baseline is (px), which is 0 if nothing is written.
+/// picture of a width (px). Returns the last baseline (px), 0 if nothing is written.
 pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String]) -> f64 {
     let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
     let [width, height] = figure.size.map(f64::from);

@@ -1,22 +1,21 @@
-//! Places for labels at the tips of arrows and beside points, where they hide nothing.
+//! Label placement: at the tips of arrows and beside points, hiding as little as possible.
 
-use crate::picture::plane::is_inside;
+use crate::picture::plane::{clipped, is_inside};
 use glam::DVec2;
 
 /// Distances between a point and its label that are tried (px in the reference picture).
 const DISTANCES: [f64; 3] = [7.0, 14.0, 24.0];
-/// Directions that are tried, as turns from the wanted one (rad).
-const TURNS: [f64; 9] = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2, 1.6, -1.6];
-/// What a turn (rad) and a distance (px in the reference picture) cost, beside a pixel that is hidden.
-const TURN_COST: f64 = 14.0;
+/// Directions that are tried, as angles from the wanted one (rad).
+const ANGLES: [f64; 9] = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2, 1.6, -1.6];
+/// The cost of an angle (per rad) and of a distance (per px in the reference picture); a hidden pixel of a line costs 1.
+const ANGLE_COST: f64 = 14.0;
 const DISTANCE_COST: f64 = 1.2;
-/// What it costs to stand at the tail of an arrow, and how far behind it the node there reaches (px in the reference
-/// picture).
+/// The cost of a place at the tail of an arrow, and how far the node there reaches behind it (px in the reference picture).
 const TAIL_COST: f64 = 38.0;
 const TAIL: f64 = 5.0;
-/// What each corner and the middle of a label cost that lie on a surface.
+/// The cost of each corner and of the middle of a label that lies on a surface.
 const SURFACE_COST: f64 = 9.0;
-/// What it costs to leave the room, and to cover a pixel of another label (per px).
+/// The cost of leaving the room (per px), and of covering another label (per px²).
 const OUTSIDE_COST: f64 = 500.0;
 const LABEL_COST: f64 = 8.0;
 /// Free around a label (px in the reference picture).
@@ -25,7 +24,7 @@ const FREE: f64 = 3.0;
 /// A box: left, top, right, bottom (px).
 pub(super) type Edges = [f64; 4];
 
-/// What labels must not hide, and those that have their place.
+/// What labels should not hide, and the labels placed so far.
 #[derive(Clone, Debug)]
 pub(super) struct Labels {
     /// The room for labels.
@@ -68,14 +67,14 @@ impl Labels {
         let away = away.try_normalize().unwrap_or(DVec2::NEG_Y);
         let mut best = (f64::INFINITY, DVec2::ZERO);
         for distance in DISTANCES {
-            for turn in TURNS {
-                let (sine, cosine) = libm::sincos(turn);
+            for angle in ANGLES {
+                let (sine, cosine) = libm::sincos(angle);
                 let along = DVec2::new(cosine, sine).rotate(away);
                 // The middle of the label is so far away that the label only reaches up to the distance.
                 let reach = (0.5 * size * along.abs()).element_sum().min(0.5 * size.max_element());
                 let middle = point + (distance * self.unit + reach) * along;
                 let corner = (middle - 0.5 * size).round();
-                let cost = self.cost(corner, size) + TURN_COST * turn.abs() + DISTANCE_COST * distance;
+                let cost = self.cost(corner, size) + ANGLE_COST * angle.abs() + DISTANCE_COST * distance;
                 if cost < best.0 {
                     best = (cost, corner);
                 }
@@ -110,19 +109,9 @@ fn shared(one: Edges, other: Edges) -> f64 {
 }
 
 /// The length of a straight piece inside a box (px).
-fn inside([from, to]: [DVec2; 2], [left, top, right, bottom]: Edges) -> f64 {
-    let (mut begin, mut end) = (0.0_f64, 1.0_f64);
-    for (at, way, low, high) in [(from.x, to.x - from.x, left, right), (from.y, to.y - from.y, top, bottom)] {
-        if way == 0.0 {
-            if at < low || at > high {
-                return 0.0;
-            }
-        } else {
-            let [one, other] = [(low - at) / way, (high - at) / way];
-            (begin, end) = (begin.max(one.min(other)), end.min(one.max(other)));
-        }
-    }
-    (end - begin).max(0.0) * from.distance(to)
+fn inside([from, to]: [DVec2; 2], edges: Edges) -> f64 {
+    let share = clipped(from, to - from, edges, [0.0, 1.0]).map_or(0.0, |[begin, end]| end - begin);
+    share * from.distance(to)
 }
 
 #[cfg(test)]

@@ -17,11 +17,11 @@ pub(super) struct Cell<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
     pub(super) frame: RunFrame,
-    /// The displacement that each node's force would undo, over its stiffness (m): where its arrow points.
+    /// The force on each node over the stiffness (m): its arrow.
     pub(super) ways: Vec<DVec3>,
     /// The same for the run that all are compared with.
     pub(super) compared: Option<(usize, Vec<DVec3>)>,
-    /// The nodes of the ghost (m).
+    /// The nodes of the rest shape in its best fit (m), which is drawn faintly behind the body.
     pub(super) ghost: Vec<DVec3>,
     /// The camera of the scene, turned to the middle of the body.
     pub(super) framing: Framing,

@@ -51,9 +51,9 @@ impl<'a> Drawn<'a> {
         self.draft.lens.project(at).map_or(DVec2::ZERO, |(pixel, _)| DVec2::from(pixel))
     }
 
-    /// The body with the ghost of its rest shape behind it.
+    /// The body with its rest shape behind it.
     pub(super) fn panel(&self, under: &mut Vec<Mark>) -> Panel {
-        // Signs, nodes and arrows of the film have no place here.
+        // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
         panel.floor = None;
         panel.beads.clear();
@@ -274,7 +274,7 @@ fn wide([from, to]: [DVec2; 2], half: f64) -> [[DVec2; 2]; 3] {
     [-1.0, 0.0, 1.0].map(|side| [from + side * across, to + side * across])
 }
 
-/// Writes what stands out from the lines that it may lie on.
+/// Writes text with a halo, as it may lie over lines.
 fn over_lines(writer: &mut Writer<'_>, write: impl FnOnce(&mut Writer<'_>)) {
     let before = writer.words.len();
     write(writer);

@@ -1,4 +1,4 @@
-//! What the arrows and shapes of a diagram of forces mean.
+//! The key of a diagram of forces.
 
 use super::marks::{GHOST_LINE, ghost_colour, line, outlined};
 use crate::picture::Mark;

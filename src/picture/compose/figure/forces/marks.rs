@@ -1,14 +1,14 @@
 //! The marks of diagrams of forces: outlined arrows, smooth lines, the tint of the rest shape.
 
 use crate::colour::{Colour, mixed};
+use crate::look::Palette;
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
-use crate::picture::palette::Palette;
 use crate::picture::{Mark, MarkShape};
 use glam::DVec2;
 
-/// Opacity of the rest shape, and of arrows that are there to be compared: their inside and their outline.
+/// Opacity of the rest shape, and of the inside and the outline of arrows to compare with.
 const GHOST: f64 = 0.075;
 const COMPARED: f64 = 0.16;
 const OUTLINE_ALPHA: f64 = 0.75;
@@ -21,7 +21,7 @@ pub(super) fn ghost_colour(palette: &Palette) -> Colour {
     mixed(palette.background, palette.edge_on_ground(), GHOST)
 }
 
-/// An arrow that is there to be compared: faintly filled, with an outline.
+/// An arrow of the run to compare with: faintly filled, with an outline.
 pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: Colour) -> Vec<Mark> {
     let points = outline(ends, HEAD * scale.line());
     let edge = mixed(ground, colour, OUTLINE_ALPHA);
@@ -29,7 +29,7 @@ pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: C
     std::iter::once(arrow(ends, scale.line(), mixed(ground, colour, COMPARED), ground)).chain(sides).collect()
 }
 
-/// The outline of an arrow with a head of a width (px), closed. The shader that draws arrows knows these shares, too.
+/// The outline of an arrow with a head of a width (px), closed. The shader that draws arrows has the same shares.
 fn outline([from, to]: [DVec2; 2], width: f64) -> Vec<DVec2> {
     /// Length of the head and depth of its notch, width of the shaft, and length of the head of a short arrow: in parts
     /// of the head's width, the last of the arrow's length.

@@ -116,7 +116,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
 }
 
-/// A scene as a diagram shows it: in the figure's colours, without what a film needs.
+/// A scene as a diagram shows it: in the figure's colours, without fields, strips and arrows of its own.
 fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;

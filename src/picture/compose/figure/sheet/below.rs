@@ -1,4 +1,4 @@
-//! What stands below the bodies of a contact sheet: tallies, counts and diagnostics, and what the tallies mean.
+//! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
 use super::plan::{Plan, TALLY_RAISED};
 use crate::picture::caption::Writer;
@@ -7,7 +7,7 @@ use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
 use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
-use crate::picture::{Mark, course, number};
+use crate::picture::{Mark, number, series};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
 use crate::sim::words::{elements, rounded};
@@ -23,7 +23,7 @@ const NUMBER_GAP: f64 = 18.0;
 /// Half the height of digits, in parts of the type's size.
 const X_MIDDLE: f64 = 0.36;
 
-/// What the key of turned-over elements may say, from the longest wording to the shortest.
+/// Wordings of the key of turned-over elements, from the longest to the shortest.
 pub(super) fn key(scenes: &[Scene]) -> Vec<String> {
     let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
     let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
@@ -46,17 +46,17 @@ pub(super) struct Below {
     /// The tally, as if the tile's lower left corner were the picture's left upper one.
     tally: Vec<Mark>,
     tally_width: f64,
-    /// How many elements have turned over; empty if that cannot be said.
+    /// How many elements have turned over; empty if unknown.
     count: String,
     is_alarm: bool,
     /// A diagnostic; empty for none.
-    said: String,
-    /// When the run has blown up (s).
+    number: String,
+    /// When the run diverged (s).
     diverged: Option<f64>,
 }
 
 impl Below {
-    /// What is said of a run, with a diagnostic if one is asked for.
+    /// The text for a run, with a diagnostic if one is asked for.
     pub(super) fn new(
         writer: &Writer<'_>,
         plan: &Plan,
@@ -81,7 +81,7 @@ impl Below {
             tally_width,
             count: if over.is_empty() { String::new() } else { count.to_string() },
             is_alarm: count > 0,
-            said: number.and_then(|diagnostic| said(diagnostic, composer.scene, run)).unwrap_or_default(),
+            number: number.and_then(|diagnostic| text(diagnostic, composer.scene, run)).unwrap_or_default(),
             diverged,
         }
     }
@@ -95,11 +95,12 @@ impl Below {
     /// Whether there is room for the diagnostic, too.
     pub(super) fn has_room(&self, writer: &Writer<'_>, plan: &Plan) -> bool {
         let size = NUMBER * writer.scale.type_unit();
-        let said = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.said, Weight::Regular, size);
-        self.said.is_empty() || Scale::legible(size) && self.counted(writer) + said <= plan.words_width(writer.scale)
+        let number = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.number, Weight::Regular, size);
+        self.number.is_empty()
+            || Scale::legible(size) && self.counted(writer) + number <= plan.words_width(writer.scale)
     }
 
-    /// Writes tally, count and, if there is room in all tiles, the diagnostic; or that the run has blown up.
+    /// Writes tally, count and, if there is room in all tiles, the diagnostic; or that the run diverged.
     pub(super) fn write(self, writer: &mut Writer<'_>, plan: &Plan, [row, column]: [usize; 2], with_number: bool) {
         let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
         let size = scale.caption();
@@ -116,10 +117,10 @@ impl Below {
             return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
         }
         let small = NUMBER * scale.type_unit();
-        let said = if with_number { &self.said[..] } else { "" };
-        let gap = if said.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
+        let number = if with_number { &self.number[..] } else { "" };
+        let gap = if number.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
         let counted = self.counted(writer);
-        let left = (middle - 0.5 * (counted + gap + fonts.width(said, Weight::Regular, small))).round();
+        let left = (middle - 0.5 * (counted + gap + fonts.width(number, Weight::Regular, small))).round();
         writer.marks.extend(self.tally.into_iter().map(|mut mark| {
             mark.rectangle[0] += narrow(left);
             mark.rectangle[1] += narrow(bottom.round());
@@ -128,14 +129,14 @@ impl Below {
         let colour = if self.is_alarm { palette.alarm_text } else { palette.second_text };
         let count_left = left + counted - fonts.width(&self.count, Weight::SemiBold, size);
         writer.left(&self.count, Weight::SemiBold, size, colour, count_left, baseline);
-        writer.left(said, Weight::Regular, small, palette.second_text, left + counted + gap, baseline);
+        writer.left(number, Weight::Regular, small, palette.second_text, left + counted + gap, baseline);
     }
 }
 
 /// A diagnostic with its name; `None` if it has no value.
-fn said(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
+fn text(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
     let value = diagnostic.of(&run.snapshot.diagnostics);
-    let name = course::name(diagnostic, scene);
+    let name = series::name(diagnostic, scene);
     let name = name.strip_suffix(" ratio").unwrap_or(name);
     let value = match diagnostic {
         _ if !value.is_finite() => return None,

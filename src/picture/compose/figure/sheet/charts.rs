@@ -1,15 +1,15 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, and the moments of the columns.
 
 use crate::history::History;
+use crate::look::Palette;
 use crate::picture::Curve;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Writer};
 use crate::picture::chart::{Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
-use crate::picture::course::{self, Line, OWN};
 use crate::picture::ends::{Ends, spread};
 use crate::picture::layout::{CURVE_NAME, Scale};
 use crate::picture::narrow::narrow;
-use crate::picture::palette::Palette;
+use crate::picture::series::{self, OWN, Series};
 use crate::picture::text::{Fonts, Weight};
 use crate::scene::figure::Sheet;
 use crate::sim::snapshot::Diagnostic;
@@ -77,7 +77,7 @@ struct One {
     name: String,
     unit: String,
     /// One for each run shown.
-    lines: Vec<Line>,
+    series: Vec<Series>,
     /// The values shown; `None` if there are none.
     range: Option<[f64; 2]>,
 }
@@ -90,7 +90,7 @@ impl<'a> Charts<'a> {
         let charts: Vec<_> = sheet.strips.iter().map(one).collect();
         // The lines of all charts have the same names.
         let room = [NAMES * width, f64::INFINITY];
-        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.lines, scale.type_unit(), room));
+        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, scale.type_unit(), room));
         let type_unit = scale.type_unit();
         let numbers = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
         let names = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
@@ -105,7 +105,7 @@ impl<'a> Charts<'a> {
 
     /// The height that the names of all curves of a chart need (px in the reference picture).
     pub(super) fn ends_height(&self) -> f64 {
-        let names = self.charts.iter().map(|one| one.lines.len()).max().unwrap_or(0);
+        let names = self.charts.iter().map(|one| one.series.len()).max().unwrap_or(0);
         self.ends.as_ref().map_or(0.0, |_| names as f64 * CURVE_NAME + 2.0 * NAMES_APART)
     }
 
@@ -203,21 +203,21 @@ impl<'a> Charts<'a> {
 impl One {
     fn new(diagnostic: Diagnostic, history: &History, sheet: &Sheet, palette: &Palette) -> Self {
         let scene = &sheet.scenes[0];
-        let line = |course| {
-            let line = Line::new(diagnostic, course, scene, palette);
-            // What stands beside all rows of a run is what a reader knows it by.
-            let mut labels = sheet.rows.iter().filter(|row| row.run == line.name).map(|row| &row.label);
+        let one = |course| {
+            let one = Series::new(diagnostic, course, scene, palette);
+            // A label shared by all rows of a run replaces its name.
+            let mut labels = sheet.rows.iter().filter(|row| row.run == one.name).map(|row| &row.label);
             let label = labels.next().filter(|first| labels.all(|label| label == *first)).cloned();
-            Line { name: label.unwrap_or(line.name.clone()), ..line }
+            Series { name: label.unwrap_or(one.name.clone()), ..one }
         };
-        let lines: Vec<_> = history.courses.iter().map(line).collect();
+        let series: Vec<_> = history.courses.iter().map(one).collect();
         let is_count = diagnostic == Diagnostic::TurnedOver;
-        let range = course::range(&lines, !is_count);
-        let mut name = course::name(diagnostic, scene).to_owned();
+        let range = series::range(&series, !is_count);
+        let mut name = series::name(diagnostic, scene).to_owned();
         if let Some(first) = name.get_mut(..1) {
             first.make_ascii_uppercase();
         }
-        let one = Self { diagnostic, name, unit: String::new(), lines, range };
+        let one = Self { diagnostic, name, unit: String::new(), series, range };
         let unit = match one.values(MOST_TICKS) {
             _ if is_count => match elements(&scene.body)[..] {
                 [(count, name)] => format!("of {count} {name}"),
@@ -266,15 +266,15 @@ impl One {
         names: Option<&Ends>,
         between: [f64; 2],
     ) {
-        let mut ends = vec![None; self.lines.len()];
+        let mut ends = vec![None; self.series.len()];
         for (at, &(chart, span)) in parts.iter().enumerate() {
             let times = chart.times(writer.fonts, span);
             let rows = ((chart.bottom - chart.top) / (ROWS_APART * chart.unit)) as usize + 1;
             let values = self.values(rows.min(MOST_TICKS));
-            let lines: Vec<_> = self.lines.iter().map(|line| line.between(span)).collect();
+            let series: Vec<_> = self.series.iter().map(|one| one.between(span)).collect();
             if let Some(values) = &values {
-                for line in lines.iter().filter(|line| line.is_count) {
-                    chart.area(writer, [&times, values], &line.points);
+                for one in series.iter().filter(|one| one.is_count) {
+                    chart.area(writer, [&times, values], &one.points);
                 }
                 chart.rows(writer, values, at == 0);
             }
@@ -284,13 +284,13 @@ impl One {
                 chart.columns(writer, &times, values.is_none(), from);
             }
             let Some(values) = &values else { continue };
-            for (line, end) in lines.iter().zip(&mut ends) {
-                line.draw(writer, chart, [&times, values], [OWN, 1.0]);
-                *end = line.end(chart, [&times, values]).or(*end);
+            for (one, end) in series.iter().zip(&mut ends) {
+                one.draw(writer, chart, [&times, values], [OWN, 1.0]);
+                *end = one.end(chart, [&times, values]).or(*end);
             }
         }
         if let (Some(names), Some(&(chart, _))) = (names, parts.last()) {
-            names.write(writer, chart, &self.lines, &ends, None, between);
+            names.write(writer, chart, &self.series, &ends, None, between);
         }
     }
 }

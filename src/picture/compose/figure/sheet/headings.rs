@@ -29,7 +29,7 @@ impl Heading {
         let count = sheet.columns.len();
         let times = || sheet.columns.iter().filter_map(|column| column.time);
         let moment = number::moments(times());
-        // A moment that every row replaces by its own says nothing.
+        // A time that every row replaces by its own is left out.
         let replaced = sheet.rows.iter().all(|row| row.time.is_some());
         let text = |at: usize| {
             let column = &sheet.columns[at];

@@ -14,11 +14,11 @@
 //! ```
 
 mod below;
+mod cameras;
 mod charts;
 mod headings;
 mod plan;
 mod rows;
-mod sight;
 
 use super::header;
 use crate::look::{Labels, View};
@@ -72,9 +72,9 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         charts.draw(&mut writer, room);
     }
 
-    let cells = sight::cells(&scenes, sheet, moments);
-    let framings = sight::framings(&scenes, &cells, &plan);
-    // What every tile of a scene shares follows from the first one of it.
+    let cells = cameras::cells(&scenes, sheet, moments);
+    let framings = cameras::framings(&scenes, &cells, &plan);
+    // The tiles of a scene share what is computed for the first of them.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
     let mut below = Vec::new();
@@ -104,7 +104,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width do not show.
-            let ends = sight::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
+            let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
             curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
         }
     }

@@ -1,4 +1,4 @@
-//! Where everything stands on a contact sheet.
+//! The layout of a contact sheet.
 
 use super::charts::{Charts, ChartsRoom};
 use super::headings::{HEADING_LINE, Heading};
@@ -101,7 +101,7 @@ impl Plan {
         let usual = ((free - below) / rows as f64).max(1.0);
         let tally = (BELOW_BODY * type_unit).max(TALLY_RAISED * unit);
         let tile_height = usual.min(HIGHEST * pitch + tally).floor().max(1.0);
-        // What tiles leave over makes charts higher.
+        // Height that tiles do not need makes charts higher.
         let left_over = (free - below - tile_height * rows as f64).max(0.0);
         let shape = shape.map(|shape| shape.higher(left_over, scale));
         let has_tally = pitch >= LEAST_TILE[1] * type_unit && tile_height >= LEAST_TILE[0] * type_unit;

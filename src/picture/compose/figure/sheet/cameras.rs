@@ -1,5 +1,5 @@
-//! From where the bodies of a contact sheet are seen: all from the same distance, so that they can be compared, and
-//! none of them cut.
+//! The cameras of a contact sheet: all bodies are seen from the same distance, so that they can be compared, and none is
+//! cut.
 
 use super::plan::Plan;
 use crate::moments::Moments;
@@ -29,10 +29,10 @@ const FLAT: f64 = 0.5;
 /// Steps of the search; each brings it about ten times nearer.
 const STEPS: usize = 12;
 
-/// What a tile has to show.
+/// The points that a tile has to show.
 pub(super) struct Cell {
     scene: usize,
-    /// Corners (m); none of a run that has blown up.
+    /// Corners (m); none of a diverged run.
     points: Vec<DVec3>,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn cells(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<V
     moments.cells.iter().map(row).collect()
 }
 
-/// What is seen of a run at a moment (m).
+/// The points of a run at a time (m): nodes and obstacles near them.
 fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVec3> {
     let snapshot = &run.snapshot;
     if matches!(snapshot.status, Status::Diverged(_)) || snapshot.position.len() != scene.body.len() {
@@ -106,7 +106,7 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
             }
         }
     }
-    // Of what is far away only the beginning is seen.
+    // Of distant obstacles only the nearest part is shown.
     points.extend(near.into_iter().map(|point| point.clamp(low, high)));
     points
 }
@@ -125,7 +125,7 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
         let own: Vec<_> = all.into_iter().filter(|&[row, column]| classes[cells[row][column].scene] == class).collect();
         let Some(&[row, column]) = own.first() else { continue };
         let scene = &scenes[cells[row][column].scene];
-        let eye = Eye { scene, plan };
+        let camera = TileCamera { scene, plan };
         // The same view for all, one for each column, one for each tile.
         let ways: [fn([usize; 2]) -> [usize; 2]; 3] = [|_| [0, 0], |[_, column]| [0, column], |place| place];
         for (at, way) in ways.iter().enumerate() {
@@ -142,12 +142,12 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
                     places.iter().flat_map(|&[row, column]| &cells[row][column].points).copied().collect()
                 })
                 .collect();
-            let distance = points.iter().map(|points| eye.fit(points).distance).fold(eye.nearest(), f64::max);
-            if at + 1 < ways.len() && eye.share(distance) < SMALLEST {
+            let distance = points.iter().map(|points| camera.fit(points).distance).fold(camera.nearest(), f64::max);
+            if at + 1 < ways.len() && camera.share(distance) < SMALLEST {
                 continue;
             }
             for ((_, places), points) in groups.iter().zip(&points) {
-                let framing = eye.aim(points, distance);
+                let framing = camera.aim(points, distance);
                 places.iter().for_each(|&[row, column]| framings[row][column] = framing);
             }
             break;
@@ -156,7 +156,7 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
     framings
 }
 
-/// Which scenes are shown at one scale: those seen from the same side whose bodies are of like sizes.
+/// The classes of scenes that are shown at one scale: those seen from the same direction, with bodies of similar sizes.
 fn classes(scenes: &[Scene]) -> Vec<usize> {
     let alike = |one: &Scene, other: &Scene| {
         let [a, b] = [&one.view.camera, &other.view.camera];
@@ -177,12 +177,12 @@ fn classes(scenes: &[Scene]) -> Vec<usize> {
 }
 
 /// The camera of a tile, wherever that stands.
-struct Eye<'a> {
+struct TileCamera<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
 }
 
-impl Eye<'_> {
+impl TileCamera<'_> {
     fn lens(&self, framing: &Framing) -> Lens {
         let [width, height] = self.plan.tile_size().map(f64::from);
         let view = &self.scene.view;
@@ -264,8 +264,7 @@ impl Eye<'_> {
     }
 }
 
-/// What is seen of a body without any width: the ends of a line, or a place twice, in the tile at a place of the picture
-/// (px); `None` for all others.
+/// The ends of a body without any width as a line in its tile (px), or the same point twice; `None` for all others.
 pub(super) fn collapsed(
     scene: &Scene,
     plan: &Plan,
@@ -274,7 +273,7 @@ pub(super) fn collapsed(
     run: &RunFrame,
 ) -> Option<[DVec2; 2]> {
     let [left, top, ..] = plan.tile(row, column).map(f64::from);
-    let lens = Eye { scene, plan }.lens(framing);
+    let lens = TileCamera { scene, plan }.lens(framing);
     let nodes = run.snapshot.position.iter();
     let pixels: Option<Vec<_>> =
         nodes.map(|&node| Some(DVec2::from(lens.project(node)?.0) + DVec2::new(left, top))).collect();

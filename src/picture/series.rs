@@ -5,8 +5,8 @@ use super::axis::Axis;
 use super::caption::Writer;
 use super::chart::Chart;
 use super::narrow::narrow;
-use super::palette::{LineStyle, Palette};
 use crate::history::Course;
+use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
 use crate::sim::snapshot::Diagnostic;
@@ -27,7 +27,7 @@ const LEAST_RANGE: f64 = 0.02;
 
 /// The time series of a diagnostic of one run.
 #[derive(Clone, Debug)]
-pub(super) struct Line {
+pub(super) struct Series {
     pub(super) run: usize,
     /// The name beside its curve.
     pub(super) name: String,
@@ -41,7 +41,7 @@ pub(super) struct Line {
     pub(super) diverged: Option<f64>,
 }
 
-impl Line {
+impl Series {
     /// A diagnostic of a run of a scene, in the colours of a picture.
     pub(super) fn new(diagnostic: Diagnostic, course: &Course, scene: &Scene, palette: &Palette) -> Self {
         let values = course.diagnostics.iter().map(|all| diagnostic.of(all));
@@ -130,22 +130,22 @@ fn peak(points: &[[f64; 2]]) -> f64 {
 }
 
 /// The range of values to show: all values of runs that did not diverge, and those of diverged runs that are not far larger.
-pub(super) fn range(lines: &[Line], may_blow_up: bool) -> Option<[f64; 2]> {
-    let with_values = || lines.iter().filter(|line| !line.points.is_empty());
-    let is_wild = |line: &Line| may_blow_up && line.diverged.is_some();
-    let calm = with_values().filter(|line| !is_wild(line)).map(|line| peak(&line.points)).reduce(f64::max);
+pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
+    let with_values = || series.iter().filter(|one| !one.points.is_empty());
+    let is_wild = |one: &Series| may_diverge && one.diverged.is_some();
+    let calm = with_values().filter(|one| !is_wild(one)).map(|one| peak(&one.points)).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
         // Without runs to compare with, the median is ordinary.
         _ => {
-            let mut sizes: Vec<_> = with_values().flat_map(|line| &line.points).map(|[_, value]| value.abs()).collect();
+            let mut sizes: Vec<_> = with_values().flat_map(|one| &one.points).map(|[_, value]| value.abs()).collect();
             sizes.sort_by(f64::total_cmp);
             BEYOND * sizes.get(sizes.len() / 2).copied()?
         }
     };
-    let shown = |line: &Line, value: f64| value.abs() <= limit || !is_wild(line);
-    let values = with_values().flat_map(|line| {
-        let shown = line.points.iter().filter(|[_, value]| shown(line, *value));
+    let shown = |one: &Series, value: f64| value.abs() <= limit || !is_wild(one);
+    let values = with_values().flat_map(|one| {
+        let shown = one.points.iter().filter(|[_, value]| shown(one, *value));
         shown.map(|&[_, value]| value).collect::<Vec<_>>()
     });
     let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
@@ -239,16 +239,16 @@ fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    fn line(values: &[f64], diverged: bool) -> Line {
+    fn series(values: &[f64], diverged: bool) -> Series {
         let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
         let style = LineStyle { colour: [0; 3], dash: &[] };
         let diverged = diverged.then_some(values.len() as f64);
-        Line { run: 0, name: String::new(), style, is_count: false, points, diverged }
+        Series { run: 0, name: String::new(), style, is_count: false, points, diverged }
     }
 
     #[test]
     fn one_range_holds_all_runs_and_zero() {
-        let range = |lines: &[&[f64]]| range(&lines.iter().map(|values| line(values, false)).collect::<Vec<_>>(), true);
+        let range = |all: &[&[f64]]| range(&all.iter().map(|values| series(values, false)).collect::<Vec<_>>(), true);
         assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
         assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
         // A short peak is no blow-up, and neither is one run that does much more than the other.
@@ -264,17 +264,17 @@ mod tests {
 
     #[test]
     fn diverged_runs_do_not_set_the_scale() {
-        let calm = line(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
-        let blown = line(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
+        let calm = series(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
+        let blown = series(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
         assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
         // What goes on is shown as it is, however late it begins.
-        let late = line(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
-        assert_eq!(range(&[line(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
+        let late = series(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
+        assert_eq!(range(&[series(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
         // Counts are bounded by themselves.
-        let counted = line(&[0.0, 0.0, 8.0], true);
-        assert_eq!(range(&[line(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
+        let counted = series(&[0.0, 0.0, 8.0], true);
+        assert_eq!(range(&[series(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
         // Alone, half of its values count.
-        let alone = line(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
+        let alone = series(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
         assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
     }
 
@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_line_begin_and_end_on_it() {
-        let whole = line(&[1.0, 3.0, 2.0, 2.0], true);
+        let whole = series(&[1.0, 3.0, 2.0, 2.0], true);
         let part = whole.between([0.5, 2.25]);
         assert_eq!(part.points, [[0.5, 2.0], [1.0, 3.0], [2.0, 2.0], [2.25, 2.0]]);
         assert_eq!((part.diverged, whole.between([2.0, 9.0]).diverged), (None, Some(4.0)));
@@ -295,7 +295,7 @@ mod tests {
         assert_eq!(whole.between([2.5, 9.0]).points, [[2.5, 2.0], [3.0, 2.0]]);
         assert!(whole.between([5.0, 9.0]).points.is_empty());
         // Counts keep their number until the next one.
-        let count = Line { is_count: true, ..whole };
+        let count = Series { is_count: true, ..whole };
         assert_eq!(count.between([0.5, 1.5]).points, [[0.5, 1.0], [1.0, 3.0], [1.5, 3.0]]);
     }
 
