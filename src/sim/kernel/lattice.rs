@@ -850,9 +850,7 @@ impl Sweep<'_> {
                     let work = self.work.add(at % CHUNK);
                     let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
                     let (turn, sound, last) = solver.pass(&b);
-                    // Of a large body the next chunk's are in no near cache, and short loops leave no time to foresee them.
-                    let ahead = self.turns.wrapping_add(slot(plane * self.box_stride + at + CHUNK, 4));
-                    let _ = each!(4, part => L::expect(ahead.wrapping_add(part * MOST)));
+                    self.expect::<L>(plane, at + CHUNK);
                     let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
                     lanes[at % CHUNK][1] = L::bits(sound) as u8;
                     lanes[at % CHUNK][2] = L::bits(last) as u8;
@@ -883,6 +881,19 @@ impl Sweep<'_> {
             }
         }
         (filled, place)
+    }
+
+    /// Asks for the rotations of boxes, and for the nodes that their squares need. They come from a farther cache, and short
+    /// loops leave the processor no time to foresee them.
+    #[inline(always)]
+    fn expect<L: Lanes>(&self, plane: usize, at: usize) {
+        let turns = self.turns.wrapping_add(slot(plane * self.box_stride + at, 4));
+        let _ = each!(4, part => L::expect(turns.wrapping_add(part * MOST)));
+        let ahead = plane * self.stride + at + self.grid.row() + 2 * MOST;
+        let low = self.nodes.wrapping_add(slot(ahead, self.parts));
+        let high = self.nodes.wrapping_add(slot(ahead + self.stride, self.parts));
+        let _ = each!(8, part => if part <= INVERSE_MASS { L::expect(low.wrapping_add(part * MOST)) });
+        let _ = each!(8, part => if part < INVERSE_MASS { L::expect(high.wrapping_add(part * MOST)) });
     }
 
     /// The rotations of boxes: those of the last step, or those found since.
