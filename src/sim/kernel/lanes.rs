@@ -117,11 +117,12 @@ pub(in crate::sim) trait Lanes:
     /// The distance of so many values, less than [`MOST`].
     fn distance(values: usize) -> Self::Distance;
     /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where lanes fill a cache
-    /// line it reads two of them whole: to load across lines, or across what was just stored, takes much longer.
+    /// line it reads two of them whole, of which the second begins `line` values after the first: to load across lines, or
+    /// across what was just stored, takes much longer. Else values lie one behind the other.
     ///
     /// # Safety
-    /// Twice [`MOST`] values are readable from there.
-    unsafe fn load_beyond(from: *const f64, distance: Self::Distance) -> Self;
+    /// [`MOST`] values are readable from either place, or twice as many from the first.
+    unsafe fn load_beyond(from: *const f64, distance: Self::Distance, line: usize) -> Self;
     /// Writes [`Self::WIDTH`] values to memory, of any alignment.
     ///
     /// # Safety
@@ -354,7 +355,7 @@ mod portable {
             values
         }
         #[inline(always)]
-        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+        unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
             // SAFETY: the caller's.
             unsafe { Self::load(from.add(distance)) }
         }
@@ -538,7 +539,7 @@ mod x86 {
             values
         }
         #[inline(always)]
-        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+        unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
             // SAFETY: the caller's.
             unsafe { Self::load(from.add(distance)) }
         }
@@ -667,8 +668,8 @@ mod x86 {
             unsafe { _mm512_add_epi64(_mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0), _mm512_set1_epi64(values as i64)) }
         }
         #[inline(always)]
-        unsafe fn load_beyond(from: *const f64, distance: __m512i) -> Self {
-            Self(unsafe { _mm512_permutex2var_pd(_mm512_load_pd(from), distance, _mm512_load_pd(from.add(8))) })
+        unsafe fn load_beyond(from: *const f64, distance: __m512i, line: usize) -> Self {
+            Self(unsafe { _mm512_permutex2var_pd(_mm512_load_pd(from), distance, _mm512_load_pd(from.add(line))) })
         }
         const WIDTH: usize = 8;
         #[inline(always)]
@@ -825,7 +826,7 @@ mod neon {
             values
         }
         #[inline(always)]
-        unsafe fn load_beyond(from: *const f64, distance: usize) -> Self {
+        unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
             // SAFETY: the caller's.
             unsafe { Self::load(from.add(distance)) }
         }

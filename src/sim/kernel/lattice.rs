@@ -112,12 +112,10 @@ impl Grid {
         self.row() * self.cells[1] - 1
     }
 
-    /// Numbers between one plane of nodes, or one of their coordinates, and the next: whole vectors, so many that what is
-    /// read for the last box, a row and two vectors ahead of it, is there.
+    /// Nodes between one plane and the next: whole vectors, so many that what is read for the last box, a row and two
+    /// vectors ahead of it, is there.
     fn stride(&self) -> usize {
-        let stride = (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST);
-        // Coordinates that lie a multiple of a page apart would compete for the same places of the cache.
-        if stride.is_multiple_of(512) { stride + MOST } else { stride }
+        (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
     /// How many successive boxes the ring of rows holds: a chunk, and more than a row.
@@ -125,7 +123,7 @@ impl Grid {
         CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
-    /// Numbers between one plane of boxes and the next.
+    /// Boxes between one plane and the next.
     fn box_stride(&self) -> usize {
         self.boxes().next_multiple_of(MOST)
     }
@@ -139,6 +137,13 @@ const ACCELERATION: usize = 7;
 /// Boxes that are gathered, then rotated, then stepped: so many that a processor finds independent work in each of these
 /// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
 const CHUNK: usize = 64;
+
+/// Where the first of so many numbers of a node or box stands: those of [`MOST`] neighbours are together, and the next
+/// number follows them. So all numbers of a vector are a fixed way apart, and a processor foresees what will be read.
+#[inline(always)]
+fn slot(at: usize, parts: usize) -> usize {
+    at / MOST * MOST * parts + at % MOST
+}
 
 /// Where `w̄` and the rotation stand in a [`Chunk`].
 const MEAN: usize = 9;
@@ -154,9 +159,9 @@ pub(in crate::sim) struct Lattice {
     parts: usize,
     /// Whether accelerations belong to the present positions.
     is_known: bool,
-    /// Plane after plane: each number of all its nodes.
+    /// Plane after plane, [`MOST`] nodes after the other: each of their numbers; see [`slot`].
     nodes: Array,
-    /// Plane after plane: x, y, z and w of the rotations of all its boxes.
+    /// Plane after plane, [`MOST`] boxes after the other: x, y, z and w of their rotations.
     turns: Array,
     /// `nodes` and `turns` as they were before the steps of a call.
     before: (Array, Array),
@@ -244,7 +249,7 @@ impl Lattice {
         let mut nodes = Array::zeros((planes + 1) * parts * stride);
         for (node, &mass) in body.mass.iter().enumerate() {
             let (plane, at) = (node / grid.layer(), node % grid.layer());
-            nodes[(plane * parts + INVERSE_MASS) * stride + at] = mass.recip();
+            nodes[slot(plane * stride + at, parts) + INVERSE_MASS * MOST] = mass.recip();
         }
         let turns = Array::zeros(planes * 4 * grid.box_stride());
         let mut pattern = Pattern { live: Array::zeros(grid.box_stride()), valence: Array::zeros(stride) };
@@ -281,9 +286,9 @@ impl Lattice {
         }
     }
 
-    /// Where the numbers of a node stand in `nodes`: the first of them; the others follow a stride apart.
+    /// Where the first number of a node stands in `nodes`.
     fn index(&self, node: usize) -> usize {
-        node / self.grid.layer() * self.parts * self.grid.stride() + node % self.grid.layer()
+        slot(node / self.grid.layer() * self.grid.stride() + node % self.grid.layer(), self.parts)
     }
 
     /// Takes over a state: positions (m), velocities (m/s), and the rotation of each element as (x, y, z, w).
@@ -292,14 +297,13 @@ impl Lattice {
             self.set_node(node, position, velocity);
         }
         self.is_known = false;
-        let stride = self.grid.box_stride();
         // The ends of rows have a rotation, too, of which nothing comes.
         for (at, turn) in self.turns.iter_mut().enumerate() {
-            *turn = if at / stride % 4 == 3 { 1.0 } else { 0.0 };
+            *turn = if at / MOST % 4 == 3 { 1.0 } else { 0.0 };
         }
         for (element, turn) in memory.chunks_exact(4).enumerate() {
             let at = self.turn_index(element);
-            (0..4).for_each(|part| self.turns[at + part * stride] = turn[part]);
+            (0..4).for_each(|part| self.turns[at + part * MOST] = turn[part]);
         }
     }
 
@@ -308,31 +312,30 @@ impl Lattice {
         for (node, (position, velocity)) in position.iter_mut().zip(velocity).enumerate() {
             (*position, *velocity) = self.node(node);
         }
-        let stride = self.grid.box_stride();
         for (element, turn) in memory.chunks_exact_mut(4).enumerate() {
             let at = self.turn_index(element);
-            (0..4).for_each(|part| turn[part] = self.turns[at + part * stride]);
+            (0..4).for_each(|part| turn[part] = self.turns[at + part * MOST]);
         }
     }
 
     fn turn_index(&self, element: usize) -> usize {
         let [x, y, z] = self.grid.place(element);
-        z * 4 * self.grid.box_stride() + x + y * self.grid.row()
+        slot(z * self.grid.box_stride() + x + y * self.grid.row(), 4)
     }
 
     /// The position (m) and velocity (m/s) of a node.
     pub(in crate::sim) fn node(&self, node: usize) -> (DVec3, DVec3) {
-        let (at, stride) = (self.index(node), self.grid.stride());
-        let vector = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| self.nodes[at + (first + axis) * stride]));
+        let at = self.index(node);
+        let vector = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| self.nodes[at + (first + axis) * MOST]));
         (vector(0), vector(VELOCITY))
     }
 
     /// Puts a node somewhere else.
     pub(in crate::sim) fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        let (at, stride) = (self.index(node), self.grid.stride());
+        let at = self.index(node);
         for axis in 0..3 {
-            self.nodes[at + axis * stride] = position[axis];
-            self.nodes[at + (VELOCITY + axis) * stride] = velocity[axis];
+            self.nodes[at + axis * MOST] = position[axis];
+            self.nodes[at + (VELOCITY + axis) * MOST] = velocity[axis];
         }
     }
 
@@ -590,6 +593,21 @@ impl Sweep<'_> {
         self.slabs
     }
 
+    /// The first number of a vector of nodes; the others follow [`MOST`] apart.
+    #[inline(always)]
+    unsafe fn nodes(&self, plane: usize, at: usize) -> *mut f64 {
+        // SAFETY: the caller's, who names a plane and less than a stride.
+        unsafe { self.nodes.add(slot(plane * self.stride + at, self.parts)) }
+    }
+
+    /// Where a part of a ring stands, by its place in it and how many parts there are, and how far apart parts are, and
+    /// vectors that follow each other. Where a vector is a cache line all parts stand together, at fixed distances; where it is
+    /// less, each part for itself, so that what follows a vector's first lane is one behind the other.
+    #[inline(always)]
+    fn ring_place<L: Lanes>(&self, place: usize, parts: usize) -> (usize, usize) {
+        if L::WIDTH == MOST { (place * parts, MOST) } else { (place, self.ring + MOST) }
+    }
+
     /// Moves the nodes of this thread without any force, in a pass of this number.
     #[inline(always)]
     unsafe fn coast<L: Lanes>(&self, pass: u64, motion: &Motion<'_, L>) -> Option<usize> {
@@ -705,37 +723,39 @@ impl Sweep<'_> {
         unsafe {
             let (below, lowest) = (self.slabs.add(self.slab.below), self.slabs.add(self.slab.lowest));
             let row = self.grid.row().next_multiple_of(MOST);
-            for part in 0..9 {
-                for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
-                    zero.store(self.slabs.add(self.slab.rows + part * (self.ring + MOST) + at));
-                }
+            for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
+                self.put::<L, 3>(self.slabs.add(self.slab.rows), at, &[[zero; 3]; 3]);
             }
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
+                let end = layer.min(chunk + CHUNK);
                 filled = self.boxes::<L, S, DAMPED>(plane, [chunk, boxes], own, filled, solver, commit);
-                let mut at = chunk;
-                while at < layer.min(chunk + CHUNK) {
+                for at in (chunk..end).step_by(L::WIDTH) {
                     let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
                     own = self.next(own, L::WIDTH);
+                    let work = self.work.add(at % CHUNK);
+                    let first = slot(at, 3);
                     // Along x, and then along z.
-                    let mut force = [zero; 3];
                     thrice!(axis => {
                         let (high, low) = pull[axis];
                         let here = high.shift_in(pull_before[axis]) + low;
                         let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
                         (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
-                        let place = axis * self.stride + at;
-                        if is_shared {
-                            (here - up).store(lowest.add(place));
+                        let force = if is_shared {
+                            (here - up).store(lowest.add(first + axis * MOST));
+                            zero
                         } else {
-                            force[axis] = L::load(below.add(place)) + (here - up);
-                        }
-                        (here + up).store(above.add(place));
+                            L::load(below.add(first + axis * MOST)) + (here - up)
+                        };
+                        force.store(work.add(axis * CHUNK));
+                        (here + up).store(above.add(first + axis * MOST));
                     });
-                    if !is_shared && let Some(node) = self.update::<L, DAMPED>(plane, at, motion, force) {
+                }
+                if !is_shared {
+                    let force = |at: usize| each!(3, axis => L::load(self.work.add(axis * CHUNK + at % CHUNK)));
+                    if let Some(node) = self.update::<L, DAMPED>(plane, [chunk, end], motion, force) {
                         return Some(node);
                     }
-                    at += L::WIDTH;
                 }
             }
         }
@@ -750,19 +770,14 @@ impl Sweep<'_> {
         motion: &Motion<'_, L>,
         pulls: impl Fn(usize) -> (L, L),
     ) -> Option<usize> {
-        let mut at = 0;
-        while at < self.grid.layer() {
-            let force = each!(3, axis => {
-                let (below, above) = pulls(axis * self.stride + at);
+        let force = |at: usize| {
+            each!(3, axis => {
+                let (below, above) = pulls(slot(at, 3) + axis * MOST);
                 below + above
-            });
-            // SAFETY: `at` is a multiple of a width below `layer`.
-            if let Some(node) = unsafe { self.update::<L, DAMPED>(plane, at, motion, force) } {
-                return Some(node);
-            }
-            at += L::WIDTH;
-        }
-        None
+            })
+        };
+        // SAFETY: these are the nodes of a plane.
+        unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], motion, force) }
     }
 
     /// The place in a ring that lies so far behind another.
@@ -775,15 +790,16 @@ impl Sweep<'_> {
     /// Writes a number of each part to a ring; what lies across its end is there twice.
     #[inline(always)]
     unsafe fn put<L: Lanes, const PARTS: usize>(&self, ring: *mut f64, place: usize, values: &[[L; 3]; PARTS]) {
-        let part = self.ring + MOST;
+        let (first, part) = self.ring_place::<L>(place, 3 * PARTS);
         // SAFETY: a ring has a vector more for each part, and places are multiples of a width.
         unsafe {
-            let to = ring.add(place);
+            let to = ring.add(first);
             for group in 0..PARTS {
                 thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
             }
             if place < MOST {
-                let to = to.add(self.ring);
+                let (first, _) = self.ring_place::<L>(place + self.ring, 3 * PARTS);
+                let to = ring.add(first);
                 for group in 0..PARTS {
                     thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
                 }
@@ -834,9 +850,7 @@ impl Sweep<'_> {
                     let work = self.work.add(at % CHUNK);
                     let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
                     let (turn, sound, last) = solver.pass(&b);
-                    // Of a large body the next chunk's are in no near cache, and short loops leave no time to foresee them.
-                    let ahead = self.turns.wrapping_add(plane * 4 * self.box_stride + at + CHUNK);
-                    let _ = each!(4, part => L::expect(ahead.wrapping_add(part * self.box_stride)));
+                    self.expect::<L>(plane, at + CHUNK);
                     let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
                     lanes[at % CHUNK][1] = L::bits(sound) as u8;
                     lanes[at % CHUNK][2] = L::bits(last) as u8;
@@ -860,13 +874,26 @@ impl Sweep<'_> {
                     here = self.next(here, L::WIDTH);
                     let _ = each!(4, part => q[part].store(work.add((TURN + part) * CHUNK)));
                     if commit && is_last {
-                        let turns = self.turns.add(plane * 4 * self.box_stride + at);
-                        let _ = each!(4, part => q[part].store(turns.add(part * self.box_stride)));
+                        let turns = self.turns.add(slot(plane * self.box_stride + at, 4));
+                        let _ = each!(4, part => q[part].store(turns.add(part * MOST)));
                     }
                 }
             }
         }
         (filled, place)
+    }
+
+    /// Asks for the rotations of boxes, and for the nodes that their squares need. They come from a farther cache, and short
+    /// loops leave the processor no time to foresee them.
+    #[inline(always)]
+    fn expect<L: Lanes>(&self, plane: usize, at: usize) {
+        let turns = self.turns.wrapping_add(slot(plane * self.box_stride + at, 4));
+        let _ = each!(4, part => L::expect(turns.wrapping_add(part * MOST)));
+        let ahead = plane * self.stride + at + self.grid.row() + 2 * MOST;
+        let low = self.nodes.wrapping_add(slot(ahead, self.parts));
+        let high = self.nodes.wrapping_add(slot(ahead + self.stride, self.parts));
+        let _ = each!(8, part => if part <= INVERSE_MASS { L::expect(low.wrapping_add(part * MOST)) });
+        let _ = each!(8, part => if part < INVERSE_MASS { L::expect(high.wrapping_add(part * MOST)) });
     }
 
     /// The rotations of boxes: those of the last step, or those found since.
@@ -875,7 +902,7 @@ impl Sweep<'_> {
         // SAFETY: the turns hold all boxes of a plane in whole vectors, and `work` those of a chunk.
         unsafe {
             let (from, stride) = if is_first {
-                (self.turns.add(plane * 4 * self.box_stride + at), self.box_stride)
+                (self.turns.add(slot(plane * self.box_stride + at, 4)), MOST)
             } else {
                 (self.work.add(TURN * CHUNK + at % CHUNK), CHUNK)
             };
@@ -895,21 +922,20 @@ impl Sweep<'_> {
     ) -> usize {
         // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more; of the ring see `put`.
         unsafe {
-            let low = self.nodes.add(plane * self.parts * self.stride);
-            let high = low.add(self.parts * self.stride);
             macro_rules! upright {
-                ($at:expr) => {
+                ($at:expr) => {{
+                    let (low, high) = (self.nodes(plane, $at), self.nodes(plane + 1, $at));
                     each!(3, axis => {
-                        let (low, high) = (low.add(axis * self.stride + $at), high.add(axis * self.stride + $at));
+                        let (low, high) = (low.add(axis * MOST), high.add(axis * MOST));
                         let (a, b) = (L::load(low), L::load(high));
                         let speed = if DAMPED {
-                            L::load(low.add(VELOCITY * self.stride)) + L::load(high.add(VELOCITY * self.stride))
+                            L::load(low.add(VELOCITY * MOST)) + L::load(high.add(VELOCITY * MOST))
                         } else {
                             L::splat(0.0)
                         };
                         (a + b, b - a, speed)
                     })
-                };
+                }};
             }
             let mut left = upright!(from);
             for at in (from..to).step_by(L::WIDTH) {
@@ -939,25 +965,27 @@ impl Sweep<'_> {
         // SAFETY: the ring holds the squares in whole vectors, and a vector more.
         unsafe {
             let row = self.grid.row();
-            let near = self.slabs.add(self.slab.squares + own);
+            let parts = if DAMPED { 12 } else { 9 };
+            let squares = self.slabs.add(self.slab.squares);
+            let (near, part) = self.ring_place::<L>(own, parts);
             let beyond = self.next(own, row);
-            let far = self.slabs.add(self.slab.squares + beyond / MOST * MOST);
-            let distance = L::distance(beyond % MOST);
-            let part = self.ring + MOST;
+            let (far, _) = self.ring_place::<L>(beyond / MOST * MOST, parts);
+            let (near, far) = (squares.add(near), squares.add(far));
+            let (distance, line) = (L::distance(beyond % MOST), MOST * parts);
             let work = self.work.add(at % CHUNK);
             let mut edges = [[L::splat(0.0); 3]; 3];
             let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
             thrice!(axis => {
-                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance));
+                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance, line));
                 let x = (3 + axis) * part;
-                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance);
+                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance, line);
                 edges[1][axis] = sum1 - sum0;
                 let z = (6 + axis) * part;
-                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance);
+                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance, line);
                 let mut mean = of_p * (sum0 + sum1);
                 if DAMPED {
                     let v = (9 + axis) * part;
-                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance);
+                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance, line);
                     mean = of_v.mul_add(sum, mean);
                 }
                 mean.store(work.add((MEAN + axis) * CHUNK));
@@ -1000,63 +1028,78 @@ impl Sweep<'_> {
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
             // Of the row before, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
-            let from = self.slabs.add(self.slab.rows + before / MOST * MOST);
-            let distance = L::distance(before % MOST);
+            let (from, part) = self.ring_place::<L>(before / MOST * MOST, 9);
+            let from = self.slabs.add(self.slab.rows + from);
+            let (distance, line) = (L::distance(before % MOST), MOST * 9);
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
             thrice!(axis => {
-                let sum = L::load_beyond(from.add((axis) * (self.ring + MOST)), distance) + (mean[axis] - v[axis]);
-                let along = L::load_beyond(from.add((3 + axis) * (self.ring + MOST)), distance) + u[axis];
+                let sum = L::load_beyond(from.add(axis * part), distance, line) + (mean[axis] - v[axis]);
+                let along = L::load_beyond(from.add((3 + axis) * part), distance, line) + u[axis];
                 pull[axis] = (sum + along, sum - along);
-                rise[axis] = L::load_beyond(from.add((6 + axis) * (self.ring + MOST)), distance) + t[axis];
+                rise[axis] = L::load_beyond(from.add((6 + axis) * part), distance, line) + t[axis];
             });
             (pull, rise)
         }
     }
 
-    /// Eqs. (2) and (3) for nodes on which elements act with a force (N) besides `−w`, and what they meet. The first that
-    /// becomes too fast, if there is one.
+    /// Eqs. (2) and (3) for nodes of a plane from one number up to another, on which elements act with a force (N) besides
+    /// `−w`, and then what they meet. The first that becomes too fast, if there is one.
     #[inline(always)]
     unsafe fn update<L: Lanes, const DAMPED: bool>(
         &self,
         plane: usize,
-        at: usize,
+        [first, end]: [usize; 2],
         motion: &Motion<'_, L>,
-        force: [L; 3],
+        force: impl Fn(usize) -> [L; 3],
     ) -> Option<usize> {
-        let first = plane * self.grid.layer() + at;
+        let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
+        let (stiffness, damping) = (L::splat(planes * self.stiffness), L::splat(planes * self.damping));
+        let is_verlet = motion.stage().is_verlet();
+        let zero = L::splat(0.0);
+        let mut near = 0;
         // SAFETY: a stride holds all nodes of a plane in whole vectors.
         unsafe {
-            let place = self.nodes.add(plane * self.parts * self.stride + at);
-            let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
-            let valence = L::load(self.valence.add(at)) * L::splat(planes);
-            let (stiffness, damping) = (L::splat(self.stiffness) * valence, L::splat(self.damping) * valence);
-            let inverse_mass = L::load(place.add(INVERSE_MASS * self.stride));
-            let zero = L::splat(0.0);
-            let mut nodes = Nodes { position: [zero; 3], velocity: [zero; 3], acceleration: [zero; 3] };
-            let mut total = [zero; 3];
-            thrice!(axis => {
-                nodes.position[axis] = L::load(place.add(axis * self.stride));
-                nodes.velocity[axis] = L::load(place.add((VELOCITY + axis) * self.stride));
-                total[axis] = nodes.position[axis].neg_mul_add(stiffness, force[axis]);
-                if DAMPED {
-                    total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
+            let load = |from: *const f64, part: usize| each!(3, axis => L::load(from.add((part + axis) * MOST)));
+            let inverse_mass = |from: *const f64| L::load(from.add(INVERSE_MASS * MOST));
+            for at in (first..end).step_by(L::WIDTH) {
+                let to = self.nodes(plane, at);
+                let valence = L::load(self.valence.add(at));
+                let (stiffness, damping) = (stiffness * valence, damping * valence);
+                let acceleration = if is_verlet { load(to, ACCELERATION) } else { [zero; 3] };
+                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                let mut total = force(at);
+                thrice!(axis => {
+                    total[axis] = nodes.position[axis].neg_mul_add(stiffness, total[axis]);
+                    if DAMPED {
+                        total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
+                    }
+                });
+                let lost = motion.go(&mut nodes, total, inverse_mass(to));
+                if lost != 0 {
+                    return Some(plane * self.grid.layer() + at + lost.trailing_zeros() as usize);
                 }
-            });
-            let is_verlet = motion.stage().is_verlet();
-            if is_verlet {
-                nodes.acceleration = each!(3, axis => L::load(place.add((ACCELERATION + axis) * self.stride)));
+                near |= motion.near(&nodes);
+                thrice!(axis => {
+                    nodes.position[axis].store(to.add(axis * MOST));
+                    nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
+                });
+                if is_verlet {
+                    thrice!(axis => nodes.acceleration[axis].store(to.add((ACCELERATION + axis) * MOST)));
+                }
             }
-            let lost = motion.advance(&mut nodes, total, inverse_mass, |lane| first + lane);
-            if lost != 0 {
-                return Some(first + lost.trailing_zeros() as usize);
+            if near == 0 {
+                return None;
             }
-            thrice!(axis => {
-                nodes.position[axis].store(place.add(axis * self.stride));
-                nodes.velocity[axis].store(place.add((VELOCITY + axis) * self.stride));
-            });
-            if is_verlet {
-                thrice!(axis => nodes.acceleration[axis].store(place.add((ACCELERATION + axis) * self.stride)));
+            for at in (first..end).step_by(L::WIDTH) {
+                let to = self.nodes(plane, at);
+                let acceleration = if is_verlet { load(to, ACCELERATION) } else { [zero; 3] };
+                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                motion.meet(&mut nodes, inverse_mass(to), |lane| plane * self.grid.layer() + at + lane);
+                thrice!(axis => {
+                    nodes.position[axis].store(to.add(axis * MOST));
+                    nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
+                });
             }
         }
         None

@@ -177,8 +177,8 @@ impl<'a, L: Lanes> Motion<'a, L> {
         self.stage
     }
 
-    /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node. `index` tells the
-    /// node in a lane. Returns one bit for each lane whose speed is out of bounds.
+    /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node, and lets them meet
+    /// obstacles. `index` tells the node in a lane. Returns one bit for each lane whose speed is out of bounds.
     #[inline(always)]
     pub(in crate::sim) fn advance(
         &self,
@@ -187,12 +187,19 @@ impl<'a, L: Lanes> Motion<'a, L> {
         inverse_mass: L,
         index: impl Fn(usize) -> usize,
     ) -> u32 {
+        let lost = self.go(nodes, force, inverse_mass);
+        self.meet(nodes, inverse_mass, index);
+        lost
+    }
+
+    /// The first half of [`Self::advance`]: the motion.
+    #[inline(always)]
+    pub(in crate::sim) fn go(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let zero = L::splat(0.0);
         let alive = zero.lt(inverse_mass);
         // The acceleration (m/s²).
         let now = each!(3, axis => force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
         let mut lost = 0;
-        let mut rests = [zero; 3];
         match self.stage {
             Stage::SemiImplicitEuler => {
                 for axis in 0..3 {
@@ -209,52 +216,64 @@ impl<'a, L: Lanes> Motion<'a, L> {
             Stage::Drift => {
                 nodes.acceleration = now;
                 self.drift(nodes);
-                rests = now;
             }
-            Stage::Coast => {
-                rests = nodes.acceleration;
-                self.drift(nodes);
-            }
+            Stage::Coast => self.drift(nodes),
             Stage::Finish | Stage::FinishDrift => {
                 for axis in 0..3 {
                     let gain = now[axis] - nodes.acceleration[axis];
                     nodes.velocity[axis] = gain.mul_add(self.half, nodes.velocity[axis]);
                 }
                 nodes.acceleration = now;
-                if self.stage == Stage::Finish {
-                    return self.lost(nodes, 0);
-                }
                 lost = self.lost(nodes, 0);
+                if self.stage == Stage::Finish {
+                    return lost;
+                }
                 self.drift(nodes);
-                rests = now;
             }
         }
-        lost |= self.lost(nodes, 1);
-        let mut inside = 0;
+        lost | self.lost(nodes, 1)
+    }
+
+    /// The lanes inside a bound, where obstacles are to be asked for, with those that hold no node.
+    #[inline(always)]
+    pub(in crate::sim) fn near(&self, nodes: &Nodes<L>) -> u32 {
+        if self.stage == Stage::Finish {
+            return 0;
+        }
+        let mut near = 0;
         for bound in self.around.bounds {
-            inside |= L::bits(reaches(bound, nodes.position));
+            near |= L::bits(reaches(bound, nodes.position));
         }
-        inside &= L::bits(alive);
-        if let (Some(floor), Stage::SemiImplicitEuler | Stage::ExplicitEuler, true) =
-            (&self.around.floor, self.stage, inside != 0)
-        {
-            rebound(floor, nodes, L::mask(inside));
-        } else if inside != 0 {
-            let mut position = each!(3, axis => nodes.position[axis].to_array());
-            let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
-            let rests = each!(3, axis => rests[axis].to_array());
-            touch(
-                self.around.resolve,
-                inside,
-                each!(8, lane => if lane < L::WIDTH { index(lane) } else { 0 }),
-                &mut position,
-                &mut velocity,
-                &rests,
-            );
-            nodes.position = each!(3, axis => L::from_array(position[axis]));
-            nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
+        near
+    }
+
+    /// The second half of [`Self::advance`]: what nodes meet at the end of a step. Where none is [near](Self::near) nothing
+    /// happens.
+    #[inline(always)]
+    pub(in crate::sim) fn meet(&self, nodes: &mut Nodes<L>, inverse_mass: L, index: impl Fn(usize) -> usize) {
+        let zero = L::splat(0.0);
+        let inside = self.near(nodes) & L::bits(zero.lt(inverse_mass));
+        if inside == 0 {
+            return;
         }
-        lost
+        if let (Some(floor), false) = (&self.around.floor, self.stage.is_verlet()) {
+            return rebound(floor, nodes, L::mask(inside));
+        }
+        let mut position = each!(3, axis => nodes.position[axis].to_array());
+        let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
+        // With which they have moved: at constant velocity, or as velocity Verlet does.
+        let rests = if self.stage.is_verlet() { nodes.acceleration } else { [zero; 3] };
+        let rests = each!(3, axis => rests[axis].to_array());
+        touch(
+            self.around.resolve,
+            inside,
+            each!(8, lane => if lane < L::WIDTH { index(lane) } else { 0 }),
+            &mut position,
+            &mut velocity,
+            &rests,
+        );
+        nodes.position = each!(3, axis => L::from_array(position[axis]));
+        nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
     }
 
     /// The way of velocity Verlet, and the velocity at its end if the acceleration stays.
