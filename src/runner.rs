@@ -3,6 +3,7 @@
 
 use crate::history::{Course, History};
 use crate::scene::Scene;
+use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::state::State;
@@ -49,7 +50,7 @@ impl<'a> Runner<'a> {
         let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
             let mut world = scene.world(run);
-            world.set_threads(threads);
+            world.set_crew(Crew::new(threads));
             Running {
                 run,
                 world,
@@ -123,6 +124,17 @@ impl<'a> Runner<'a> {
         let runs = self.snapshots();
         let time = runs.first().map_or_else(|| self.scene.frame_time(index), |run| run.snapshot.time);
         Frame { index, time, runs }
+    }
+
+    /// Calls `ask` on each thread that was lent to the runs.
+    pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+        for running in &mut self.runs {
+            running.world.crew().run(&|number| {
+                if number > 0 {
+                    ask();
+                }
+            });
+        }
     }
 
     /// What was noted down until now.
@@ -257,6 +269,11 @@ impl<'a> Frames<'a> {
     /// How many frames were handed out.
     pub fn taken(&self) -> usize {
         self.taken
+    }
+
+    /// Calls `ask` on each thread that was lent to the runs, besides those of the pool.
+    pub fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+        self.runner.ask_helpers(ask);
     }
 }
 
