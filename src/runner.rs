@@ -415,6 +415,26 @@ mod tests {
         }
     }
 
+    /// Processor time is asked of each thread besides those of the pool.
+    #[test]
+    fn each_thread_that_was_lent_is_asked() {
+        let large = SCENE.replace("[2, 1, 1]", "[20, 20, 20]");
+        for (text, threads) in [(SCENE, [0, 0]), (&large, [1, 3])] {
+            let scene = Scene::parse(text, "large.toml", &Limits::default()).unwrap();
+            for (runs, helpers) in [(&[0, 1][..], 2 * threads[0]), (&[0], threads[1])] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
+                let asked = std::sync::Mutex::new(std::collections::HashSet::new());
+                pool.install(|| {
+                    let ask = || {
+                        asked.lock().unwrap().insert(std::thread::current().id());
+                    };
+                    Runner::new(&scene, runs).ask_helpers(&ask);
+                });
+                assert_eq!(asked.into_inner().unwrap().len(), helpers);
+            }
+        }
+    }
+
     #[test]
     fn pieces_come_back_from_memory_and_from_disk() {
         let mut store = Store::new(&std::env::temp_dir());

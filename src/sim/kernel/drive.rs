@@ -85,12 +85,15 @@ impl Dynamics for ByKernel {
         count: u64,
         crew: &mut Crew,
     ) -> Result<(), Runaway> {
+        /// Steps for which what moves is placed at a time.
+        const STRETCH: u64 = 256;
         let Self { way, constraints, margin } = self;
         let constraints = constraints.get_or_insert_with(|| {
             way.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
         let obstacles = system.contact.obstacles().unwrap_or_default();
+        let is_still = obstacles.iter().all(Obstacle::is_still);
         let target = way.steps() + count;
         while way.steps() < target {
             let begin = way.steps();
@@ -107,12 +110,15 @@ impl Dynamics for ByKernel {
             if taken.is_some() || begin > 0 && is_new(begin) {
                 way.arrive();
             }
-            let met = Met::new(obstacles, system, way.earliest(), target, *margin);
-            let last = target.min(met.end());
-            let until = match system.grips.is_empty() {
-                true => last,
-                false => (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last),
+            // What moves is placed beforehand, so many steps at a time.
+            let until = match is_still && system.grips.is_empty() {
+                true => target,
+                false => {
+                    let last = target.min(begin + STRETCH);
+                    (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
+                }
             };
+            let met = Met::new(obstacles, system, way.earliest()..until, *margin);
             let place = |step: u64, place: &mut Place<'_>| {
                 for (grip, memory) in system.grips(memory) {
                     grip.moved(system.interval(step), memory).for_each(|(node, to, speed)| place(node, to, speed));
@@ -161,40 +167,36 @@ impl Dynamics for ByKernel {
 
 /// The obstacles in each of some steps.
 struct Met<'a> {
-    /// Step by step; once, if all stay where they are.
+    /// Step by step.
     placed: Vec<Placed<'a>>,
     /// Of each.
     bounds: Vec<Bound>,
     first: u64,
-    /// How many steps there are, if obstacles move.
-    steps: Option<u64>,
+    /// Whether one step stands for all.
+    is_still: bool,
     /// How many obstacles.
     count: usize,
 }
 
 impl<'a> Met<'a> {
-    /// In the steps from `first` to `target`, or up to some of them.
-    fn new(obstacles: &'a [Obstacle], system: &System, first: u64, target: u64, margin: f64) -> Self {
-        /// Moving obstacles are placed in so many steps beforehand: more than are taken again.
-        const STEPS: u64 = 256;
-        let steps = obstacles.iter().any(|one| !one.is_still()).then(|| STEPS.min(target - first));
-        let of_step = |step: u64| {
-            let interval = system.interval(first + step);
+    /// In the steps given.
+    fn new(obstacles: &'a [Obstacle], system: &System, mut steps: Range<u64>, margin: f64) -> Self {
+        let (first, is_still) = (steps.start, obstacles.iter().all(Obstacle::is_still));
+        if is_still {
+            steps.end = first + 1;
+        }
+        let in_step = |step: u64| {
+            let interval = system.interval(step);
             obstacles.iter().map(move |obstacle| obstacle.at(interval.end, interval.step))
         };
-        let placed: Vec<_> = (0..steps.unwrap_or(1)).flat_map(of_step).collect();
+        let placed: Vec<_> = steps.flat_map(in_step).collect();
         let bounds = placed.iter().map(|obstacle| obstacle.bound(margin)).collect();
-        Self { placed, bounds, first, steps, count: obstacles.len() }
-    }
-
-    /// Steps before this one are known.
-    fn end(&self) -> u64 {
-        self.steps.map_or(u64::MAX, |steps| self.first + steps)
+        Self { placed, bounds, first, is_still, count: obstacles.len() }
     }
 
     /// The obstacles in a step.
     fn row(&self, step: u64) -> Range<usize> {
-        let first = self.steps.map_or(0, |_| (step - self.first) as usize * self.count);
+        let first = if self.is_still { 0 } else { (step - self.first) as usize * self.count };
         first..first + self.count
     }
 

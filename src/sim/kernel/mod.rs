@@ -45,6 +45,9 @@ pub(in crate::sim) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3)
 /// Is given a node, its position (m) and its velocity (m/s).
 pub(in crate::sim) type Place<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
 
+/// Gives the nodes that grips hold at the end of a step of this number.
+pub(in crate::sim) type Held<'a> = dyn Fn(u64, &mut Place<'_>) + Sync + 'a;
+
 /// What acts on the nodes besides elements and gravity, in steps that are asked for by number.
 #[derive(Clone, Copy)]
 pub(in crate::sim) struct Around<'a> {
@@ -57,8 +60,8 @@ pub(in crate::sim) struct Around<'a> {
     /// The only obstacle, if it is a floor that stays where it is: what `resolve` does to nodes that have moved at constant
     /// velocity is then done in lanes, with the same bits.
     pub(in crate::sim) floor: Option<Floor>,
-    /// Tells the nodes that grips hold at the end of a step, if there are grips that do.
-    pub(in crate::sim) grips: Option<&'a (dyn Fn(u64, &mut Place<'_>) + Sync)>,
+    /// The nodes that grips hold, if there are grips that do.
+    pub(in crate::sim) grips: Option<&'a Held<'a>>,
     /// The speed (m/s) beyond which a node is lost.
     pub(in crate::sim) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }
