@@ -5,6 +5,7 @@
 
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
+use localshape::sim::crew::Crew;
 use localshape::sim::floor::multiply_adds;
 use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
@@ -32,7 +33,7 @@ impl Case {
     fn new(name: &'static str, scene: &Scene, run: usize, threads: usize) -> Self {
         let count = scene.body.elements.len() as u64;
         let mut world = scene.world(run);
-        world.set_threads(threads);
+        world.set_crew(Crew::new(threads));
         Self { name, world, count, steps: (WORK / count).max(1), times: Vec::new() }
     }
 

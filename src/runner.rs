@@ -3,6 +3,7 @@
 
 use crate::history::{Course, History};
 use crate::scene::Scene;
+use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::state::State;
@@ -49,7 +50,7 @@ impl<'a> Runner<'a> {
         let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
             let mut world = scene.world(run);
-            world.set_threads(threads);
+            world.set_crew(Crew::new(threads));
             Running {
                 run,
                 world,
@@ -123,6 +124,17 @@ impl<'a> Runner<'a> {
         let runs = self.snapshots();
         let time = runs.first().map_or_else(|| self.scene.frame_time(index), |run| run.snapshot.time);
         Frame { index, time, runs }
+    }
+
+    /// Calls `ask` on each thread that was lent to the runs.
+    pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+        for running in &mut self.runs {
+            running.world.crew().run(&|number| {
+                if number > 0 {
+                    ask();
+                }
+            });
+        }
     }
 
     /// What was noted down until now.
@@ -258,6 +270,11 @@ impl<'a> Frames<'a> {
     pub fn taken(&self) -> usize {
         self.taken
     }
+
+    /// Calls `ask` on each thread that was lent to the runs, besides those of the pool.
+    pub fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+        self.runner.ask_helpers(ask);
+    }
 }
 
 /// Pieces of bytes in a file without a name, which goes with it.
@@ -382,6 +399,26 @@ mod tests {
             let (waited, course) = take(true, slice);
             assert_eq!(waited, streamed);
             assert_eq!(format!("{:?}", course.unwrap()), format!("{:?}", History::new(&scene, &[0, 1])));
+        }
+    }
+
+    /// Processor time is asked of each thread besides those of the pool.
+    #[test]
+    fn each_thread_that_was_lent_is_asked() {
+        let large = SCENE.replace("[2, 1, 1]", "[20, 20, 20]");
+        for (text, threads) in [(SCENE, [0, 0]), (&large, [1, 3])] {
+            let scene = Scene::parse(text, "large.toml", &Limits::default()).unwrap();
+            for (runs, helpers) in [(&[0, 1][..], 2 * threads[0]), (&[0], threads[1])] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
+                let asked = std::sync::Mutex::new(std::collections::HashSet::new());
+                pool.install(|| {
+                    let ask = || {
+                        asked.lock().unwrap().insert(std::thread::current().id());
+                    };
+                    Runner::new(&scene, runs).ask_helpers(&ask);
+                });
+                assert_eq!(asked.into_inner().unwrap().len(), helpers);
+            }
         }
     }
 

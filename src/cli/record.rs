@@ -20,6 +20,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::ffi::OsString;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// What turns frames into pictures, for one scene.
@@ -176,7 +177,8 @@ impl Recording<'_> {
         let result =
             made.and(drawn).and(recorded.map_err(Failure::from)).and(kept.unwrap_or(Ok(())).map_err(Failure::from));
 
-        self.times.simulate.cpu = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
+        let of_pool = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
+        self.times.simulate.cpu = of_pool.map(|pool| pool + self.times.simulate.cpu.unwrap_or(0.0));
         self.times.total = total.spent();
         let summary = &mut *self.summary;
         summary.outcome = match &result {
@@ -241,6 +243,7 @@ impl Recording<'_> {
                 Next::Done => break,
             }
         }
+        self.times.simulate.cpu = helpers_time(&mut frames).map(|time| time.as_secs_f64());
         bar.finish_and_clear();
         Ok(())
     }
@@ -256,6 +259,13 @@ pub(super) fn slice(body: &Body) -> u64 {
 /// Processor time of all threads of the pool so far.
 fn processor_time(pool: &ThreadPool) -> Option<Duration> {
     pool.broadcast(|_| thread_time()).into_iter().sum()
+}
+
+/// Processor time so far of the threads that were lent to runs.
+fn helpers_time(frames: &mut Frames<'_>) -> Option<Duration> {
+    let times = Mutex::new(Vec::new());
+    frames.ask_helpers(&|| times.lock().unwrap_or_else(PoisonError::into_inner).push(thread_time()));
+    times.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().sum()
 }
 
 /// The processor time that no other stage accounts for: that of drawing, wherever its driver spends it.

@@ -8,6 +8,7 @@ use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::state::State;
+use crate::sim::world::Kernel;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -15,7 +16,8 @@ impl Run {
     /// A run of a name that is unique in its scene, with a time step (s). Its lines get their
     /// look from [`Scene::framed`].
     pub fn new(name: &str, model: Arc<dyn ElasticModel>, integrator: Integrator, step: f64) -> Self {
-        Self { name: name.into(), model, integrator, step, kernel: Default::default(), place: 0, colour: None }
+        let kernel = Kernel::of(model.as_ref());
+        Self { name: name.into(), model, integrator, step, kernel, place: 0, colour: None }
     }
 }
 

@@ -7,6 +7,7 @@ use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::words::{self, typed};
+use crate::sim::world::Kernel;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -61,6 +62,8 @@ pub struct RunSummary {
     pub model: String,
     /// How time is stepped, as typed in a scene.
     pub integrator: String,
+    /// How a step is computed.
+    pub kernel: Kernel,
     /// Time step (s).
     pub step: f64,
     /// Number of steps up to the last frame.
@@ -82,6 +85,7 @@ impl Scene {
             name: run.name.clone(),
             model: run.model.describe(body),
             integrator: typed(&run.integrator),
+            kernel: run.kernel,
             step: run.step,
             steps: self.frame_step(at, last),
         };
@@ -219,7 +223,8 @@ impl fmt::Display for SceneSummary {
             line("run", &format!("{}: {}", run.name, run.model))?;
             let (step, part) = (short(run.step), short(self.cycle / run.step));
             let steps = count(run.steps.into());
-            line("", &format!("ΔT = {step} s = T/{part}, {steps} steps, {}", run.integrator))?;
+            let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };
+            line("", &format!("ΔT = {step} s = T/{part}, {steps} steps, {}{kernel}", run.integrator))?;
         }
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;

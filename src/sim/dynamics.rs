@@ -2,17 +2,24 @@
 //! better.
 
 use super::body::{Body, bounds};
+use super::crew::Crew;
 use super::state::{Nodes, State};
-use super::system::System;
-use super::world::Surroundings;
+use super::system::{Surroundings, System};
 
 /// A way of advancing. It takes its own from the state and may hold the nodes itself while it works.
 pub(super) trait Dynamics: Send + Sync {
-    /// Takes so many steps from where it stands, and counts them.
+    /// Takes so many steps from where it stands, and counts them. The crew may be put to work.
     ///
     /// # Errors
     /// When a node would become faster than the limit: it then stands before that step.
-    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway>;
+    fn advance(
+        &mut self,
+        system: &System,
+        limit: &SpeedLimit,
+        state: &mut State,
+        count: u64,
+        crew: &mut Crew,
+    ) -> Result<(), Runaway>;
 
     /// Writes into the state what it holds itself.
     fn settle(&mut self, _state: &mut State) {}
@@ -24,9 +31,6 @@ pub(super) trait Dynamics: Send + Sync {
 
     /// The state was replaced by another one.
     fn restart(&mut self) {}
-
-    /// Works with so many threads from now on, if it has threads of its own.
-    fn set_threads(&mut self, _threads: usize) {}
 }
 
 /// A node whose new velocity is no number or beyond all reason: the step is not taken.

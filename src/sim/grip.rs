@@ -1,7 +1,7 @@
 //! Kinematic constraints: nodes that are held, or grabbed, dragged along a path and let go (the manipulation of the
 //! paper's title).
 
-use super::motion::{Motion, Pose};
+use super::motion::{Interval, Motion, Pose};
 use super::state::State;
 use glam::DVec3;
 
@@ -31,17 +31,6 @@ impl Grip {
     }
 }
 
-/// One step in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// When it begins (s).
-    pub begin: f64,
-    /// When it ends (s).
-    pub end: f64,
-    /// How long it takes (s): ΔT, of which the times above are multiples, rounded.
-    pub step: f64,
-}
-
 /// What a grip remembers: whether it holds its nodes (0 or 1), then where each was when it was gripped (m).
 impl Grip {
     /// How many numbers it remembers.
@@ -60,18 +49,23 @@ impl Grip {
     }
 
     /// Takes the nodes where they are at the start of a step, if it is to hold them at its end (s).
-    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
-        if memory[0] == 0.0 && self.moves(end) {
+    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl FnMut(u32) -> DVec3) {
+        if self.takes(end, memory) {
             self.take(memory, position);
         }
     }
 
+    /// Whether it takes its nodes at the beginning of a step that ends at a time (s).
+    pub(super) fn takes(&self, end: f64, memory: &[f64]) -> bool {
+        memory[0] == 0.0 && self.moves(end)
+    }
+
     /// Whether it moves nodes in a step that ends at a time (s): not in the one that ends just as it grips them.
-    fn moves(&self, end: f64) -> bool {
+    pub(super) fn moves(&self, end: f64) -> bool {
         self.from < end && end <= self.until
     }
 
-    fn take(&self, memory: &mut [f64], position: impl Fn(u32) -> DVec3) {
+    fn take(&self, memory: &mut [f64], mut position: impl FnMut(u32) -> DVec3) {
         memory[0] = 1.0;
         for (&node, gripped) in self.nodes.iter().zip(memory[1..].as_chunks_mut::<3>().0) {
             *gripped = position(node).to_array();

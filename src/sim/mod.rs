@@ -5,6 +5,7 @@
 pub mod alike;
 pub mod body;
 pub mod contact;
+pub mod crew;
 pub mod diagnose;
 pub mod diagnostics;
 mod dynamics;
@@ -17,6 +18,7 @@ mod kernel;
 pub mod lists;
 pub mod model;
 pub mod motion;
+pub mod part;
 pub mod rotation;
 pub mod snapshot;
 pub mod state;

@@ -46,6 +46,17 @@ impl Offset {
     }
 }
 
+/// One step in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// When it begins (s).
+    pub begin: f64,
+    /// When it ends (s).
+    pub end: f64,
+    /// How long it takes (s): ΔT, of which the times above are multiples, rounded.
+    pub step: f64,
+}
+
 /// An offset at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {

@@ -10,7 +10,9 @@ pub struct Divergence {
     pub time: f64,
     /// Number of that step, counted from 1.
     pub step: u64,
-    /// The first element that holds a node which left all bounds; `None` if that node belongs to no element.
+    /// The part of a node which left all bounds, counted from 0.
+    pub part: usize,
+    /// The first element of that part that holds the node; `None` if it belongs to no element.
     pub element: Option<usize>,
 }
 

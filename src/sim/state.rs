@@ -62,14 +62,14 @@ impl State {
     /// The state as bytes, for [`Self::from_bytes`]: a header, then every number as 64 bits, the lowest byte first.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Memory { model, constraints, integrator } = &self.memory;
-        let (diverged, [time, step, element]) = match self.status {
-            Status::Ok => (0, [0; 3]),
-            Status::Diverged(Divergence { time, step, element }) => {
-                (1, [time.to_bits(), step, element.map_or(0, |element| element as u64 + 1)])
+        let (diverged, [time, step, part, element]) = match self.status {
+            Status::Ok => (0, [0; 4]),
+            Status::Diverged(Divergence { time, step, part, element }) => {
+                (1, [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)])
             }
         };
         let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len()].map(|len| len as u64);
-        let header = [self.steps, diverged, time, step, element].into_iter().chain(lengths);
+        let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths);
         let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
         let memory = model.iter().chain(constraints).chain(integrator).copied();
         let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
@@ -80,7 +80,7 @@ impl State {
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (words, []) = bytes.strip_prefix(MARK)?.as_chunks::<8>() else { return None };
         let (header, words) = words.split_at_checked(HEADER)?;
-        let [steps, diverged, time, step, element, lengths @ ..]: [u64; HEADER] =
+        let [steps, diverged, time, step, part, element, lengths @ ..]: [u64; HEADER] =
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
         let [nodes, model, constraints, integrator] = lengths.map(|length| usize::try_from(length).ok());
         let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?]);
@@ -98,7 +98,7 @@ impl State {
             0 => Status::Ok,
             1 => {
                 let element = element.checked_sub(1).map(|element| element as usize);
-                Status::Diverged(Divergence { time: f64::from_bits(time), step, element })
+                Status::Diverged(Divergence { time: f64::from_bits(time), step, part: part as usize, element })
             }
             _ => return None,
         };
@@ -107,9 +107,9 @@ impl State {
 }
 
 /// How the bytes of a state begin.
-const MARK: &[u8] = b"localshape state 1\n";
+const MARK: &[u8] = b"localshape state 2\n";
 /// Words before the numbers.
-const HEADER: usize = 9;
+const HEADER: usize = 10;
 
 #[cfg(test)]
 mod tests {
@@ -117,7 +117,7 @@ mod tests {
 
     fn state() -> State {
         let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
-        let status = Status::Diverged(Divergence { time: 0.3, step: 7, element: Some(0) });
+        let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0) });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
         State { position, velocity, steps: 9, status, memory }
     }
@@ -146,7 +146,7 @@ mod tests {
         assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
         assert!(State::from_bytes(&changed(0, b'L')).is_none());
         // Counts that no memory could hold, and a status that does not exist.
-        assert!(State::from_bytes(&changed(MARK.len() + 5 * 8 + 7, 0xff)).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
         assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
     }
 }

@@ -1,33 +1,22 @@
 //! What is advanced together: bodies with their models, and what acts on them.
 
-use super::body::Body;
-use super::contact::ContactStage;
-use super::diagnose::Diagnose;
-use super::grip::{Grip, Interval};
-use super::model::{ForceModel, Scratch};
+use super::contact::{ContactStage, Obstacle};
+use super::grip::Grip;
+use super::model::Scratch;
+use super::motion::Interval;
+use super::part::Part;
 use super::state::{Memory, Nodes, State};
 use glam::DVec3;
-use std::ops::Range;
-use std::sync::Arc;
 
-/// One body in a simulation, and where its nodes and its memory lie in the [`State`].
-pub struct Part {
-    /// The body.
-    pub body: Arc<Body>,
-    /// Its model's forces.
-    pub forces: Box<dyn ForceModel>,
-    /// Its nodes among all.
-    pub nodes: Range<usize>,
-    /// Its model's memory among [`Memory::model`].
-    pub memory: Range<usize>,
-    pub(super) diagnose: Diagnose,
-}
-
-impl Part {
-    /// The part's own nodes.
-    pub(super) fn nodes_of<'a>(&self, all: Nodes<'a>) -> Nodes<'a> {
-        Nodes { position: &all.position[self.nodes.clone()], velocity: &all.velocity[self.nodes.clone()] }
-    }
+/// What acts on bodies from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: DVec3,
+    /// Obstacles, in the order in which they act.
+    pub obstacles: Vec<Obstacle>,
+    /// What holds and drags nodes, after all obstacles.
+    pub grips: Vec<Grip>,
 }
 
 /// All parts, and what acts on them.
@@ -51,11 +40,12 @@ impl System {
         Interval { begin: steps as f64 * self.step, end: (steps + 1) as f64 * self.step, step: self.step }
     }
 
-    /// The first element of its part that holds a node.
-    pub(super) fn element_of(&self, node: usize) -> Option<usize> {
-        let part = self.parts.iter().find(|part| part.nodes.contains(&node))?;
-        let own = (node - part.nodes.start) as u32;
-        part.body.elements.iter().position(|nodes| nodes.contains(&own))
+    /// The part that a node belongs to, and the first element there that holds it.
+    pub(super) fn place_of(&self, node: usize) -> (usize, Option<usize>) {
+        let part = self.parts.partition_point(|part| part.nodes.end <= node);
+        let Part { body, nodes, .. } = &self.parts[part];
+        let own = (node - nodes.start) as u32;
+        (part, body.elements.iter().position(|nodes| nodes.contains(&own)))
     }
 
     /// Whether forces depend on velocities.
@@ -82,17 +72,16 @@ impl System {
         }
     }
 
-    /// For how many steps from here on no grip holds or takes anything.
-    pub(super) fn steps_without_grips(&self, steps: u64) -> u64 {
-        let begin = self.interval(steps).begin;
-        let until = |grip: &Grip| {
-            if begin > grip.until {
-                return u64::MAX;
-            }
-            // One less, for round-off of times.
-            ((grip.from - begin) / self.step).floor().max(1.0) as u64 - 1
-        };
-        self.grips.iter().map(until).min().unwrap_or(u64::MAX)
+    /// Whether a grip takes its nodes at the beginning of the step after so many.
+    pub(super) fn takes(&self, steps: u64, memory: &[f64]) -> bool {
+        let end = self.interval(steps).end;
+        self.grips(memory).any(|(grip, memory)| grip.takes(end, memory))
+    }
+
+    /// Whether a grip holds nodes at the end of the step after so many.
+    pub(super) fn holds(&self, steps: u64) -> bool {
+        let end = self.interval(steps).end;
+        self.grips.iter().any(|grip| grip.moves(end))
     }
 
     /// Each grip with its part of the memory.

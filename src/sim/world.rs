@@ -1,32 +1,22 @@
 //! The world of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 use super::body::Body;
-use super::contact::Obstacle;
+use super::crew::Crew;
 use super::diagnose::Diagnose;
 use super::diagnostics::Diagnostic;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
-use super::grip::Grip;
 use super::integrate::{ByForces, Integrator};
 use super::kernel::ByKernel;
 use super::model::{ElasticModel, Report, Share};
+use super::part::Part;
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
-use super::system::{Part, System};
+pub use super::system::Surroundings;
+use super::system::System;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// What acts on a body from outside.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
-    /// Acceleration of gravity (m/s²).
-    pub gravity: glam::DVec3,
-    /// Obstacles, in the order in which they act.
-    pub obstacles: Vec<Obstacle>,
-    /// What holds and drags nodes, after all obstacles.
-    pub grips: Vec<Grip>,
-}
 
 /// How a run is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +25,8 @@ pub struct Stepping {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
-    /// How a step is computed.
+    /// How a step is computed. A model without vectorised steps ([`ElasticModel::known`]), or several bodies together, take
+    /// the plain code.
     pub kernel: Kernel,
 }
 
@@ -50,12 +41,19 @@ impl Stepping {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
-    /// Vectorised, as far as there is a kernel for the model, the body and the integrator. Its results have the same bits on
-    /// every machine and for any number of threads.
+    /// Vectorised, with the same bits on every machine and for any number of threads. Shape-based models with the rotations
+    /// `exact` and `arctangent`, undamped or with `damping_of = "relative-motion"`, and mass-spring have it.
     #[default]
     Fast,
-    /// The plain code that reads like the paper.
+    /// The plain code that reads like the paper. The other rotations and the damping of deformation have nothing else.
     Reference,
+}
+
+impl Kernel {
+    /// The fastest one for a model.
+    pub fn of(model: &dyn ElasticModel) -> Self {
+        if model.known().is_some() { Self::Fast } else { Self::Reference }
+    }
 }
 
 /// A moment of simulated time: so many counts of a clock that counts at a rate, such as frames. A run with fixed steps shows
@@ -86,6 +84,7 @@ impl Moment {
 pub struct World {
     system: System,
     dynamics: Box<dyn Dynamics>,
+    crew: Crew,
     limit: SpeedLimit,
     /// What snapshots show besides positions and velocities.
     field: Option<Field>,
@@ -143,12 +142,11 @@ impl World {
             parts.push(part);
         }
         let Surroundings { gravity, obstacles, grips } = surroundings;
-        let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step: stepping.step };
         let Stepping { integrator, step, kernel } = stepping;
+        let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
         let fast = match bodies {
             [(body, model)] if kernel == Kernel::Fast => {
-                let has_grips = !system.grips.is_empty();
-                model.known().and_then(|model| ByKernel::new(body, model, integrator, has_grips, gravity, step))
+                model.known().map(|model| ByKernel::new(body, model, integrator, gravity, step))
             }
             _ => None,
         };
@@ -156,12 +154,18 @@ impl World {
             Some(kernel) => Box::new(kernel),
             None => Box::new(ByForces::new(integrator, &state)),
         };
-        Self { system, dynamics, limit: limit.unwrap_or_default(), field: None, state }
+        Self { system, dynamics, crew: Crew::new(1), limit: limit.unwrap_or_default(), field: None, state }
     }
 
-    /// Steps with so many threads from now on, as far as there is work for them. They change no bit.
-    pub fn set_threads(&mut self, threads: usize) {
-        self.dynamics.set_threads(threads);
+    /// Lends it threads for vectorised steps, as far as there is work for them. They change no bit. Before, and with
+    /// [`Kernel::Reference`], the calling thread and its pool do all.
+    pub fn set_crew(&mut self, crew: Crew) {
+        self.crew = crew;
+    }
+
+    /// The threads that were lent.
+    pub fn crew(&mut self) -> &mut Crew {
+        &mut self.crew
     }
 
     /// Makes snapshots show a field from now on, or none.
@@ -198,14 +202,15 @@ impl World {
     }
 
     fn advance_steps(&mut self, steps: u64) {
-        let Self { system, dynamics, limit, state, .. } = self;
+        let Self { system, dynamics, crew, limit, state, .. } = self;
         if state.status == Status::Ok {
             let last = dynamics.steps(state).saturating_add(steps);
-            let Err(runaway) = dynamics.advance(system, limit, state, steps) else { return };
+            let Err(runaway) = dynamics.advance(system, limit, state, steps, crew) else { return };
             dynamics.settle(state);
             dynamics.restart();
             let (time, step) = (system.interval(state.steps).end, state.steps + 1);
-            state.status = Status::Diverged(Divergence { time, step, element: system.element_of(runaway.node) });
+            let (part, element) = system.place_of(runaway.node);
+            state.status = Status::Diverged(Divergence { time, step, part, element });
             state.steps = last;
         } else {
             state.steps = state.steps.saturating_add(steps);

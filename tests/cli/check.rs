@@ -53,6 +53,24 @@ fn says_where_the_body_starts() {
     assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
 }
 
+/// Which runs are not vectorised is said, and those that cannot be are not asked to.
+#[test]
+fn says_which_runs_take_the_plain_code() {
+    let place = Place::with_small();
+    assert!(!place.run("check small.toml").good().out.contains("reference"));
+    let typed = |more: &str| SMALL.replacen("stiffness = 1e4", &format!("stiffness = 1e4{more}"), 1);
+    for more in [", rotation = 'symmetric'", ", rotation = 'linear-update'", ", damping_of = 'deformation'"] {
+        place.write("plain.toml", &typed(more));
+        let ran = place.run("check plain.toml").good();
+        assert_eq!(ran.out.matches(", kernel reference\n").count(), 1, "{}", ran.out);
+        let document = place.run("check plain.toml --json").good().json();
+        let runs = &document["scenes"][0]["scene"]["runs"];
+        assert_eq!((&runs[0]["kernel"], &runs[1]["kernel"]), (&"reference".into(), &"fast".into()));
+        place.write("plain.toml", &typed(more).replacen("[[run]]", "[[run]]\nkernel = 'fast'", 1));
+        place.run("check plain.toml").bad(2, &["`kernel`", "no vectorised steps", "reference"]);
+    }
+}
+
 /// A warning is told by every command that reads the scene to run it, and changes nothing else.
 #[test]
 fn warns_of_what_is_probably_not_meant() {

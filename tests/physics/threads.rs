@@ -3,6 +3,7 @@
 use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::sim::contact::{Motion, Obstacle, Shape};
+use localshape::sim::crew::Crew;
 use localshape::sim::grip::Grip;
 use localshape::sim::integrate::Integrator;
 use localshape::sim::model::ElasticModel;
@@ -57,7 +58,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
             pool.install(|| {
                 let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
                 let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
-                world.set_threads(threads);
+                world.set_crew(Crew::new(threads));
                 world.advance(60);
                 world.state().clone()
             })

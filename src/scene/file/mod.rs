@@ -112,8 +112,8 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) step: Option<StepFile>,
     /// Integrator of this run alone. Default: that of `[time]`.
     pub(in crate::scene) integrator: Option<Integrator>,
-    /// How a step is computed. Default: `fast`. The choice moves states by round-off in each step, which chaotic motion
-    /// enlarges.
+    /// How a step is computed. Default: `fast` where the model has it, else `reference`. The choice moves states by round-off
+    /// in each step, which chaotic motion enlarges.
     pub(in crate::scene) kernel: Option<Kernel>,
     /// The colour of its curves and arrows, and of the line beside its name: digits such as `"#0072b2"`, or a name of CSS
     /// such as `"teal"`. With the background it has a contrast of at least 3, and it is at least 20 (CIEDE2000) from

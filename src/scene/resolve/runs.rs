@@ -6,6 +6,7 @@ use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::sim::model::ElasticModel;
+use crate::sim::world::Kernel;
 use std::sync::Arc;
 
 /// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
@@ -62,7 +63,14 @@ pub(super) fn resolve(
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
         let colour = run.colour.map(|colour| colour.0);
-        let kernel = run.kernel.unwrap_or_default();
+        let fastest = Kernel::of(model.as_ref());
+        let kernel = run.kernel.unwrap_or(fastest);
+        if kernel == Kernel::Fast && fastest != Kernel::Fast {
+            let path = [Way::Key("run"), Way::Index(at), Way::Key("kernel")];
+            let message = "`kernel` is \"fast\", but this reading of the model has no vectorised steps".to_owned();
+            report.at(&path, message, "take it out, or write \"reference\"".to_owned());
+            return None;
+        }
         runs.push(Run { name: run.name.clone(), model, integrator, step, kernel, place: 0, colour });
     }
     Some(runs)

@@ -1,15 +1,16 @@
 //! Obstacles, rebound and friction (paper, section 2, "Collision Processing").
 
+mod bound;
 mod shape;
 
 pub use super::motion::{Motion, Pose};
+pub(super) use bound::{Bound, Floor};
 pub(super) use shape::ROUND_OFF;
 pub use shape::{Contact, Shape};
 
-use super::grip::Interval;
-use super::kernel::{Bound, Floor};
+use super::motion::Interval;
+use super::part::Part;
 use super::state::Nodes;
-use super::system::Part;
 use glam::DVec3;
 
 /// Something rigid that nodes bounce off.

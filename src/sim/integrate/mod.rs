@@ -4,9 +4,10 @@ mod explicit_euler;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
+use super::crew::Crew;
 use super::dynamics::{Dynamics, Runaway, SpeedLimit};
-use super::grip::Interval;
 use super::model::Scratch;
+use super::motion::Interval;
 use super::state::State;
 use super::system::System;
 use glam::DVec3;
@@ -51,7 +52,14 @@ impl ByForces {
 }
 
 impl Dynamics for ByForces {
-    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
+    fn advance(
+        &mut self,
+        system: &System,
+        limit: &SpeedLimit,
+        state: &mut State,
+        count: u64,
+        _: &mut Crew,
+    ) -> Result<(), Runaway> {
         for _ in 0..count {
             let interval = system.interval(state.steps);
             let limit = limit.at(interval.end);

@@ -2,97 +2,72 @@
 
 use super::general::{Constants, General};
 use super::lattice::{self, Lattice};
-use super::motion::{self, Scheme};
 use super::springs::Stencil;
-use super::{Around, Bound, Rotation, Runaway, Set};
+use super::stepper::{Scheme, Stepper, Way};
+use super::{Around, Place, Rotation, Set};
 use crate::sim::body::{Body, Dimension};
-use crate::sim::contact::Obstacle;
-use crate::sim::dynamics::{self, Dynamics, SpeedLimit};
+use crate::sim::contact::{Bound, Floor, Obstacle, Placed};
+use crate::sim::crew::Crew;
+use crate::sim::dynamics::{Dynamics, Runaway, SpeedLimit};
 use crate::sim::integrate::Integrator;
 use crate::sim::model::Known;
 use crate::sim::model::mass_spring::MassSpring;
-use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use crate::sim::model::shape_based::{RotationReading, ShapeBased};
 use crate::sim::state::{Memory, State};
 use crate::sim::system::System;
 use glam::DVec3;
-
-/// A way of stepping one body that holds positions, velocities and memory in arrays of its own.
-pub(super) trait Kernel: Send + Sync {
-    /// Takes over a state: positions (m), velocities (m/s), and what the model remembers.
-    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]);
-    /// Hands the state out.
-    fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]);
-    /// The position (m) and velocity (m/s) of a node.
-    fn node(&self, node: usize) -> (DVec3, DVec3);
-    /// Puts a node somewhere else.
-    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3);
-    /// Works with so many threads from now on, as far as there is work for them.
-    fn set_threads(&mut self, threads: usize);
-    /// Takes steps.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit. The state is then that before the step.
-    fn step(&mut self, scheme: Scheme, steps: u64, around: &Around<'_>) -> Result<(), Runaway>;
-}
+use std::ops::Range;
 
 /// A kernel in a simulation.
 pub(in crate::sim) struct ByKernel {
-    kernel: Box<dyn Kernel>,
-    scheme: Scheme,
-    /// The steps taken and the memory of the constraints, if the kernel holds the state.
-    holds: Option<(u64, Vec<f64>)>,
+    way: Way,
+    /// The memory of the constraints, while the kernel holds the state.
+    constraints: Option<Vec<f64>>,
     /// The margin of contact (m): near enough to be asked.
     margin: f64,
 }
 
 impl ByKernel {
-    /// The kernel for a model on a body; `None` if there is none, or none that knows this integrator.
+    /// The kernel for a model on a body.
     pub(in crate::sim) fn new(
         body: &Body,
         model: Known<'_>,
         integrator: Integrator,
-        has_grips: bool,
         gravity: DVec3,
         step: f64,
-    ) -> Option<Self> {
+    ) -> Self {
         /// Of the size of the body. Round-off decides at 1e-15 of the distance from the origin whether a node is on a
         /// surface, so this holds for bodies that are nearer than a billion times their size.
         const MARGIN: f64 = 1e-3;
         let scheme = match integrator {
             Integrator::SemiImplicitEuler => Scheme::SemiImplicitEuler,
             Integrator::ExplicitEuler => Scheme::ExplicitEuler,
-            // Grips act within a step, and without damping accelerations go from one step to the next.
-            Integrator::VelocityVerlet if has_grips || !model.is_damped() => return None,
             Integrator::VelocityVerlet => Scheme::VelocityVerlet,
         };
-        let kernel = match model {
-            Known::ShapeBased(model) => shape_based(body, model, scheme, gravity, step)?,
+        let stepper = match model {
+            Known::ShapeBased(model) => shape_based(body, model, scheme, gravity, step),
             Known::MassSpring(model) => mass_spring(body, model, gravity, step),
         };
-        Some(Self { kernel, scheme, holds: None, margin: MARGIN * body.extent() })
+        Self { way: Way::new(stepper, scheme), constraints: None, margin: MARGIN * body.extent() }
     }
 }
 
-fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, step: f64) -> Option<Box<dyn Kernel>> {
-    let &ShapeBased { stiffness, damping, passes, rotation, damping_of } = model;
-    if damping > 0.0 && damping_of == DampingReading::Deformation {
-        return None;
-    }
+fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, step: f64) -> Box<dyn Stepper> {
+    let &ShapeBased { stiffness, damping, passes, rotation, .. } = model;
     let rotation = match rotation {
         // Eq. (9) is exact.
         _ if body.dimension == Dimension::Plane => Rotation::Optimum,
-        RotationReading::Arctangent => Rotation::Arctangent { passes },
         RotationReading::Exact => Rotation::Optimum,
-        RotationReading::VectorLength | RotationReading::LinearUpdate | RotationReading::Symmetric => return None,
+        _ => Rotation::Arctangent { passes },
     };
     let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-    if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best(), 1) {
-        return Some(Box::new(lattice));
+    if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best()) {
+        return Box::new(lattice);
     }
-    Some(Box::new(General::new(body, rotation, Constants { stiffness, damping, gravity, step }, Set::best())))
+    Box::new(General::new(body, rotation, Constants { stiffness, damping, gravity, step }, Set::best()))
 }
 
-fn mass_spring(body: &Body, model: &MassSpring, gravity: DVec3, step: f64) -> Box<dyn Kernel> {
+fn mass_spring(body: &Body, model: &MassSpring, gravity: DVec3, step: f64) -> Box<dyn Stepper> {
     let MassSpring { stiffness, damping, springs } = model;
     let constants = Constants { stiffness: *stiffness, damping: *damping, gravity, step };
     match Stencil::new(springs, &body.rest, &body.mass, constants, Set::best()) {
@@ -108,145 +83,127 @@ impl Dynamics for ByKernel {
         limit: &SpeedLimit,
         state: &mut State,
         count: u64,
-    ) -> Result<(), dynamics::Runaway> {
-        let Self { kernel, scheme, holds, margin } = self;
-        let (done, constraints) = holds.get_or_insert_with(|| {
-            kernel.load(&state.position, &state.velocity, &state.memory.model);
-            (state.steps, state.memory.constraints.clone())
+        crew: &mut Crew,
+    ) -> Result<(), Runaway> {
+        /// Steps for which what moves is placed at a time.
+        const STRETCH: u64 = 256;
+        let Self { way, constraints, margin } = self;
+        let constraints = constraints.get_or_insert_with(|| {
+            way.load(state.steps, &state.position, &state.velocity, &state.memory.model);
+            state.memory.constraints.clone()
         });
         let obstacles = system.contact.obstacles().unwrap_or_default();
         let is_still = obstacles.iter().all(Obstacle::is_still);
-        let mut left = count;
-        while left > 0 {
-            let interval = system.interval(*done);
-            let steps = if is_still { system.steps_without_grips(*done).clamp(1, left) } else { 1 };
-            let placed: Vec<_> = obstacles.iter().map(|obstacle| obstacle.at(interval.end, interval.step)).collect();
-            let bounds: Vec<Bound> = placed.iter().map(|obstacle| obstacle.bound(*margin)).collect();
-            let resolve = |_: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
-                placed.iter().for_each(|obstacle| obstacle.rebound(position, velocity, acceleration));
-            };
-            let first = *done;
-            let speed_limit = |step: u64| limit.at(system.interval(first + step).end);
-            let mut next = constraints.clone();
-            system.change_grips(&mut next, |grip, memory| {
-                grip.reach(interval.end, memory, |node| kernel.node(node as usize).0);
-            });
-            let floor = match &placed[..] {
-                [one] => one.still_floor(),
-                _ => None,
-            };
-            let around = Around { bounds: &bounds, resolve: &resolve, floor, speed_limit: &speed_limit };
-            if let Err(Runaway { taken, node }) = kernel.step(*scheme, steps, &around) {
-                *done += taken;
-                return Err(dynamics::Runaway { node });
+        let target = way.steps() + count;
+        while way.steps() < target {
+            let begin = way.steps();
+            let mut taken = None;
+            if system.takes(begin, constraints) {
+                let (end, memory) = (system.interval(begin).end, taken.insert(constraints.clone()));
+                system.change_grips(memory, |grip, memory| {
+                    grip.reach(end, memory, |node| way.stepper.node(node as usize).0);
+                });
             }
-            *constraints = next;
-            for (grip, memory) in system.grips(constraints) {
-                grip.moved(interval, memory).for_each(|(node, to, speed)| kernel.set_node(node, to, speed));
+            let memory = taken.as_ref().unwrap_or(constraints);
+            // Grips take nodes and let them go between stretches, and no step is taken again with other grips.
+            let is_new = |step: u64| system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
+            if taken.is_some() || begin > 0 && is_new(begin) {
+                way.arrive();
             }
-            *done += steps;
-            left -= steps;
+            // What moves is placed beforehand, so many steps at a time.
+            let until = match is_still && system.grips.is_empty() {
+                true => target,
+                false => {
+                    let last = target.min(begin + STRETCH);
+                    (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
+                }
+            };
+            let met = Met::new(obstacles, system, way.earliest()..until, *margin);
+            let place = |step: u64, place: &mut Place<'_>| {
+                for (grip, memory) in system.grips(memory) {
+                    grip.moved(system.interval(step), memory).for_each(|(node, to, speed)| place(node, to, speed));
+                }
+            };
+            let around = Around {
+                bounds: &met.bounds,
+                row: &|step| met.row(step),
+                resolve: &|step, position, velocity, acceleration| {
+                    for obstacle in &met.placed[met.row(step)] {
+                        obstacle.rebound(position, velocity, acceleration);
+                    }
+                },
+                floor: met.floor(),
+                grips: if system.holds(begin) { Some(&place) } else { None },
+                speed_limit: &|step| limit.at(system.interval(step).end),
+            };
+            let outcome = way.advance(until, &around, crew);
+            if let Some(taken) = taken.filter(|_| way.steps() > begin) {
+                *constraints = taken;
+            }
+            outcome?;
         }
         Ok(())
     }
 
     fn settle(&mut self, state: &mut State) {
-        if let Some((steps, known)) = &self.holds {
-            let State { position, velocity, memory: Memory { model, constraints, .. }, .. } = state;
-            self.kernel.store(position, velocity, model);
+        if let Some(known) = &self.constraints {
+            let State { position, velocity, memory: Memory { model, constraints, integrator }, steps, .. } = state;
+            self.way.stepper.store(position, velocity, model);
             constraints.clone_from(known);
-            state.steps = *steps;
+            // It is the plain code's.
+            integrator.clear();
+            *steps = self.way.steps();
         }
     }
 
     fn steps(&self, state: &State) -> u64 {
-        self.holds.as_ref().map_or(state.steps, |(steps, _)| *steps)
+        self.constraints.as_ref().map_or(state.steps, |_| self.way.steps())
     }
 
     fn restart(&mut self) {
-        self.holds = None;
-    }
-
-    fn set_threads(&mut self, threads: usize) {
-        self.kernel.set_threads(threads);
+        self.constraints = None;
     }
 }
 
-impl Kernel for Lattice {
-    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        self.load(position, velocity, memory);
-    }
-
-    fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
-        self.store(position, velocity, memory);
-    }
-
-    fn node(&self, node: usize) -> (DVec3, DVec3) {
-        self.node(node)
-    }
-
-    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        self.set_node(node, position, velocity);
-    }
-
-    fn set_threads(&mut self, threads: usize) {
-        self.set_threads(threads);
-    }
-
-    /// It was made for its scheme.
-    fn step(&mut self, _scheme: Scheme, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
-        self.step(steps, around)
-    }
+/// The obstacles in each of some steps.
+struct Met<'a> {
+    /// Step by step.
+    placed: Vec<Placed<'a>>,
+    /// Of each.
+    bounds: Vec<Bound>,
+    first: u64,
+    /// Whether one step stands for all.
+    is_still: bool,
+    /// How many obstacles.
+    count: usize,
 }
 
-impl Kernel for General {
-    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        self.load(position, velocity, memory);
+impl<'a> Met<'a> {
+    /// In the steps given.
+    fn new(obstacles: &'a [Obstacle], system: &System, mut steps: Range<u64>, margin: f64) -> Self {
+        let (first, is_still) = (steps.start, obstacles.iter().all(Obstacle::is_still));
+        if is_still {
+            steps.end = first + 1;
+        }
+        let in_step = |step: u64| {
+            let interval = system.interval(step);
+            obstacles.iter().map(move |obstacle| obstacle.at(interval.end, interval.step))
+        };
+        let placed: Vec<_> = steps.flat_map(in_step).collect();
+        let bounds = placed.iter().map(|obstacle| obstacle.bound(margin)).collect();
+        Self { placed, bounds, first, is_still, count: obstacles.len() }
     }
 
-    fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
-        self.store(position, velocity, memory);
+    /// The obstacles in a step.
+    fn row(&self, step: u64) -> Range<usize> {
+        let first = if self.is_still { 0 } else { (step - self.first) as usize * self.count };
+        first..first + self.count
     }
 
-    fn node(&self, node: usize) -> (DVec3, DVec3) {
-        motion::Kernel::node(self, node)
-    }
-
-    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        self.set_node(node, position, velocity);
-    }
-
-    fn set_threads(&mut self, threads: usize) {
-        self.set_threads(threads);
-    }
-
-    fn step(&mut self, scheme: Scheme, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
-        motion::advance(self, scheme, steps, *around)
-    }
-}
-
-impl Kernel for Stencil {
-    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], _memory: &[f64]) {
-        self.load(position, velocity);
-    }
-
-    fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], _memory: &mut [f64]) {
-        self.store(position, velocity);
-    }
-
-    fn node(&self, node: usize) -> (DVec3, DVec3) {
-        motion::Kernel::node(self, node)
-    }
-
-    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        self.set_node(node, position, velocity);
-    }
-
-    fn set_threads(&mut self, threads: usize) {
-        self.set_threads(threads);
-    }
-
-    fn step(&mut self, scheme: Scheme, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
-        motion::advance(self, scheme, steps, *around)
+    fn floor(&self) -> Option<Floor> {
+        match &self.placed[..] {
+            [one] => one.still_floor(),
+            _ => None,
+        }
     }
 }

@@ -11,14 +11,16 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 
-use super::crew::Crew;
 use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
-use super::motion::{Kernel, Motion, Nodes, Stage};
+use super::motion::{Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
-use super::{Around, Rotation};
+use super::stepper::{Pass, Passes, Stepper};
+use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, bounds};
+use crate::sim::crew::Crew;
 use glam::DVec3;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Doubles in the record of a node, a cache line: px, py, vx, vy, pz, vz, 1/m, and the number of its elements. What the
@@ -62,10 +64,6 @@ pub(in crate::sim) struct General {
     shared: Shared,
     /// Where the first record of each node is.
     places: Vec<Place>,
-    /// Always there between passes.
-    crew: Option<Crew>,
-    /// Whether the accelerations belong to the positions.
-    is_known: bool,
 }
 
 /// A record: the part, and its number there.
@@ -135,7 +133,6 @@ impl General {
     fn with(elements: &IndexLists, rest: &[DVec3], mass: &[f64], law: Law, constants: Constants, set: Set) -> Self {
         let parts = cut(elements, along_curve(elements, rest));
         // The parts that have each node, as far as one and many are concerned.
-        const NONE: u32 = u32::MAX;
         let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
         let mut valence = vec![0u32; rest.len()];
         for (part, own) in (0..).zip(&parts) {
@@ -226,59 +223,7 @@ impl General {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         shared.kept = Aligned::zeros(whole * 3);
-        Self { set, law, constants, parts: made, shared, places, crew: Some(Crew::new(1)), is_known: false }
-    }
-
-    /// Works with so many threads from now on, as far as there are parts for them.
-    pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
-        self.crew = Some(Crew::new(threads.clamp(1, self.parts.len())));
-    }
-
-    /// Takes a state over: positions, velocities, and the rotation of each element: a quaternion, or (cos, sin).
-    pub(in crate::sim) fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        self.is_known = false;
-        for node in 0..self.places.len() {
-            self.set_node(node, position[node], velocity[node]);
-        }
-        let width = self.law.memory();
-        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
-            for (at, &element) in class.elements.iter().enumerate() {
-                for entry in 0..width {
-                    class.turns.as_mut_slice()[(at / MOST * width + entry) * MOST + at % MOST] =
-                        memory[element as usize * width + entry];
-                }
-            }
-        }
-    }
-
-    /// Writes the state down.
-    pub(in crate::sim) fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
-        for node in 0..self.places.len() {
-            (position[node], velocity[node]) = self.node(node);
-        }
-        let width = self.law.memory();
-        for class in self.parts.iter().flat_map(|part| &part.classes) {
-            for (at, &element) in class.elements.iter().enumerate() {
-                for entry in 0..width {
-                    memory[element as usize * width + entry] =
-                        class.turns.get((at / MOST * width + entry) * MOST + at % MOST);
-                }
-            }
-        }
-    }
-
-    /// Puts one node elsewhere.
-    pub(in crate::sim) fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
-        let Self { parts, shared, places, .. } = self;
-        let mut put = |place: Place| {
-            let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
-            record[..values.len()].copy_from_slice(&values);
-        };
-        match shared.of(node) {
-            Some(copies) => copies.iter().for_each(|&place| put(place)),
-            None => put(places[node]),
-        }
+        Self { set, law, constants, parts: made, shared, places }
     }
 }
 
@@ -390,35 +335,90 @@ impl Class {
     }
 }
 
-impl Kernel for General {
-    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool {
-        // Taken out for the time, so that threads may share the rest.
-        let Some(mut crew) = self.crew.take() else { return false };
-        let (body, threads, lost) = (&*self, crew.len(), AtomicU32::new(0));
+impl General {
+    /// Evaluates the forces once, unless they are known, and moves all nodes. The first that becomes too fast.
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        let (body, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
-        let one_part = |part| body.set.run(OnePart { body, part, stage, commit, number, around });
         crew.run(&|me| {
-            let found = share(body.parts.len(), me).fold(0, |lost, part| lost | one_part(part));
-            lost.fetch_or(found, Ordering::Relaxed);
+            for part in share(self.parts.len(), me) {
+                lost.fetch_min(self.set.run(OnePart { body, part, pass, around }), Ordering::Relaxed);
+            }
         });
-        let shared = body.shared.index.len() / MOST;
+        let shared = self.shared.index.len() / MOST;
         if shared > 0 {
             crew.run(&|me| {
                 let blocks = share(shared, me);
-                lost.fetch_or(body.set.run(SharedNodes { body, blocks, stage, number, around }), Ordering::Relaxed);
+                lost.fetch_min(self.set.run(SharedNodes { body, blocks, pass, around }), Ordering::Relaxed);
             });
         }
         let lost = lost.into_inner();
-        self.crew = Some(crew);
-        lost == 0
+        (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
+    }
+}
+
+/// No node.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// The first of two nodes: one, and that of the lanes of which bits are set.
+#[inline(always)]
+pub(super) fn first_of(one: u32, lanes: u32, index: impl Fn(usize) -> u32) -> u32 {
+    if lanes == 0 { one } else { (0..MOST).filter(|lane| lanes >> lane & 1 == 1).map(index).fold(one, u32::min) }
+}
+
+impl Stepper for General {
+    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
+        for node in 0..self.places.len() {
+            self.set_node(node, position[node], velocity[node]);
+        }
+        let width = self.law.memory();
+        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
+            let turns = class.turns.as_mut_slice();
+            for (at, &element) in class.elements.iter().enumerate() {
+                for entry in 0..width {
+                    turns[(at / MOST * width + entry) * MOST + at % MOST] = memory[element as usize * width + entry];
+                }
+            }
+        }
+    }
+
+    fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
+        for node in 0..self.places.len() {
+            (position[node], velocity[node]) = self.node(node);
+        }
+        let width = self.law.memory();
+        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
+            let turns = class.turns.as_mut_slice();
+            for (at, &element) in class.elements.iter().enumerate() {
+                for entry in 0..width {
+                    memory[element as usize * width + entry] = turns[(at / MOST * width + entry) * MOST + at % MOST];
+                }
+            }
+        }
+    }
+
+    fn node(&mut self, node: usize) -> (DVec3, DVec3) {
+        let Place { part, record } = self.places[node];
+        let record = &mut self.parts[part as usize].records.as_mut_slice()[record as usize * RECORD..];
+        let [px, py, vx, vy, pz, vz] = [0, 1, 2, 3, 4, 5].map(|entry: usize| record[entry]);
+        (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
+    }
+
+    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+        let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
+        let Self { parts, shared, places, .. } = self;
+        let mut put = |place: Place| {
+            let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
+            record[..values.len()].copy_from_slice(&values);
+        };
+        match shared.of(node) {
+            Some(copies) => copies.iter().for_each(|&place| put(place)),
+            None => put(places[node]),
+        }
     }
 
     fn is_damped(&self) -> bool {
         self.constants.damping > 0.0
-    }
-
-    fn is_known(&mut self) -> &mut bool {
-        &mut self.is_known
     }
 
     fn keep(&mut self) {
@@ -441,14 +441,8 @@ impl Kernel for General {
         self.shared.accelerations.copy_from(&mut self.shared.kept);
     }
 
-    fn node(&self, node: usize) -> (DVec3, DVec3) {
-        let Place { part, record } = self.places[node];
-        let at = |entry: usize| self.parts[part as usize].records.get(record as usize * RECORD + entry);
-        (DVec3::new(at(0), at(1), at(4)), DVec3::new(at(2), at(3), at(5)))
-    }
-
-    fn len(&self) -> usize {
-        self.places.len()
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
     }
 }
 
@@ -456,9 +450,7 @@ impl Kernel for General {
 struct OnePart<'a> {
     body: &'a General,
     part: usize,
-    stage: Stage,
-    commit: bool,
-    number: u64,
+    pass: Pass,
     around: Around<'a>,
 }
 
@@ -468,9 +460,10 @@ impl Work for OnePart<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
         let part = &self.body.parts[self.part];
-        if self.stage != Stage::Coast {
+        let Pass { stage, number, commit } = self.pass;
+        if stage != Stage::Coast {
             for class in &part.classes {
-                let elements = Elements { part, class, constants: &self.body.constants, commit: self.commit };
+                let elements = Elements { part, class, constants: &self.body.constants, commit };
                 match (self.body.law, self.body.constants.damping > 0.0) {
                     (Law::Plane, true) => elements.plane::<L, true>(),
                     (Law::Plane, false) => elements.plane::<L, false>(),
@@ -488,21 +481,17 @@ impl Work for OnePart<'_> {
             }
         }
         let Constants { step, gravity, .. } = self.body.constants;
-        let motion = Motion::<L>::new(self.stage, step, gravity, self.number, self.around);
-        let own = Own { motion, stage: self.stage, constants: &self.body.constants };
+        let motion = Motion::<L>::new(stage, step, gravity, number, self.around);
+        let own = Own { motion, stage, constants: &self.body.constants };
         let (records, sums) = (part.records.pointer(), part.sums.pointer());
-        let mut lost = 0;
+        let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
             // SAFETY: these are records of the part, which is this thread's.
             unsafe {
                 let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
-                lost |= own.advance(
-                    |lane| records.add((first + lane) * RECORD),
-                    [x, y, z],
-                    accelerations,
-                    |lane| part.index[first + lane] as usize,
-                );
+                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| part.index[first + lane]);
             }
         }
         lost
@@ -538,13 +527,7 @@ impl<L: Lanes> Own<'_, L> {
     /// # Safety
     /// Records and accelerations are this thread's alone.
     #[inline(always)]
-    unsafe fn advance(
-        &self,
-        record: impl Fn(usize) -> *mut f64,
-        sum: [L; 3],
-        accelerations: *mut f64,
-        index: impl Fn(usize) -> usize,
-    ) -> u32 {
+    unsafe fn advance(&self, record: impl Fn(usize) -> *mut f64, sum: [L; 3], accelerations: *mut f64) -> u32 {
         // SAFETY: the caller's.
         unsafe {
             let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
@@ -558,7 +541,7 @@ impl<L: Lanes> Own<'_, L> {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = Nodes { position, velocity, acceleration };
-            let lost = self.motion.advance(&mut nodes, force, inverse_mass, index);
+            let lost = self.motion.advance(&mut nodes, force, inverse_mass);
             if self.stage.is_verlet() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
@@ -572,9 +555,8 @@ impl<L: Lanes> Own<'_, L> {
 /// The motion of nodes that several parts have.
 struct SharedNodes<'a> {
     body: &'a General,
-    blocks: std::ops::Range<usize>,
-    stage: Stage,
-    number: u64,
+    blocks: Range<usize>,
+    pass: Pass,
     around: Around<'a>,
 }
 
@@ -583,10 +565,11 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { body: General { shared, parts, constants, .. }, blocks, stage, number, around } = self;
+        let Self { body: General { shared, parts, constants, .. }, blocks, pass, around } = self;
+        let Pass { stage, number, .. } = pass;
         let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
         let own = Own { motion, stage, constants };
-        let mut lost = 0;
+        let mut lost = NONE;
         for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
             let places = |lane: usize| {
                 &shared.places[shared.starts[first + lane] as usize..shared.starts[first + lane + 1] as usize]
@@ -617,12 +600,8 @@ impl Work for SharedNodes<'_> {
                 let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
                 let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let rows = records.as_mut_ptr();
-                lost |= own.advance(
-                    |lane| rows.add(lane).cast(),
-                    [x, y, z],
-                    accelerations,
-                    |lane| shared.index[first + lane] as usize,
-                );
+                let lanes = own.advance(|lane| rows.add(lane).cast(), [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| shared.index[first + lane]);
                 for (lane, moved) in records.iter().enumerate().take(L::WIDTH) {
                     places(lane).iter().for_each(|place| *record(place) = *moved);
                 }

@@ -16,15 +16,17 @@
 
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
-use super::array::Array;
-use super::crew::{Crew, wait_until};
 use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
-use super::motion::{Motion, Nodes, Scheme, Stage};
+use super::memory::Aligned;
+use super::motion::{Motion, Nodes, Stage};
 use super::rotation::{Arctangent, Optimum, Solver, choose, matrix, turn, turned_back};
-use super::{Around, Rotation, Runaway};
+use super::stepper::{Pass, Passes, Scheme, Stepper};
+use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension};
+use crate::sim::crew::{Crew, wait_until};
 use glam::DVec3;
 use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -154,21 +156,17 @@ pub(in crate::sim) struct Lattice {
     set: Set,
     grid: Grid,
     parameters: Parameters,
-    scheme: Scheme,
     /// How many numbers a node has.
     parts: usize,
-    /// Whether accelerations belong to the present positions.
-    is_known: bool,
     /// Plane after plane, [`MOST`] nodes after the other: each of their numbers; see [`slot`].
-    nodes: Array,
+    nodes: Aligned,
     /// Plane after plane, [`MOST`] boxes after the other: x, y, z and w of their rotations.
-    turns: Array,
-    /// `nodes` and `turns` as they were before the steps of a call.
-    before: (Array, Array),
+    turns: Aligned,
+    /// Copies of `nodes` and `turns`.
+    kept: [Aligned; 2],
     pattern: Pattern,
-    crew: Crew,
     /// The memory of one thread after the other; see [`Slab`].
-    slabs: Array,
+    slabs: Aligned,
     /// How far each thread is.
     signals: Box<[Signal]>,
 }
@@ -176,9 +174,9 @@ pub(in crate::sim) struct Lattice {
 /// What all planes have in common.
 struct Pattern {
     /// 1 for a box, 0 for the end of a row.
-    live: Array,
+    live: Aligned,
     /// The number of boxes of a plane that a node belongs to.
-    valence: Array,
+    valence: Aligned,
 }
 
 /// Where the memory of one thread lies, which steps successive planes of boxes and the nodes below them.
@@ -232,58 +230,27 @@ struct Signal {
 
 impl Lattice {
     /// `None` if the body is no full lattice of equal boxes, numbered x fastest.
-    ///
-    /// Steps are taken by so many threads, but not more than there are planes of boxes along z. The number, like `set`,
-    /// changes no bit.
-    pub(in crate::sim) fn new(
-        body: &Body,
-        parameters: Parameters,
-        scheme: Scheme,
-        set: Set,
-        threads: usize,
-    ) -> Option<Self> {
+    pub(in crate::sim) fn new(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Option<Self> {
         let grid = Grid::of(body)?;
         let (stride, row) = (grid.stride(), grid.row());
         let [_, rows, planes] = grid.cells;
         let parts = if scheme == Scheme::VelocityVerlet { 10 } else { 7 };
-        let mut nodes = Array::zeros((planes + 1) * parts * stride);
+        let [nodes, turns] = [(planes + 1) * parts * stride, planes * 4 * grid.box_stride()];
+        let kept = [nodes, turns].map(Aligned::zeros);
+        let [mut nodes, turns] = [nodes, turns].map(Aligned::zeros);
         for (node, &mass) in body.mass.iter().enumerate() {
             let (plane, at) = (node / grid.layer(), node % grid.layer());
-            nodes[slot(plane * stride + at, parts) + INVERSE_MASS * MOST] = mass.recip();
+            nodes.as_mut_slice()[slot(plane * stride + at, parts) + INVERSE_MASS * MOST] = mass.recip();
         }
-        let turns = Array::zeros(planes * 4 * grid.box_stride());
-        let mut pattern = Pattern { live: Array::zeros(grid.box_stride()), valence: Array::zeros(stride) };
-        for at in (0..grid.boxes()).filter(|at| at % row != row - 1) {
-            pattern.live[at] = 1.0;
-        }
-        for at in 0..grid.layer() {
+        let mut pattern = Pattern { live: Aligned::zeros(grid.box_stride()), valence: Aligned::zeros(stride) };
+        let live = pattern.live.as_mut_slice();
+        (0..grid.boxes()).filter(|at| at % row != row - 1).for_each(|at| live[at] = 1.0);
+        for (at, valence) in pattern.valence.as_mut_slice()[..grid.layer()].iter_mut().enumerate() {
             let edge = |at: usize, cells: usize| if at == 0 || at == cells { 1.0 } else { 2.0 };
-            pattern.valence[at] = edge(at % row, row - 1) * edge(at / row, rows);
+            *valence = edge(at % row, row - 1) * edge(at / row, rows);
         }
-        let (crew, slabs, signals) = by(threads, &grid);
-        let before = (nodes.clone(), turns.clone());
-        Some(Self {
-            set,
-            grid,
-            parameters,
-            scheme,
-            parts,
-            is_known: false,
-            nodes,
-            turns,
-            before,
-            pattern,
-            crew,
-            slabs,
-            signals,
-        })
-    }
-
-    /// Works with so many threads from now on, but not with more than there are planes of boxes along z.
-    pub(super) fn set_threads(&mut self, threads: usize) {
-        if threads != self.crew.len() {
-            (self.crew, self.slabs, self.signals) = by(threads, &self.grid);
-        }
+        let (slabs, signals) = (Aligned::zeros(0), Box::default());
+        Some(Self { set, grid, parameters, parts, nodes, turns, kept, pattern, slabs, signals })
     }
 
     /// Where the first number of a node stands in `nodes`.
@@ -291,101 +258,95 @@ impl Lattice {
         slot(node / self.grid.layer() * self.grid.stride() + node % self.grid.layer(), self.parts)
     }
 
-    /// Takes over a state: positions (m), velocities (m/s), and the rotation of each element as (x, y, z, w).
-    pub(in crate::sim) fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
+    fn turn_index(&self, element: usize) -> usize {
+        let [x, y, z] = self.grid.place(element);
+        slot(z * self.grid.box_stride() + x + y * self.grid.row(), 4)
+    }
+}
+
+impl Stepper for Lattice {
+    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
             self.set_node(node, position, velocity);
         }
-        self.is_known = false;
         // The ends of rows have a rotation, too, of which nothing comes.
-        for (at, turn) in self.turns.iter_mut().enumerate() {
+        for (at, turn) in self.turns.as_mut_slice().iter_mut().enumerate() {
             *turn = if at / MOST % 4 == 3 { 1.0 } else { 0.0 };
         }
         for (element, turn) in memory.chunks_exact(4).enumerate() {
             let at = self.turn_index(element);
-            (0..4).for_each(|part| self.turns[at + part * MOST] = turn[part]);
+            let turns = self.turns.as_mut_slice();
+            (0..4).for_each(|part| turns[at + part * MOST] = turn[part]);
         }
     }
 
-    /// Hands the state out.
-    pub(in crate::sim) fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
+    fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
         for (node, (position, velocity)) in position.iter_mut().zip(velocity).enumerate() {
             (*position, *velocity) = self.node(node);
         }
         for (element, turn) in memory.chunks_exact_mut(4).enumerate() {
             let at = self.turn_index(element);
-            (0..4).for_each(|part| turn[part] = self.turns[at + part * MOST]);
+            let turns = self.turns.as_mut_slice();
+            (0..4).for_each(|part| turn[part] = turns[at + part * MOST]);
         }
     }
 
-    fn turn_index(&self, element: usize) -> usize {
-        let [x, y, z] = self.grid.place(element);
-        slot(z * self.grid.box_stride() + x + y * self.grid.row(), 4)
-    }
-
-    /// The position (m) and velocity (m/s) of a node.
-    pub(in crate::sim) fn node(&self, node: usize) -> (DVec3, DVec3) {
+    fn node(&mut self, node: usize) -> (DVec3, DVec3) {
         let at = self.index(node);
-        let vector = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| self.nodes[at + (first + axis) * MOST]));
+        let nodes = self.nodes.as_mut_slice();
+        let vector = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| nodes[at + (first + axis) * MOST]));
         (vector(0), vector(VELOCITY))
     }
 
-    /// Puts a node somewhere else.
-    pub(in crate::sim) fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
         let at = self.index(node);
+        let nodes = self.nodes.as_mut_slice();
         for axis in 0..3 {
-            self.nodes[at + axis * MOST] = position[axis];
-            self.nodes[at + (VELOCITY + axis) * MOST] = velocity[axis];
+            nodes[at + axis * MOST] = position[axis];
+            nodes[at + (VELOCITY + axis) * MOST] = velocity[axis];
         }
     }
 
-    /// Takes steps.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit. The state is then that before the step.
-    pub(in crate::sim) fn step(&mut self, steps: u64, around: &Around<'_>) -> Result<(), Runaway> {
-        self.before.0.copy_from_slice(&self.nodes);
-        self.before.1.copy_from_slice(&self.turns);
-        let was_known = self.is_known;
-        let Some(mut found) = self.sweep(steps, around, true) else { return Ok(()) };
-        // Threads are not always in the same step; one thread finds the first.
-        let mut number = steps;
-        loop {
-            self.nodes.copy_from_slice(&self.before.0);
-            self.turns.copy_from_slice(&self.before.1);
-            self.is_known = was_known;
-            match self.sweep(number, around, false) {
-                Some(earlier) => (found, number) = (earlier, earlier.taken),
-                None => return Err(found),
-            }
-        }
+    fn is_damped(&self) -> bool {
+        self.parameters.damping > 0.0
     }
 
-    /// Takes steps until a node becomes too fast; that step is left unfinished. Where steps overlap an earlier one may have
-    /// been lost, too, which shows when only those before are taken.
-    pub(super) fn sweep(&mut self, steps: u64, around: &Around<'_>, together: bool) -> Option<Runaway> {
-        let Self {
-            set, grid, parameters, scheme, parts, is_known, nodes, turns, pattern, crew, slabs, signals, ..
-        } = self;
-        if steps == 0 {
+    fn keep(&mut self) {
+        let [nodes, turns] = &mut self.kept;
+        nodes.copy_from(&mut self.nodes);
+        turns.copy_from(&mut self.turns);
+    }
+
+    fn restore(&mut self) {
+        let [nodes, turns] = &mut self.kept;
+        self.nodes.copy_from(nodes);
+        self.turns.copy_from(turns);
+    }
+
+    /// By so many threads of the crew as there are planes of boxes along z.
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        let Self { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, kept: _ } = self;
+        if some.is_empty() {
             return None;
         }
-        let keeps = *scheme == Scheme::VelocityVerlet && parameters.damping == 0.0;
-        let was_known = std::mem::replace(is_known, keeps);
         let Parameters { stiffness, damping, rotation, gravity, step } = *parameters;
         let side = grid.sides.element_sum() / 3.0;
         let ratio = (grid.sides / side).to_array();
-        let members = if together { crew.len() } else { 1 };
+        let members = crew.threads().min(grid.cells[2]);
+        if signals.len() < members {
+            *slabs = Aligned::zeros(members * Slab::new(grid).end);
+            *signals = (0..members).map(|_| Signal::default()).collect();
+        }
         for signal in &mut **signals {
             *signal = Signal::default();
         }
         let stop = AtomicBool::new(false);
         let sweep = Sweep {
-            nodes: nodes.as_mut_ptr(),
-            turns: turns.as_mut_ptr(),
-            live: pattern.live.as_ptr(),
-            valence: pattern.valence.as_ptr(),
-            slabs: slabs.as_mut_ptr(),
+            nodes: nodes.pointer(),
+            turns: turns.pointer(),
+            live: pattern.live.pointer(),
+            valence: pattern.valence.pointer(),
+            slabs: slabs.pointer(),
             slab: Slab::new(grid),
             work: std::ptr::null_mut(),
             grid: *grid,
@@ -403,14 +364,18 @@ impl Lattice {
             step,
             parts: *parts,
             around,
-            passes: Passes { scheme: *scheme, is_damped: damping != 0.0, is_known: was_known, steps },
+            passes,
+            some: [some.start, some.end],
             member: 0,
             members,
             signals,
             stop: &stop,
         };
-        let runaway = Mutex::new(None);
+        let lost = Mutex::new(None);
         let work = |member: usize| {
+            if member >= members {
+                return;
+            }
             // Others wait for this thread; if it panics they must not.
             let _guard = StopOnPanic(&stop);
             let mut found = None;
@@ -433,7 +398,7 @@ impl Lattice {
                 run!(true)
             }
             if let Some(found) = found {
-                *runaway.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
+                *lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
             }
         };
         if members == 1 {
@@ -441,7 +406,7 @@ impl Lattice {
         } else {
             crew.run(&work)
         }
-        runaway.into_inner().unwrap_or_else(PoisonError::into_inner)
+        lost.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -453,14 +418,6 @@ impl Drop for StopOnPanic<'_> {
             self.0.store(true, Ordering::Relaxed);
         }
     }
-}
-
-/// What so many threads work with, or fewer.
-fn by(threads: usize, grid: &Grid) -> (Crew, Array, Box<[Signal]>) {
-    let crew = Crew::new(threads.clamp(1, grid.cells[2]));
-    let slabs = Array::zeros(crew.len() * Slab::new(grid).end);
-    let signals = (0..crew.len()).map(|_| Signal::default()).collect();
-    (crew, slabs, signals)
 }
 
 /// Everything a sweep reads and writes. See the fields of the same name.
@@ -495,6 +452,8 @@ struct Sweep<'a> {
     parts: usize,
     around: &'a Around<'a>,
     passes: Passes,
+    /// Which of them are carried out: from one to before another.
+    some: [u64; 2],
     /// Which of the threads this is.
     member: usize,
     members: usize,
@@ -507,7 +466,7 @@ struct Sweep<'a> {
 unsafe impl Sync for Sweep<'_> {}
 
 /// A sweep with a solver, damped or not.
-struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<Runaway>);
+struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<Lost>);
 
 impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     type Output = ();
@@ -526,49 +485,13 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
     }
 }
 
-/// The passes over all planes that steps take.
-#[derive(Clone, Copy)]
-struct Passes {
-    scheme: Scheme,
-    is_damped: bool,
-    /// Whether accelerations are known at the start.
-    is_known: bool,
-    steps: u64,
-}
-
-impl Passes {
-    /// How many there are.
-    #[inline(always)]
-    fn len(&self) -> u64 {
-        match self.scheme {
-            Scheme::VelocityVerlet if self.is_damped => 2 * self.steps,
-            Scheme::VelocityVerlet => self.steps + 1,
-            _ => self.steps,
-        }
-    }
-
-    /// What a pass does, in which step, and whether rotations that it finds are kept.
-    #[inline(always)]
-    fn get(&self, pass: u64) -> (Stage, u64, bool) {
-        match self.scheme {
-            Scheme::SemiImplicitEuler => (Stage::SemiImplicitEuler, pass, true),
-            Scheme::ExplicitEuler => (Stage::ExplicitEuler, pass, true),
-            Scheme::VelocityVerlet if self.is_damped && pass.is_multiple_of(2) => (Stage::Drift, pass / 2, true),
-            Scheme::VelocityVerlet if self.is_damped => (Stage::Finish, pass / 2, false),
-            Scheme::VelocityVerlet if pass == 0 && self.is_known => (Stage::Coast, 0, true),
-            Scheme::VelocityVerlet if pass == 0 => (Stage::Drift, 0, true),
-            Scheme::VelocityVerlet if pass == self.steps => (Stage::Finish, pass - 1, true),
-            Scheme::VelocityVerlet => (Stage::FinishDrift, pass, true),
-        }
-    }
-}
-
 impl Sweep<'_> {
-    /// All passes.
+    /// All passes that are asked for.
     #[inline(always)]
-    fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Runaway>) {
-        for pass in 0..self.passes.len() {
-            let (stage, number, commit) = self.passes.get(pass);
+    fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Lost>) {
+        let [first, end] = self.some;
+        for pass in 0..end - first {
+            let Pass { stage, number, commit } = self.passes.get(first + pass);
             let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
             // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
             let bad = unsafe {
@@ -579,7 +502,7 @@ impl Sweep<'_> {
                 }
             };
             if let Some(node) = bad {
-                *found = Some(Runaway { taken: number, node });
+                *found = Some(Lost { step: number, node });
                 self.stop.store(true, Ordering::Relaxed);
             }
             if self.stop.load(Ordering::Relaxed) {
@@ -1095,7 +1018,7 @@ impl Sweep<'_> {
                 let to = self.nodes(plane, at);
                 let acceleration = if is_verlet { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
-                motion.meet(&mut nodes, inverse_mass(to), |lane| plane * self.grid.layer() + at + lane);
+                motion.meet(&mut nodes, inverse_mass(to));
                 thrice!(axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
@@ -1110,9 +1033,10 @@ impl Sweep<'_> {
 mod tests {
     use super::*;
     use crate::sim::body::{IndexLists, Solids};
-    use crate::sim::contact::{self, Obstacle, Shape};
+    use crate::sim::contact::{self, Bound, Obstacle, Shape};
+    use crate::sim::dynamics::Runaway;
     use crate::sim::integrate::Integrator;
-    use crate::sim::kernel::Bound;
+    use crate::sim::kernel::stepper::Way;
     use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
     use crate::sim::rotation::{davenport1968, moment};
     use crate::sim::state::State;
@@ -1208,18 +1132,31 @@ mod tests {
         set: Set,
         [calls, steps]: [u64; 2],
     ) -> (State, Vec<f64>) {
-        let mut lattice = Lattice::new(body, parameters, scheme, set, threads).expect("a lattice");
-        let mut memory = turns(body, state);
-        lattice.load(&state.position, &state.velocity, &memory);
+        let (mut way, mut memory) = (way(body, parameters, scheme, set), turns(body, state));
+        way.load(0, &state.position, &state.velocity, &memory);
         let floor = floor();
-        let resolve = |_: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-        let around = Around { bounds: &[bound(&floor)], resolve: &resolve, floor: None, speed_limit: &|_| 1e6 };
-        for _ in 0..calls {
-            lattice.step(steps, &around).expect("no runaway");
+        let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
+        let around = Around { bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
+        for call in 1..=calls {
+            way.advance(call * steps, &around, &mut Crew::new(threads)).expect("no runaway");
         }
         let mut state = state.clone();
-        lattice.store(&mut state.position, &mut state.velocity, &mut memory);
+        way.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
         (state, memory)
+    }
+
+    /// No obstacle.
+    const FREE: Around<'_> = Around {
+        bounds: &[],
+        row: &|_| 0..0,
+        resolve: &|_, _, _, _| {},
+        floor: None,
+        grips: None,
+        speed_limit: &|_| 1e6,
+    };
+
+    fn way(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Way {
+        Way::new(Box::new(Lattice::new(body, parameters, scheme, set).expect("a lattice")), scheme)
     }
 
     fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
@@ -1335,33 +1272,35 @@ mod tests {
         let state = start(&body, 0.05);
         // Far beyond what is stable.
         let parameters = Parameters { step: 0.3, ..parameters(0.0, Rotation::Optimum) };
-        let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
-        let around = Around { bounds: &[], resolve: &resolve, floor: None, speed_limit: &|step| 1e6 + step as f64 };
+        let around = Around { speed_limit: &|step| 1e6 + step as f64, ..FREE };
         let memory = turns(&body, &state);
-        let make = |threads| {
-            let mut lattice =
-                Lattice::new(&body, parameters, Scheme::SemiImplicitEuler, Set::best(), threads).expect("a lattice");
-            lattice.load(&state.position, &state.velocity, &memory);
-            lattice
-        };
-        let read = |lattice: &Lattice| {
-            let (mut state, mut memory) = (state.clone(), memory.clone());
-            lattice.store(&mut state.position, &mut state.velocity, &mut memory);
-            (state, memory)
-        };
-        let mut one = make(1);
-        let runaway = one.step(1000, &around).expect_err("unstable");
-        assert!((2..1000).contains(&runaway.taken), "{runaway:?}");
-        let mut up_to_there = make(1);
-        assert_eq!(up_to_there.step(runaway.taken, &around), Ok(()));
-        assert_eq!(read(&one), read(&up_to_there));
-        // The limit of the next step is that of the first step of a call.
-        assert_eq!(up_to_there.step(1, &around), Err(Runaway { taken: 0, node: runaway.node }));
-        assert_eq!(read(&one), read(&up_to_there));
-        for threads in [2, 3] {
-            let mut several = make(threads);
-            assert_eq!(several.step(1000, &around), Err(runaway));
-            assert_eq!(read(&several), read(&one));
+        for scheme in SCHEMES {
+            let make = || {
+                let mut way = way(&body, parameters, scheme, Set::best());
+                way.load(0, &state.position, &state.velocity, &memory);
+                way
+            };
+            let read = |way: &mut Way| {
+                let (mut state, mut memory) = (state.clone(), memory.clone());
+                way.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+                (way.steps(), state, memory)
+            };
+            let mut one = make();
+            let runaway = one.advance(1000, &around, &mut Crew::new(1)).expect_err("unstable");
+            let taken = one.steps();
+            assert!((1..1000).contains(&taken), "{taken}");
+            let mut up_to_there = make();
+            assert_eq!(up_to_there.advance(taken, &around, &mut Crew::new(1)), Ok(()));
+            assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
+            assert_eq!(up_to_there.advance(taken + 1, &around, &mut Crew::new(1)), Err(runaway));
+            assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
+            // In calls of one step, and by several threads.
+            for (threads, steps) in [(1, 1), (2, 1000), (3, 1000), (3, 7)] {
+                let (mut other, mut crew) = (make(), Crew::new(threads));
+                let lost = (1..).find_map(|call| other.advance(call * steps, &around, &mut crew).err());
+                assert_eq!(lost, Some(runaway));
+                assert!(read(&mut other) == read(&mut one), "{scheme:?} {threads} {steps}");
+            }
         }
     }
 
@@ -1369,15 +1308,12 @@ mod tests {
     fn what_is_no_number_is_lost_at_once() {
         let body = lattice([3, 2, 2], DVec3::splat(0.5));
         let state = start(&body, 0.0);
-        let mut lattice =
-            Lattice::new(&body, parameters(0.1, Rotation::Optimum), Scheme::SemiImplicitEuler, Set::best(), 1)
-                .expect("a lattice");
-        lattice.load(&state.position, &state.velocity, &turns(&body, &state));
-        lattice.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
-        let resolve = |_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3| {};
-        let around = Around { bounds: &[], resolve: &resolve, floor: None, speed_limit: &|_| 1e6 };
-        assert!(lattice.step(3, &around).is_err_and(|runaway| runaway.taken == 0));
-        assert!(lattice.node(17).0.y.is_nan() && lattice.node(0) == (state.position[0], state.velocity[0]));
+        let parameters = parameters(0.1, Rotation::Optimum);
+        let mut way = way(&body, parameters, Scheme::SemiImplicitEuler, Set::best());
+        way.load(0, &state.position, &state.velocity, &turns(&body, &state));
+        way.stepper.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
+        assert!(matches!(way.advance(3, &FREE, &mut Crew::new(1)), Err(Runaway { .. })) && way.steps() == 0);
+        assert!(way.stepper.node(17).0.y.is_nan() && way.stepper.node(0) == (state.position[0], state.velocity[0]));
     }
 
     #[test]

@@ -30,18 +30,7 @@ impl Aligned {
         UnsafeCell::raw_get(self.lines.as_ptr()).cast()
     }
 
-    /// One of them.
-    pub(in crate::sim) fn get(&self, at: usize) -> f64 {
-        self.as_slice()[at]
-    }
-
-    /// All of them, while nobody writes.
-    pub(in crate::sim) fn as_slice(&self) -> &[f64] {
-        // SAFETY: a line is its eight doubles and nothing else. Threads write only while a step holds their owner.
-        unsafe { std::slice::from_raw_parts(self.pointer(), self.lines.len() * Self::LINE) }
-    }
-
-    /// All of them.
+    /// All of them. Even reading takes the only reference, for those who share one may write.
     pub(in crate::sim) fn as_mut_slice(&mut self) -> &mut [f64] {
         // SAFETY: a line is its eight doubles and nothing else, and nobody else holds them.
         unsafe { std::slice::from_raw_parts_mut(self.pointer(), self.lines.len() * Self::LINE) }

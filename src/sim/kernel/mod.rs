@@ -5,8 +5,6 @@
 
 #![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
-mod array;
-mod crew;
 mod drive;
 pub mod floor;
 pub(in crate::sim) mod general;
@@ -16,6 +14,7 @@ mod memory;
 pub(in crate::sim) mod motion;
 mod rotation;
 pub(in crate::sim) mod springs;
+pub(in crate::sim) mod stepper;
 
 #[cfg(test)]
 mod tests;
@@ -23,7 +22,9 @@ mod tests;
 pub(in crate::sim) use drive::ByKernel;
 pub(in crate::sim) use lanes::{Lanes, MOST, Set, Work};
 
+use crate::sim::contact::{Bound, Floor};
 use glam::DVec3;
+use std::ops::Range;
 
 /// How the rotations of elements in space are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,61 +38,39 @@ pub(in crate::sim) enum Rotation {
     Optimum,
 }
 
-/// A region outside of which nothing has to be asked whether a node touches it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::sim) enum Bound {
-    /// All points with `normal · x < height`.
-    HalfSpace {
-        /// Unit vector out of it.
-        normal: DVec3,
-        /// Distance of the surface from the origin along `normal` (m).
-        height: f64,
-    },
-    /// All points strictly between two corners.
-    Box {
-        /// The corner with the least coordinates (m).
-        low: DVec3,
-        /// The corner with the greatest (m).
-        high: DVec3,
-    },
-}
+/// What a node meets at the end of a step of this number: its position (m) and velocity (m/s), and the acceleration with
+/// which it has moved (m/s²), zero where it has moved at constant velocity.
+pub(in crate::sim) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
 
-/// A half-space that nodes bounce off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::sim) struct Floor {
-    /// Unit vector out of it.
-    pub(in crate::sim) normal: DVec3,
-    /// Distance of the surface from the origin along `normal` (m).
-    pub(in crate::sim) height: f64,
-    /// Restitution coefficient `e`.
-    pub(in crate::sim) restitution: f64,
-    /// Friction coefficient `μ`.
-    pub(in crate::sim) friction: f64,
-}
+/// Is given a node, its position (m) and its velocity (m/s).
+pub(in crate::sim) type Place<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
 
-/// What a node meets at the end of a step: its index, its position (m) and velocity (m/s), and the acceleration with which
-/// it has moved (m/s²), zero where it has moved at constant velocity.
-pub(in crate::sim) type Resolve<'a> = dyn Fn(usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
+/// Gives the nodes that grips hold at the end of a step of this number.
+pub(in crate::sim) type Held<'a> = dyn Fn(u64, &mut Place<'_>) + Sync + 'a;
 
-/// What acts on the nodes besides elements and gravity.
+/// What acts on the nodes besides elements and gravity, in steps that are asked for by number.
 #[derive(Clone, Copy)]
 pub(in crate::sim) struct Around<'a> {
-    /// Where obstacles may be.
+    /// Where obstacles may be at one time or another.
     pub(in crate::sim) bounds: &'a [Bound],
+    /// Which of these count.
+    pub(in crate::sim) row: &'a (dyn Fn(u64) -> Range<usize> + Sync),
     /// What happens to a node within one of the bounds.
     pub(in crate::sim) resolve: &'a Resolve<'a>,
     /// The only obstacle, if it is a floor that stays where it is: what `resolve` does to nodes that have moved at constant
     /// velocity is then done in lanes, with the same bits.
     pub(in crate::sim) floor: Option<Floor>,
-    /// The speed (m/s) beyond which a node is lost, in the step of this number; the first of a call has number 0.
+    /// The nodes that grips hold, if there are grips that do.
+    pub(in crate::sim) grips: Option<&'a Held<'a>>,
+    /// The speed (m/s) beyond which a node is lost.
     pub(in crate::sim) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }
 
-/// A step that was not taken, because a node would have become too fast, or its velocity no number.
+/// A node that would have become too fast, or whose velocity is no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::sim) struct Runaway {
-    /// The number of steps of the call that were taken.
-    pub(in crate::sim) taken: u64,
-    /// The first such node.
+pub(in crate::sim) struct Lost {
+    /// The number of the step.
+    pub(in crate::sim) step: u64,
+    /// The node.
     pub(in crate::sim) node: usize,
 }

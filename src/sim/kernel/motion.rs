@@ -2,10 +2,9 @@
 //! and collisions.
 
 use super::lanes::{Lanes, MOST, each};
-use super::{Around, Bound, Floor, Resolve, Runaway};
-use crate::sim::contact::ROUND_OFF;
+use super::{Around, Resolve};
+use crate::sim::contact::{Bound, Floor, ROUND_OFF};
 use glam::DVec3;
-use std::ops::Range;
 
 /// What is done with the forces of one evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,106 +30,6 @@ impl Stage {
     }
 }
 
-/// How positions and velocities move from one step to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::sim) enum Scheme {
-    /// Eq. (2), then Eq. (3) with the new velocity.
-    SemiImplicitEuler,
-    /// Eq. (3) with the old velocity.
-    ExplicitEuler,
-    /// Velocity Verlet.
-    VelocityVerlet,
-}
-
-/// Forces and motion of a body in lanes.
-pub(in crate::sim) trait Kernel {
-    /// Evaluates the forces once, unless they are known, and moves all nodes; tells whether all are within the speed limit.
-    /// With `commit` what the evaluation finds becomes the memory of the next one. `number` is that of the step in this
-    /// call.
-    fn pass(&mut self, stage: Stage, commit: bool, number: u64, around: Around<'_>) -> bool;
-    /// Whether forces depend on velocities.
-    fn is_damped(&self) -> bool;
-    /// Whether accelerations belong to the present positions.
-    fn is_known(&mut self) -> &mut bool;
-    /// Copies the state.
-    fn keep(&mut self);
-    /// Puts the copy in the state's place.
-    fn restore(&mut self);
-    /// Position (m) and velocity (m/s) of one node.
-    fn node(&self, node: usize) -> (DVec3, DVec3);
-    /// The number of nodes.
-    fn len(&self) -> usize;
-}
-
-/// Takes steps.
-///
-/// # Errors
-/// When a node would become faster than the limit; the state is then that before the step.
-pub(in crate::sim) fn advance(
-    kernel: &mut (impl Kernel + ?Sized),
-    scheme: Scheme,
-    steps: u64,
-    around: Around<'_>,
-) -> Result<(), Runaway> {
-    /// The steps after which the state is kept anew. A copy costs a small part of them.
-    const KEPT: u64 = 32;
-    let mut done = 0;
-    while done < steps {
-        let now = KEPT.min(steps - done);
-        let was_known = *kernel.is_known();
-        kernel.keep();
-        if !several(kernel, scheme, done..done + now, around) {
-            // Somewhere in these steps: one by one, and back to the state before the last.
-            kernel.restore();
-            *kernel.is_known() = was_known;
-            let is_good = |kernel: &mut _, at| several::<_>(kernel, scheme, at..at + 1, around);
-            let taken = (done..done + now).take_while(|&at| is_good(&mut *kernel, at)).last().map_or(done, |at| at + 1);
-            // Once more without contact, which may stop the node that was lost.
-            kernel.restore();
-            *kernel.is_known() = was_known;
-            for at in done..taken {
-                several(kernel, scheme, at..at + 1, around);
-            }
-            several(kernel, scheme, taken..taken + 1, Around { bounds: &[], ..around });
-            let limit = (around.speed_limit)(taken);
-            let is_lost = |&node: &usize| {
-                let squared = kernel.node(node).1.length_squared();
-                squared.is_nan() || squared > limit * limit
-            };
-            let node = (0..kernel.len()).find(is_lost).unwrap_or(0);
-            kernel.restore();
-            *kernel.is_known() = was_known;
-            for at in done..taken {
-                several(kernel, scheme, at..at + 1, around);
-            }
-            return Err(Runaway { taken, node });
-        }
-        done += now;
-    }
-    Ok(())
-}
-
-/// Takes steps of these numbers; tells whether all nodes stayed within the limit.
-fn several<K: Kernel + ?Sized>(kernel: &mut K, scheme: Scheme, steps: Range<u64>, around: Around<'_>) -> bool {
-    let (first, last) = (steps.start, steps.end - 1);
-    match scheme {
-        Scheme::SemiImplicitEuler => {
-            steps.into_iter().all(|at| kernel.pass(Stage::SemiImplicitEuler, true, at, around))
-        }
-        Scheme::ExplicitEuler => steps.into_iter().all(|at| kernel.pass(Stage::ExplicitEuler, true, at, around)),
-        Scheme::VelocityVerlet if kernel.is_damped() => steps
-            .into_iter()
-            .all(|at| kernel.pass(Stage::Drift, true, at, around) && kernel.pass(Stage::Finish, false, at, around)),
-        Scheme::VelocityVerlet => {
-            let begin = if *kernel.is_known() { Stage::Coast } else { Stage::Drift };
-            *kernel.is_known() = true;
-            kernel.pass(begin, true, first, around)
-                && (first + 1..=last).all(|at| kernel.pass(Stage::FinishDrift, true, at, around))
-                && kernel.pass(Stage::Finish, true, last, around)
-        }
-    }
-}
-
 /// The motion of nodes in one pass.
 #[derive(Clone, Copy)]
 pub(in crate::sim) struct Motion<'a, L> {
@@ -140,6 +39,8 @@ pub(in crate::sim) struct Motion<'a, L> {
     gravity: [L; 3],
     /// The squares of the speed limits before a new step begins and in it.
     limits: [L; 2],
+    number: u64,
+    bounds: &'a [Bound],
     around: Around<'a>,
 }
 
@@ -167,6 +68,8 @@ impl<'a, L: Lanes> Motion<'a, L> {
                 let limit = (around.speed_limit)(limits[at]);
                 L::splat(limit * limit)
             }),
+            number,
+            bounds: &around.bounds[(around.row)(number)],
             around,
         }
     }
@@ -178,17 +81,11 @@ impl<'a, L: Lanes> Motion<'a, L> {
     }
 
     /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node, and lets them meet
-    /// obstacles. `index` tells the node in a lane. Returns one bit for each lane whose speed is out of bounds.
+    /// obstacles. Returns one bit for each lane whose speed is out of bounds.
     #[inline(always)]
-    pub(in crate::sim) fn advance(
-        &self,
-        nodes: &mut Nodes<L>,
-        force: [L; 3],
-        inverse_mass: L,
-        index: impl Fn(usize) -> usize,
-    ) -> u32 {
+    pub(in crate::sim) fn advance(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let lost = self.go(nodes, force, inverse_mass);
-        self.meet(nodes, inverse_mass, index);
+        self.meet(nodes, inverse_mass);
         lost
     }
 
@@ -241,7 +138,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
             return 0;
         }
         let mut near = 0;
-        for bound in self.around.bounds {
+        for bound in self.bounds {
             near |= L::bits(reaches(bound, nodes.position));
         }
         near
@@ -250,7 +147,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
     /// The second half of [`Self::advance`]: what nodes meet at the end of a step. Where none is [near](Self::near) nothing
     /// happens.
     #[inline(always)]
-    pub(in crate::sim) fn meet(&self, nodes: &mut Nodes<L>, inverse_mass: L, index: impl Fn(usize) -> usize) {
+    pub(in crate::sim) fn meet(&self, nodes: &mut Nodes<L>, inverse_mass: L) {
         let zero = L::splat(0.0);
         let inside = self.near(nodes) & L::bits(zero.lt(inverse_mass));
         if inside == 0 {
@@ -264,14 +161,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         // With which they have moved: at constant velocity, or as velocity Verlet does.
         let rests = if self.stage.is_verlet() { nodes.acceleration } else { [zero; 3] };
         let rests = each!(3, axis => rests[axis].to_array());
-        touch(
-            self.around.resolve,
-            inside,
-            each!(8, lane => if lane < L::WIDTH { index(lane) } else { 0 }),
-            &mut position,
-            &mut velocity,
-            &rests,
-        );
+        touch(self.around.resolve, self.number, inside, &mut position, &mut velocity, &rests);
         nodes.position = each!(3, axis => L::from_array(position[axis]));
         nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
     }
@@ -299,8 +189,8 @@ impl<'a, L: Lanes> Motion<'a, L> {
 #[inline(never)]
 fn touch(
     resolve: &Resolve<'_>,
+    number: u64,
     inside: u32,
-    index: [usize; MOST],
     position: &mut [[f64; MOST]; 3],
     velocity: &mut [[f64; MOST]; 3],
     acceleration: &[[f64; MOST]; 3],
@@ -308,7 +198,7 @@ fn touch(
     for lane in (0..MOST).filter(|lane| inside >> lane & 1 == 1) {
         let of = |all: &[[f64; MOST]; 3]| DVec3::from_array(all.map(|axis| axis[lane]));
         let (mut p, mut v) = (of(position), of(velocity));
-        resolve(index[lane], &mut p, &mut v, of(acceleration));
+        resolve(number, &mut p, &mut v, of(acceleration));
         for axis in 0..3 {
             (position[axis][lane], velocity[axis][lane]) = (p[axis], v[axis]);
         }

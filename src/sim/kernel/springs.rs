@@ -13,13 +13,15 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
-use super::Around;
-use super::crew::Crew;
-use super::general::Constants;
+use super::general::{Constants, NONE, first_of};
 use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
-use super::motion::{Kernel, Motion, Nodes, Stage};
+use super::motion::{Motion, Nodes, Stage};
+use super::stepper::{Pass, Passes, Stepper};
+use super::{Around, Lost};
+use crate::sim::crew::Crew;
 use glam::DVec3;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Nodes for which one family is done before the next: what they need stays in the first cache. It changes no bit.
@@ -57,10 +59,6 @@ pub(in crate::sim) struct Stencil {
     slabs: Vec<Slab>,
     /// Chunks at the beginning of every slab but the first that move after all others.
     deferred: usize,
-    /// Always there between passes.
-    crew: Option<Crew>,
-    /// Whether the accelerations belong to the positions.
-    is_known: bool,
 }
 
 /// A part of the body that one thread works on.
@@ -168,78 +166,64 @@ impl Stencil {
             stride,
             slabs,
             deferred,
-            crew: Some(Crew::new(1)),
-            is_known: false,
         })
-    }
-
-    /// Works with so many threads from now on, as far as there are slabs for them.
-    pub(in crate::sim) fn set_threads(&mut self, threads: usize) {
-        self.crew = Some(Crew::new(threads.clamp(1, self.slabs.len())));
-    }
-
-    /// Takes a state over.
-    pub(in crate::sim) fn load(&mut self, position: &[DVec3], velocity: &[DVec3]) {
-        self.is_known = false;
-        for node in 0..self.nodes {
-            self.set_node(node, position[node], velocity[node]);
-        }
-    }
-
-    /// Writes the state down.
-    pub(in crate::sim) fn store(&self, position: &mut [DVec3], velocity: &mut [DVec3]) {
-        for node in 0..self.nodes {
-            (position[node], velocity[node]) = self.node(node);
-        }
     }
 
     fn arrays(&self) -> Arrays {
         Arrays { state: self.state.pointer(), stride: self.stride }
     }
 
-    /// Puts one node elsewhere.
-    pub(in crate::sim) fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        let stride = self.stride;
-        let all = self.state.as_mut_slice();
-        for axis in 0..3 {
-            all[axis * stride + node] = position[axis];
-            all[(VELOCITY + axis) * stride + node] = velocity[axis];
-        }
-    }
-}
-
-impl Kernel for Stencil {
-    fn pass(&mut self, stage: Stage, _commit: bool, number: u64, around: Around<'_>) -> bool {
-        // Taken out for the time, so that threads may share the rest.
-        let Some(mut crew) = self.crew.take() else { return false };
-        let (springs, threads, lost) = (&*self, crew.len(), AtomicU32::new(0));
-        let slabs = springs.slabs.len();
+    /// Evaluates the forces once, unless they are known, and moves all nodes. The first that becomes too fast.
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        let (springs, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
+        let slabs = self.slabs.len();
         let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
         crew.run(&|me| {
             for slab in share(me) {
-                let found = springs.set.run(OneSlab { springs, slab, stage, number, around });
-                lost.fetch_or(found, Ordering::Relaxed);
+                lost.fetch_min(self.set.run(OneSlab { springs, slab, pass, around }), Ordering::Relaxed);
             }
         });
         if slabs > 1 {
             crew.run(&|me| {
                 for slab in share(me).filter(|&slab| slab > 0) {
-                    let found = springs.set.run(Deferred { springs, slab, stage, number, around });
-                    lost.fetch_or(found, Ordering::Relaxed);
+                    lost.fetch_min(self.set.run(Deferred { springs, slab, pass, around }), Ordering::Relaxed);
                 }
             });
         }
         let lost = lost.into_inner();
-        self.crew = Some(crew);
-        lost == 0
+        (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
+    }
+}
+
+impl Stepper for Stencil {
+    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], _: &[f64]) {
+        for node in 0..self.nodes {
+            self.set_node(node, position[node], velocity[node]);
+        }
+    }
+
+    fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], _: &mut [f64]) {
+        for node in 0..self.nodes {
+            (position[node], velocity[node]) = self.node(node);
+        }
+    }
+
+    fn node(&mut self, node: usize) -> (DVec3, DVec3) {
+        let (all, stride) = (self.state.as_mut_slice(), self.stride);
+        let at = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| all[(first + axis) * stride + node]));
+        (at(0), at(VELOCITY))
+    }
+
+    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+        let (all, stride) = (self.state.as_mut_slice(), self.stride);
+        for axis in 0..3 {
+            all[axis * stride + node] = position[axis];
+            all[(VELOCITY + axis) * stride + node] = velocity[axis];
+        }
     }
 
     fn is_damped(&self) -> bool {
         self.constants.damping > 0.0
-    }
-
-    fn is_known(&mut self) -> &mut bool {
-        &mut self.is_known
     }
 
     fn keep(&mut self) {
@@ -250,14 +234,8 @@ impl Kernel for Stencil {
         self.state.copy_from(&mut self.kept);
     }
 
-    fn node(&self, node: usize) -> (DVec3, DVec3) {
-        let all = self.state.as_slice();
-        let at = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| all[(first + axis) * self.stride + node]));
-        (at(0), at(VELOCITY))
-    }
-
-    fn len(&self) -> usize {
-        self.nodes
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
     }
 }
 
@@ -300,7 +278,7 @@ impl Arrays {
                 acceleration: if stage.is_verlet() { self.load(ACCELERATION, at) } else { zero },
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
-            let lost = motion.advance(&mut nodes, force, inverse_mass, |lane| at + lane);
+            let lost = motion.advance(&mut nodes, force, inverse_mass);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
             if stage.is_verlet() {
@@ -315,8 +293,7 @@ impl Arrays {
 struct OneSlab<'a> {
     springs: &'a Stencil,
     slab: usize,
-    stage: Stage,
-    number: u64,
+    pass: Pass,
     around: Around<'a>,
 }
 
@@ -335,15 +312,15 @@ impl Work for OneSlab<'_> {
 impl OneSlab<'_> {
     #[inline(always)]
     fn evaluate<L: Lanes, const DAMPED: bool>(self) -> u32 {
-        let Self { springs, slab: at, stage, number, around } = self;
+        let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
         let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
         let (k, d, one, zero) =
             (L::splat(springs.constants.stiffness), L::splat(springs.constants.damping), L::splat(1.0), L::splat(0.0));
-        let all_tensions = springs.tensions.as_slice();
+        let all_tensions = springs.tensions.pointer().cast_const();
         let mut own = Own([[0.0; CHUNK]; 3]);
-        let mut lost = 0;
+        let mut lost = NONE;
         for chunk in slab.first..slab.last {
             let base = chunk * CHUNK;
             let count = (springs.nodes.next_multiple_of(BLOCK) - base).min(CHUNK);
@@ -351,7 +328,7 @@ impl OneSlab<'_> {
             let families = if stage == Stage::Coast { &[][..] } else { &springs.families };
             for (row, family) in families.iter().enumerate() {
                 let &Family { offset, tension, tensions } = family;
-                let listed = tensions.map(|begin| all_tensions[begin..].as_ptr());
+                let listed = tensions.map(|begin| all_tensions.wrapping_add(begin));
                 let tension = L::splat(tension);
                 let present = &springs.presence[chunk * springs.families.len() + row];
                 for (block, &present) in present.iter().enumerate() {
@@ -401,7 +378,7 @@ impl OneSlab<'_> {
                         each!(3, axis => force[axis].store(place(axis)));
                     } else {
                         each!(3, axis => zero.store(place(axis)));
-                        lost |= arrays.advance(&motion, stage, i, force);
+                        lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
                     }
                 }
             }
@@ -414,8 +391,7 @@ impl OneSlab<'_> {
 struct Deferred<'a> {
     springs: &'a Stencil,
     slab: usize,
-    stage: Stage,
-    number: u64,
+    pass: Pass,
     around: Around<'a>,
 }
 
@@ -424,11 +400,11 @@ impl Work for Deferred<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { springs, slab: at, stage, number, around } = self;
+        let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
         let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
-        let mut lost = 0;
+        let mut lost = NONE;
         let start = slab.first * CHUNK;
         for i in (start..start + springs.deferred * CHUNK).step_by(L::WIDTH) {
             // SAFETY: slabs are longer than what is deferred. All slabs are done, and each thread has its own deferred
@@ -441,7 +417,7 @@ impl Work for Deferred<'_> {
                     zero.store(halo(axis));
                     zero.store(place(axis));
                 }
-                lost |= arrays.advance(&motion, stage, i, force);
+                lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
             }
         }
         lost

@@ -1,19 +1,23 @@
 //! Any elements and springs in lanes against the reference, and against each other.
 
 use super::general::{Constants, General};
-use super::motion::{Kernel, Scheme, advance};
 use super::springs::Stencil;
-use super::{Around, Bound, Rotation, Set};
+use super::stepper::{Scheme, Stepper, Way};
+use super::{Around, Rotation, Set};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
-use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::contact::{Bound, Obstacle, Shape};
+use crate::sim::crew::Crew;
+use crate::sim::dynamics::Runaway;
+use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use crate::sim::motion::{Ease, Key, Motion, Place};
 use crate::sim::rotation::{best, davenport1968, moment, planar};
 use crate::sim::state::State;
 use crate::sim::topology::Springs;
-use crate::sim::world::{Stepping, Surroundings, World};
+use crate::sim::world::{Kernel, Stepping, Surroundings, World};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -120,10 +124,15 @@ fn rotations(body: &Body, state: &State) -> Vec<f64> {
     memory
 }
 
-fn nothing(_: usize, _: &mut DVec3, _: &mut DVec3, _: DVec3) {}
-
 /// No obstacle and no limit.
-const FREE: Around<'_> = Around { bounds: &[], resolve: &nothing, floor: None, speed_limit: &|_| f64::MAX };
+const FREE: Around<'_> = Around {
+    bounds: &[],
+    row: &|_| 0..0,
+    resolve: &|_, _, _, _| {},
+    floor: None,
+    grips: None,
+    speed_limit: &|_| f64::MAX,
+};
 
 fn constants(damping: f64) -> Constants {
     Constants { stiffness: STIFFNESS, damping, gravity: GRAVITY, step: STEP }
@@ -132,16 +141,29 @@ fn constants(damping: f64) -> Constants {
 /// A state with the rotations.
 type Whole = (State, Vec<f64>);
 
-fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, set: Set) -> General {
-    let mut kernel = General::new(body, rotation, constants(damping), set);
-    kernel.load(&start.0.position, &start.0.velocity, &start.1);
-    kernel
+/// A kernel on its way from a state, with the threads that work on it.
+struct Moving(Way, Crew);
+
+impl Moving {
+    fn new(kernel: impl Stepper + 'static, start: &Whole, scheme: Scheme, threads: usize) -> Self {
+        let mut way = Way::new(Box::new(kernel), scheme);
+        way.load(0, &start.0.position, &start.0.velocity, &start.1);
+        Self(way, Crew::new(threads))
+    }
+
+    fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
+        self.0.advance(self.0.steps() + steps, &around, &mut self.1)
+    }
+
+    fn stored(&mut self, like: &Whole) -> Whole {
+        let (mut state, mut memory) = like.clone();
+        self.0.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+        (state, memory)
+    }
 }
 
-fn stored(kernel: &General, like: &Whole) -> Whole {
-    let (mut state, mut memory) = like.clone();
-    kernel.store(&mut state.position, &mut state.velocity, &mut memory);
-    (state, memory)
+fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme: Scheme, set: Set) -> Moving {
+    Moving::new(General::new(body, rotation, constants(damping), set), start, scheme, 1)
 }
 
 fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
@@ -165,13 +187,7 @@ fn reference(
         Scheme::VelocityVerlet => Integrator::VelocityVerlet,
     };
     let surroundings = Surroundings { gravity: GRAVITY, obstacles, grips: Vec::new() };
-    World::new(
-        body,
-        start.clone(),
-        model,
-        surroundings,
-        Stepping { integrator, step: STEP, kernel: crate::sim::world::Kernel::Reference },
-    )
+    World::new(body, start.clone(), model, surroundings, Stepping { integrator, step: STEP, kernel: Kernel::Reference })
 }
 
 /// The largest distance between two states, in units of their extent and of the speed at which a node swings through
@@ -193,12 +209,12 @@ fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, dampi
     let start = (start, memory);
     let mut found: Option<Whole> = None;
     for set in Set::all() {
-        let mut kernel = general(body, &start, rotation, damping, set);
+        let mut kernel = general(body, &start, rotation, damping, scheme, set);
         // Calls of any length do the same.
         for steps in [1, 7, 100, STEPS - 108] {
-            assert_eq!(advance(&mut kernel, scheme, steps, FREE), Ok(()), "{name}");
+            assert_eq!(kernel.advance(steps, FREE), Ok(()), "{name}");
         }
-        let here = stored(&kernel, &start);
+        let here = kernel.stored(&start);
         assert!(found.as_ref().is_none_or(|found| *found == here), "{name}: {set:?} has other bits");
         found = Some(here);
     }
@@ -210,6 +226,7 @@ fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, dampi
 }
 
 const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
+const SEMI: Scheme = Scheme::SemiImplicitEuler;
 
 #[test]
 fn any_elements_step_like_the_reference() {
@@ -253,10 +270,10 @@ fn a_body_of_several_parts_steps_like_the_reference() {
     world.advance(50);
     let mut found: Option<Whole> = None;
     for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-        let mut kernel = general(&body, &start, TWICE, 10.0, set);
-        kernel.set_threads(threads);
-        assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 50, FREE), Ok(()));
-        let here = stored(&kernel, &start);
+        let mut kernel = general(&body, &start, TWICE, 10.0, SEMI, set);
+        kernel.1 = Crew::new(threads);
+        assert_eq!(kernel.advance(50, FREE), Ok(()));
+        let here = kernel.stored(&start);
         assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
         found = Some(here);
     }
@@ -286,9 +303,9 @@ fn elements_without_a_guide_step_like_the_reference() {
         let mut world = reference(&body, &start.0, &model, Scheme::SemiImplicitEuler, Vec::new());
         world.advance(20);
         for set in Set::all() {
-            let mut kernel = general(&body, &start, Rotation::Optimum, 10.0, set);
-            assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 20, FREE), Ok(()), "{name}");
-            let far = distance(&stored(&kernel, &start).0, world.state());
+            let mut kernel = general(&body, &start, Rotation::Optimum, 10.0, SEMI, set);
+            assert_eq!(kernel.advance(20, FREE), Ok(()), "{name}");
+            let far = distance(&kernel.stored(&start).0, world.state());
             assert!(far <= 1e-12, "{name}: {far:e}");
         }
     }
@@ -296,9 +313,9 @@ fn elements_without_a_guide_step_like_the_reference() {
     let body = pieces([1, 1, 0], &[3], 13);
     let start = (State::at_rest(vec![DVec3::ZERO; body.len()]), vec![0.6, 0.8]);
     for set in Set::all() {
-        let mut kernel = general(&body, &start, TWICE, 0.0, set);
-        assert!(kernel.pass(super::motion::Stage::SemiImplicitEuler, true, 0, FREE));
-        assert_eq!(stored(&kernel, &start).1, [0.6, 0.8]);
+        let mut kernel = general(&body, &start, TWICE, 0.0, SEMI, set);
+        assert_eq!(kernel.advance(1, FREE), Ok(()));
+        assert_eq!(kernel.stored(&start).1, [0.6, 0.8]);
     }
     assert_eq!(best(Dimension::Plane, DMat3::ZERO), DMat3::IDENTITY);
 }
@@ -320,7 +337,7 @@ fn nodes_rebound_as_in_the_reference() {
         let model = shape_based(TWICE, 10.0);
         let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
         world.advance(300);
-        let resolve = |_: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
+        let resolve = |_: u64, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
             floor.at(STEP, STEP).rebound(position, velocity, acceleration);
         };
         for bound in [
@@ -328,10 +345,10 @@ fn nodes_rebound_as_in_the_reference() {
             Bound::Box { low: DVec3::splat(-9.0), high: DVec3::new(9.0, 0.47, 9.0) },
         ] {
             for set in Set::all() {
-                let mut kernel = general(&body, &start, TWICE, 10.0, set);
-                let around = Around { bounds: &[bound], resolve: &resolve, ..FREE };
-                assert_eq!(advance(&mut kernel, scheme, 300, around), Ok(()));
-                let far = distance(&stored(&kernel, &start).0, world.state());
+                let mut kernel = general(&body, &start, TWICE, 10.0, scheme, set);
+                let around = Around { bounds: &[bound], row: &|_| 0..1, resolve: &resolve, ..FREE };
+                assert_eq!(kernel.advance(300, around), Ok(()));
+                let far = distance(&kernel.stored(&start).0, world.state());
                 assert!(far <= 1e-12, "{scheme:?}: {far:e}");
             }
         }
@@ -346,21 +363,21 @@ fn a_runaway_leaves_the_state_before_its_step() {
     let start = (start.clone(), rotations(&body, &start));
     for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
         for damping in [0.0, 10.0] {
-            let make = || general(&body, &start, TWICE, damping, Set::best());
+            let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
             let mut one_by_one = make();
             // Falling, it becomes too fast some time.
             let limit = 8.0;
             let around = Around { speed_limit: &|_| limit, ..FREE };
-            let taken = (0..10_000).take_while(|_| advance(&mut one_by_one, scheme, 1, around).is_ok()).count() as u64;
+            let taken = (0..10_000).take_while(|_| one_by_one.advance(1, around).is_ok()).count() as u64;
             assert!(taken > 40 && taken < 9_999, "{taken}");
             let mut at_once = make();
-            let runaway = advance(&mut at_once, scheme, 10_000, around).expect_err("it falls");
-            assert_eq!(runaway.taken, taken);
-            assert_eq!(stored(&at_once, &start), stored(&one_by_one, &start));
+            let runaway = at_once.advance(10_000, around).expect_err("it falls");
+            assert_eq!(at_once.0.steps(), taken);
+            assert_eq!(at_once.stored(&start), one_by_one.stored(&start));
             // Without a limit that node is the first to be beyond it.
             let mut free = make();
-            assert_eq!(advance(&mut free, scheme, taken + 1, FREE), Ok(()));
-            let speeds = stored(&free, &start).0.velocity;
+            assert_eq!(free.advance(taken + 1, FREE), Ok(()));
+            let speeds = free.stored(&start).0.velocity;
             assert_eq!(
                 speeds.iter().position(|speed| speed.length() > limit),
                 Some(runaway.node),
@@ -368,9 +385,9 @@ fn a_runaway_leaves_the_state_before_its_step() {
             );
         }
     }
-    let mut kernel = general(&body, &start, TWICE, 0.0, Set::best());
-    kernel.set_node(7, DVec3::NAN, DVec3::ZERO);
-    assert!(advance(&mut kernel, Scheme::SemiImplicitEuler, 5, FREE).is_err_and(|runaway| runaway.taken == 0));
+    let mut kernel = general(&body, &start, TWICE, 0.0, SEMI, Set::best());
+    kernel.0.stepper.set_node(7, DVec3::NAN, DVec3::ZERO);
+    assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
 }
 
 /// Springs in lanes by families, if they come in such, and without.
@@ -390,18 +407,17 @@ fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]]
             };
             let stencil = Stencil::new(springs, &body.rest, &body.mass, constants(damping), set);
             assert_eq!(stencil.is_some(), families, "{} springs", springs.len());
-            let mut here = start.clone();
-            if let Some(mut stencil) = stencil {
-                stencil.load(&start.position, &start.velocity);
-                assert_eq!(advance(&mut stencil, scheme, STEPS, FREE), Ok(()));
-                stencil.store(&mut here.position, &mut here.velocity);
-                same(&mut by_families, here.clone());
+            let whole = (start.clone(), Vec::new());
+            let run = |kernel: Moving| {
+                let mut kernel = kernel;
+                assert_eq!(kernel.advance(STEPS, FREE), Ok(()));
+                kernel.stored(&whole).0
+            };
+            if let Some(stencil) = stencil {
+                same(&mut by_families, run(Moving::new(stencil, &whole, scheme, 1)));
             }
-            let mut kernel = General::springs(body, springs, constants(damping), set);
-            kernel.load(&start.position, &start.velocity, &[]);
-            assert_eq!(advance(&mut kernel, scheme, STEPS, FREE), Ok(()));
-            kernel.store(&mut here.position, &mut here.velocity, &mut []);
-            same(&mut gathered, here);
+            let kernel = General::springs(body, springs, constants(damping), set);
+            same(&mut gathered, run(Moving::new(kernel, &whole, scheme, 1)));
         }
     }
 }
@@ -434,17 +450,13 @@ fn a_spring_between_coincident_nodes_does_nothing() {
     let start = State::at_rest(vec![DVec3::ONE; body.len()]);
     for set in Set::all() {
         let free = Constants { gravity: DVec3::ZERO, ..constants(10.0) };
-        let mut end = start.clone();
-        let mut stencil = Stencil::new(&springs, &body.rest, &body.mass, free, set).expect("a lattice");
-        stencil.load(&start.position, &start.velocity);
-        assert_eq!(advance(&mut stencil, Scheme::SemiImplicitEuler, 9, FREE), Ok(()));
-        stencil.store(&mut end.position, &mut end.velocity);
-        assert_eq!(end, start);
-        let mut kernel = General::springs(&body, &springs, free, set);
-        kernel.load(&start.position, &start.velocity, &[]);
-        assert_eq!(advance(&mut kernel, Scheme::SemiImplicitEuler, 9, FREE), Ok(()));
-        kernel.store(&mut end.position, &mut end.velocity, &mut []);
-        assert_eq!(end, start);
+        let start = (start.clone(), Vec::new());
+        let stencil = Stencil::new(&springs, &body.rest, &body.mass, free, set).expect("a lattice");
+        let kernel = General::springs(&body, &springs, free, set);
+        for mut kernel in [Moving::new(stencil, &start, SEMI, 1), Moving::new(kernel, &start, SEMI, 1)] {
+            assert_eq!(kernel.advance(9, FREE), Ok(()));
+            assert_eq!(kernel.stored(&start), start);
+        }
     }
 }
 
@@ -459,15 +471,94 @@ fn springs_in_several_slabs_step_like_the_reference() {
     world.advance(50);
     let mut found: Option<State> = None;
     for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-        let mut stencil = Stencil::new(&springs, &body.rest, &body.mass, constants(10.0), set).expect("a lattice");
-        stencil.set_threads(threads);
-        stencil.load(&start.position, &start.velocity);
-        assert_eq!(advance(&mut stencil, Scheme::SemiImplicitEuler, 50, FREE), Ok(()));
-        let mut end = start.clone();
-        stencil.store(&mut end.position, &mut end.velocity);
+        let stencil = Stencil::new(&springs, &body.rest, &body.mass, constants(10.0), set).expect("a lattice");
+        let whole = (start.clone(), Vec::new());
+        let mut kernel = Moving::new(stencil, &whole, SEMI, threads);
+        assert_eq!(kernel.advance(50, FREE), Ok(()));
+        let end = kernel.stored(&whole).0;
         assert!(found.as_ref().is_none_or(|found| *found == end), "{set:?} on {threads} threads has other bits");
         found = Some(end);
     }
     let far = distance(&found.expect("some set"), world.state());
     assert!(far <= 1e-12, "{far:e}");
+}
+
+/// Grips that take hold and let go on the way, and obstacles that move, with every scheme and kernel: a lattice, any elements,
+/// springs in families and others.
+#[test]
+fn what_holds_and_moves_is_that_of_the_reference() {
+    let place = |x: f64, turn: f64| Place { shift: DVec3::new(x, 0.02, 0.0), turn: DVec3::Z * turn };
+    let keys = [(0.0, 0.0, 0.0), (0.1, 0.03, 0.2), (0.15, 0.01, 0.1)];
+    let keys = keys.map(|(time, x, turn)| Key { time, place: place(x, turn) }).to_vec();
+    let dragging = Motion::Keys { keys, ease: Ease::Smooth, repeat: false };
+    let grip = |nodes: &[u32], from: f64, until: f64, motion: &Motion| Grip {
+        nodes: nodes.to_vec(),
+        from,
+        until,
+        motion: motion.clone(),
+    };
+    let still = Motion::Still;
+    let grips = vec![
+        grip(&[0, 3], 0.0, f64::INFINITY, &dragging),
+        grip(&[17], 0.0101, 0.05, &still),
+        grip(&[17, 11], 0.11, 0.12, &dragging),
+    ];
+    let some_time = vec![grip(&[5, 12], 0.02, 0.03, &dragging)];
+    // It comes along with the nodes and pushes: nothing rebounds, which would cost digits.
+    let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: place(0.3, 0.4) };
+    let paddle = Obstacle {
+        shape: Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 },
+        motion: swing,
+        pivot: DVec3::ZERO,
+        restitution: 0.0,
+        friction: 0.0,
+    };
+    let random = &mut Random(21);
+    let (lattice, any) = (whole([4, 2, 3], 0.0, 22), pieces([3, 2, 2], &[4, 6, 8], 23));
+    let listed: Vec<[u32; 2]> = (0..60).map(|_| [random.below(30) as u32, 30 + random.below(30) as u32]).collect();
+    let named = lattice.topology().springs(Springs::EdgesFaceDiagonals);
+    for damping in [0.0, 10.0] {
+        let spring = |springs: &[[u32; 2]]| MassSpring { stiffness: STIFFNESS, damping, springs: springs.to_vec() };
+        let models: [(&Arc<Body>, Box<dyn ElasticModel>); 4] = [
+            (&lattice, Box::new(shape_based(TWICE, damping))),
+            (&any, Box::new(shape_based(Rotation::Optimum, damping))),
+            (&lattice, Box::new(spring(&named))),
+            (&lattice, Box::new(spring(&listed))),
+        ];
+        for (body, model) in models {
+            for integrator in [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet] {
+                // Without damping it gains energy without bound.
+                if integrator == Integrator::ExplicitEuler && damping == 0.0 {
+                    continue;
+                }
+                for (grips, obstacles) in [(&grips, vec![]), (&some_time, vec![paddle.clone()])] {
+                    let world = |kernel, obstacles: &[Obstacle]| {
+                        let (obstacles, grips) = (obstacles.to_vec(), grips.clone());
+                        let around = Surroundings { gravity: GRAVITY, obstacles, grips };
+                        let stepping = Stepping { integrator, step: STEP, kernel };
+                        World::new(body, start(body, 8), model.as_ref(), around, stepping)
+                    };
+                    let [mut fast, mut plain] =
+                        [Kernel::Fast, Kernel::Reference].map(|kernel| world(kernel, &obstacles));
+                    fast.advance(STEPS);
+                    plain.advance(STEPS);
+                    let far = distance(fast.state(), plain.state());
+                    let name = format!("{integrator:?} {damping} {} {model:?}", obstacles.len());
+                    // A rebound in velocity Verlet takes the root of a difference.
+                    assert!(far <= if obstacles.is_empty() { 1e-12 } else { 1e-11 }, "{far:e} {name}");
+                    assert!(fast.state().memory.constraints.iter().any(|&gripped| gripped != 0.0));
+                    let mut cut = world(Kernel::Fast, &obstacles);
+                    for steps in [1, 49, 1, 33, 466, 1, STEPS - 551] {
+                        cut.advance(steps);
+                    }
+                    assert!(cut.state() == fast.state(), "cut: {name}");
+                    if !obstacles.is_empty() {
+                        let mut free = world(Kernel::Fast, &[]);
+                        free.advance(STEPS);
+                        assert!(distance(fast.state(), free.state()) > 1e-3, "touched: {name}");
+                    }
+                }
+            }
+        }
+    }
 }

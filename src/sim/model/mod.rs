@@ -102,7 +102,7 @@ pub trait ElasticModel: Debug + Send + Sync {
         &[]
     }
 
-    /// Which model it is, for faster ways of computing it.
+    /// Which model it is, for vectorised steps; `None` for one that has the plain code alone.
     fn known(&self) -> Option<Known<'_>> {
         None
     }
@@ -129,16 +129,6 @@ pub enum Known<'a> {
     ShapeBased(&'a shape_based::ShapeBased),
     /// Section 2 of the paper.
     MassSpring(&'a mass_spring::MassSpring),
-}
-
-impl Known<'_> {
-    /// Whether forces depend on velocities.
-    pub(super) fn is_damped(self) -> bool {
-        match self {
-            Self::ShapeBased(model) => model.damping > 0.0,
-            Self::MassSpring(model) => model.damping > 0.0,
-        }
-    }
 }
 
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the same

@@ -148,8 +148,11 @@ impl ElasticModel for ShapeBased {
         text
     }
 
+    /// Readings that are here for study have the plain code alone.
     fn known(&self) -> Option<Known<'_>> {
-        Some(Known::ShapeBased(self))
+        let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Exact)
+            && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
+        is_known.then_some(Known::ShapeBased(self))
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {

@@ -1,4 +1,5 @@
-//! Threads that wait for work, and do it together.
+//! Threads that wait for work, and do it together. Who makes a [`World`](super::World) lends it a [`Crew`]; nothing here
+//! starts threads by itself.
 
 #![expect(unsafe_code, reason = "work that borrows is lent to threads that outlive it, and taken back before it ends")]
 
@@ -14,8 +15,8 @@ const LOOKS: u32 = 20_000;
 /// Work for one member of a crew, by its number.
 type Work<'a> = dyn Fn(usize) + Sync + 'a;
 
-/// The calling thread and its helpers, who end with it.
-pub(super) struct Crew {
+/// The calling thread and its helpers, who wait for work from one step to the next and end with the crew.
+pub struct Crew {
     shared: Arc<Shared>,
     helpers: Vec<JoinHandle<()>>,
 }
@@ -33,8 +34,8 @@ struct Shared {
 }
 
 impl Crew {
-    /// A crew of so many threads, the caller's among them.
-    pub(super) fn new(threads: usize) -> Self {
+    /// A crew of so many threads, the caller's among them: one for the caller alone.
+    pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
             work: Mutex::new(None),
             round: AtomicU64::new(0),
@@ -52,16 +53,17 @@ impl Crew {
         Self { shared, helpers }
     }
 
-    /// The number of threads, which may be less than was asked for.
-    pub(super) fn len(&self) -> usize {
+    /// The number of threads, at least one, which may be less than was asked for.
+    pub fn threads(&self) -> usize {
         self.helpers.len() + 1
     }
 
-    /// Calls `work` with each number below [`Self::len`], at the same time, and returns when all have returned.
+    /// Calls `work` with each number below [`Self::threads`], at the same time, and returns when all have returned. Number 0
+    /// is the calling thread's.
     ///
     /// # Panics
     /// If one of them does.
-    pub(super) fn run(&mut self, work: &Work<'_>) {
+    pub fn run(&mut self, work: &Work<'_>) {
         let Shared { busy, panicked, .. } = &*self.shared;
         if self.helpers.is_empty() {
             return work(0);

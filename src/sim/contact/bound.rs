@@ -1,0 +1,35 @@
+//! What kernels ask of obstacles: where they may be, and floors, which they treat themselves.
+
+use glam::DVec3;
+
+/// A region outside of which nothing has to be asked whether a node touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::sim) enum Bound {
+    /// All points with `normal · x < height`.
+    HalfSpace {
+        /// Unit vector out of it.
+        normal: DVec3,
+        /// Distance of the surface from the origin along `normal` (m).
+        height: f64,
+    },
+    /// All points strictly between two corners.
+    Box {
+        /// The corner with the least coordinates (m).
+        low: DVec3,
+        /// The corner with the greatest (m).
+        high: DVec3,
+    },
+}
+
+/// A half-space that nodes bounce off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::sim) struct Floor {
+    /// Unit vector out of it.
+    pub(in crate::sim) normal: DVec3,
+    /// Distance of the surface from the origin along `normal` (m).
+    pub(in crate::sim) height: f64,
+    /// Restitution coefficient `e`.
+    pub(in crate::sim) restitution: f64,
+    /// Friction coefficient `μ`.
+    pub(in crate::sim) friction: f64,
+}
