@@ -1,21 +1,14 @@
 //! Work on many threads whose results are taken in order, a few ahead.
 
 use super::AnimationError;
-use std::collections::{BTreeMap, VecDeque};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::collections::VecDeque;
+use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// So many results for each thread may wait to be taken.
 const AHEAD: usize = 2;
 /// Threads that work, at most: more would keep more frames in memory, and these keep up with any disk.
 const MOST: usize = 4;
-
-/// What is done, and what is to be done next.
-struct Belt<T> {
-    next: usize,
-    taken: usize,
-    done: BTreeMap<usize, Result<T, AnimationError>>,
-    ended: bool,
-}
 
 /// Does `work` for each of `0..count` on `threads` threads and hands the results to `take` in order. Ends with the first
 /// error of either.
@@ -26,75 +19,31 @@ pub(super) fn in_order<T: Send>(
     mut take: impl FnMut(usize, T) -> Result<(), AnimationError>,
 ) -> Result<(), AnimationError> {
     let threads = threads.clamp(1, MOST);
-    let belt = Mutex::new(Belt { next: 0, taken: 0, done: BTreeMap::new(), ended: false });
-    let moved = Condvar::new();
-    let lock = || belt.lock().unwrap_or_else(PoisonError::into_inner);
-    let worker = || {
-        let _end = End(&belt, &moved);
-        loop {
-            let mut now = lock();
-            while !now.ended && now.next < count && now.next >= now.taken + threads * AHEAD {
-                now = moved.wait(now).unwrap_or_else(PoisonError::into_inner);
-            }
-            if now.ended || now.next >= count {
-                return;
-            }
-            let at = now.next;
-            now.next += 1;
-            drop(now);
-            let result = work(at);
-            lock().done.insert(at, result);
-            moved.notify_all();
-        }
-    };
     std::thread::scope(|scope| {
-        for _ in 0..threads.min(count) {
-            scope.spawn(worker);
-        }
-        // However this ends, the others are not to wait for it.
-        let _end = Stop(&belt, &moved);
-        for at in 0..count {
-            let mut now = lock();
-            let result = loop {
-                match now.done.remove(&at) {
-                    Some(result) => break result,
-                    // A thread has panicked, which the end of the scope tells.
-                    None if now.ended => return Err(AnimationError::Stopped),
-                    None => now = moved.wait(now).unwrap_or_else(PoisonError::into_inner),
+        let work = &work;
+        let start = |first: usize| {
+            // Beside what waits here, a thread holds one more result, which it waits to hand over.
+            let (results, taken) = sync_channel(AHEAD - 1);
+            scope.spawn(move || {
+                for at in (first..count).step_by(threads) {
+                    let result = work(at);
+                    // Nobody takes any more after an error, and without one only when all has ended.
+                    let failed = result.is_err();
+                    if results.send(result).is_err() || failed {
+                        return;
+                    }
                 }
-            };
-            now.taken = at + 1;
-            drop(now);
-            moved.notify_all();
+            });
+            taken
+        };
+        let results: Vec<_> = (0..threads.min(count)).map(start).collect();
+        for at in 0..count {
+            // A thread that sends nothing more has panicked, which the end of the scope tells.
+            let result = results[at % threads].recv().map_err(|_| AnimationError::Stopped)?;
             take(at, result?)?;
         }
         Ok(())
     })
-}
-
-fn end<T>(belt: &Mutex<Belt<T>>, moved: &Condvar) {
-    belt.lock().unwrap_or_else(PoisonError::into_inner).ended = true;
-    moved.notify_all();
-}
-
-/// Ends the work of all when a thread panics.
-struct End<'a, T>(&'a Mutex<Belt<T>>, &'a Condvar);
-
-impl<T> Drop for End<'_, T> {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            end(self.0, self.1);
-        }
-    }
-}
-
-/// Ends the work of all.
-struct Stop<'a, T>(&'a Mutex<Belt<T>>, &'a Condvar);
-
-impl<T> Drop for Stop<'_, T> {
-    fn drop(&mut self) {
-        end(self.0, self.1);
-    }
 }
 
 /// Things that are made when they are first asked for, and kept while they may be asked for again: the few newest.

@@ -99,7 +99,7 @@ impl Comparison {
                 // It was read before.
                 return None;
             }
-            match self.actual_source(&picture.name)?.pixels() {
+            match self.sides[1].source(&picture.name)?.pixels() {
                 Err(error) => told(error.to_string()),
                 Ok(pixels) if is_golden && pixels.label.is_none() => {
                     told("it does not say which state it shows, and cannot belong to a golden".to_owned())
@@ -132,17 +132,8 @@ impl Comparison {
             expected.pictures.contains_key(name) && record.as_ref().is_some_and(|record| !is_known(record))
         };
         let mut failed = self.pictures.iter().filter(|picture| !picture.verdict.passes());
-        let mut pictures = failed.any(|picture| self.actual_source(&picture.name).is_some() || is_gone(&picture.name));
-        pictures |= record.is_some() && record != expected.record;
-        pictures
-    }
-
-    fn actual_source(&self, name: &str) -> Option<&Source> {
-        let actual = &self.sides[1];
-        match actual.kind {
-            Kind::Picture => actual.pictures.values().next(),
-            _ => actual.pictures.get(name),
-        }
+        let pictures = failed.any(|picture| self.sides[1].source(&picture.name).is_some() || is_gone(&picture.name));
+        pictures || record.is_some() && record != expected.record
     }
 
     /// Replaces what was expected by what is there, as far as it failed. States are replaced only if that is asked for. All
@@ -170,6 +161,12 @@ impl Comparison {
         let mut gone = Vec::new();
         let mut staged = Vec::new();
         let is_picture = expected.kind == Kind::Picture || actual.kind == Kind::Picture;
+        let mut write = |target: &Path, bytes: &[u8]| -> Result<(), OutputError> {
+            let mut file = AtomicFile::create(target)?;
+            file.append(bytes)?;
+            staged.push(file);
+            Ok(())
+        };
         let mut stage = || -> Result<FolderLock, OutputError> {
             if !is_picture {
                 std::fs::create_dir_all(&expected.origin).map_err(OutputError::writing(&expected.origin))?;
@@ -180,12 +177,10 @@ impl Comparison {
                 let target = if is_picture { expected.origin.clone() } else { expected.origin.join(&picture.name) };
                 let is_drawn = |record: &Record| record.pictures.iter().any(|drawn| drawn.file == picture.name);
                 let belongs = record.as_ref().is_none_or(is_drawn);
-                match self.actual_source(&picture.name).filter(|_| belongs) {
+                match self.sides[1].source(&picture.name).filter(|_| belongs) {
                     Some(source) => {
                         let bytes = bytes(source, record.is_some()).map_err(OutputError::reading(&target))?;
-                        let mut file = AtomicFile::create(&target)?;
-                        file.append(&bytes)?;
-                        staged.push(file);
+                        write(&target, &bytes)?;
                     }
                     // The picture of a golden for which nothing stands any more.
                     None if !belongs && expected.pictures.contains_key(&picture.name) => gone.push(target),
@@ -200,11 +195,7 @@ impl Comparison {
                 let (target, source) = (expected.origin.join(name), actual.origin.join(name));
                 let (old, new) = (read_file(&target).ok().flatten(), read_file(&source).ok().flatten());
                 match (old, new) {
-                    (old, Some(new)) if old.as_ref() != Some(&new) => {
-                        let mut file = AtomicFile::create(&target)?;
-                        file.append(&new)?;
-                        staged.push(file);
-                    }
+                    (old, Some(new)) if old.as_ref() != Some(&new) => write(&target, &new)?,
                     (Some(_), None) => {
                         let (target, actual) = (target.display(), actual.origin.display());
                         blessed.left.push(format!("{target} is not of these pictures any more, but {actual} has none"));
@@ -216,9 +207,7 @@ impl Comparison {
                 let target = expected.origin.join(RECORD_FILE);
                 let text = record.text();
                 if read_file(&target).ok().flatten().as_deref() != Some(text.as_bytes()) {
-                    let mut file = AtomicFile::create(&target)?;
-                    file.append(text.as_bytes())?;
-                    staged.push(file);
+                    write(&target, text.as_bytes())?;
                 }
             }
             Ok(lock)
@@ -258,7 +247,7 @@ impl Comparison {
         };
         // The adapters of pictures that stay are those that drew them.
         let passes = |name: &str| self.pictures.iter().any(|picture| picture.name == name && picture.verdict.passes());
-        let label = |name: &str| self.actual_source(name).and_then(|source| source.pixels().ok()?.label);
+        let label = |name: &str| self.sides[1].source(name).and_then(|source| source.pixels().ok()?.label);
         let names = actual.record.as_ref().unwrap_or(old).pictures.iter().map(|drawn| drawn.file.as_str());
         record.pictures = names
             .filter_map(|name| {

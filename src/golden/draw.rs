@@ -1,7 +1,8 @@
 //! A scene or figure, simulated and drawn to be compared with its golden, or to become one.
 
 use super::distance::kind;
-use super::record::{Drawn, Plan, Record};
+use super::plan::Plan;
+use super::record::{Drawn, Record};
 use super::side::{Kind, Side, Source};
 use super::states::{State, States, Step};
 use crate::artist::{Artist, FigureError, draw_figure as draw_figure_on};

@@ -2,7 +2,7 @@
 
 use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
-use super::report::{self, FAINT, INTERIOR, Report, SILHOUETTE, Sheet};
+use super::report::{FAINT, INTERIOR, PicturePair, Report, SILHOUETTE};
 use super::side::Kind;
 use super::silhouettes::{Place, silhouettes};
 use super::{Compared, Comparison, Verdict};
@@ -19,13 +19,9 @@ impl Comparison {
     pub fn report(&self) -> Report {
         let [expected, actual] = &self.sides;
         let shown = self.shown();
-        let sheets: Vec<Drawing> = self
-            .pictures
-            .par_iter()
-            .enumerate()
-            .map(|(at, picture)| self.sheet(picture, shown.contains(&at)))
-            .collect();
-        let adapters = [0, 1].map(|side| sheets.iter().find_map(|drawing| drawing.adapters[side].clone()));
+        let pairs: Vec<(PicturePair, [Option<String>; 2])> =
+            self.pictures.par_iter().enumerate().map(|(at, picture)| self.pair(picture, shown.contains(&at))).collect();
+        let adapters = [0, 1].map(|side| pairs.iter().find_map(|(_, adapters)| adapters[side].clone()));
         let mut findings: Vec<String> = self.moved.iter().map(ToString::to_string).collect();
         if expected.kind == Kind::Absent {
             findings.push("There is no golden yet.".to_owned());
@@ -62,8 +58,8 @@ impl Comparison {
             findings,
             accept: self.command_to_accept(),
             drawn_by: adapters,
-            courses: self.courses.iter().map(course).collect(),
-            pictures: sheets.into_iter().map(|drawing| drawing.sheet).collect(),
+            courses: self.courses.clone(),
+            pictures: pairs.into_iter().map(|(pair, _)| pair).collect(),
         }
     }
 
@@ -80,15 +76,9 @@ impl Comparison {
         chosen(false, MOST_FAILED).into_iter().chain(chosen(true, MOST_PASSED)).collect()
     }
 
-    fn sheet(&self, picture: &Compared, is_shown: bool) -> Drawing {
-        let [expected, actual] = &self.sides;
-        let source = |at: usize| {
-            let side = [expected, actual][at];
-            match side.kind {
-                Kind::Picture => side.pictures.values().next(),
-                _ => side.pictures.get(&picture.name),
-            }
-        };
+    /// A picture on the page, and who drew both sides of it.
+    fn pair(&self, picture: &Compared, is_shown: bool) -> (PicturePair, [Option<String>; 2]) {
+        let source = |at: usize| self.sides[at].source(&picture.name);
         // What is no picture is not shown as one.
         let pixels = [0, 1].map(|at| source(at).filter(|_| is_shown).and_then(|source| source.pixels().ok()));
         let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| Some(source(at)?.bytes().ok()?.into_owned())));
@@ -104,44 +94,25 @@ impl Comparison {
         };
         let size = pixels.iter().rev().flatten().next().map(|pixels| pixels.size);
         let nearest = picture.verdict.distance().map(|distance| distance.nearest_to_limit());
+        let adapters = [0, 1].map(|at| label(at).map(|label| label.adapter.clone()));
         let [expected, actual] = bytes;
         let is_identical = picture.verdict == Verdict::Identical;
-        Drawing {
-            adapters: [0, 1].map(|at| label(at).map(|label| label.adapter.clone())),
-            sheet: Sheet {
-                name: picture.name.clone(),
-                frame,
-                time,
-                verdict: picture.verdict.kind().to_owned(),
-                words: picture.verdict.to_string(),
-                passes: picture.verdict.passes(),
-                visible: nearest.map(|count| count.visible).or(is_identical.then_some(0)),
-                allowed: nearest.map(|count| count.allowed),
-                size,
-                expected,
-                actual,
-                difference,
-            },
-        }
+        let pair = PicturePair {
+            name: picture.name.clone(),
+            frame,
+            time,
+            verdict: picture.verdict.kind().to_owned(),
+            words: picture.verdict.to_string(),
+            passes: picture.verdict.passes(),
+            visible: nearest.map(|count| count.visible).or(is_identical.then_some(0)),
+            allowed: nearest.map(|count| count.allowed),
+            size,
+            expected,
+            actual,
+            difference,
+        };
+        (pair, adapters)
     }
-}
-
-/// A picture on the page, and who drew both sides of it.
-struct Drawing {
-    sheet: Sheet,
-    adapters: [Option<String>; 2],
-}
-
-fn course(course: &super::Course) -> report::Course {
-    let moment = |moment: &super::Moment| report::Moment {
-        frame: moment.frame,
-        time: moment.time,
-        moved: moment.moved,
-        displacement: moment.displacement.map(|displacement| displacement.distance),
-        node: moment.displacement.map(|displacement| displacement.node),
-    };
-    let frames = course.moments.iter().map(moment).collect();
-    report::Course { run: course.run.clone(), precision: course.precision, frames }
 }
 
 /// Where two pictures differ, over a faint shadow of what was expected, as a PNG file; `None` if they are not of one size.

@@ -25,15 +25,13 @@ const LARGEST_FILE: u64 = 4 << 20;
 const FORMAT: u32 = 1;
 
 /// So many digits of each digest are kept: 48 bits.
-const DIGITS: usize = 12;
+pub(super) const DIGITS: usize = 12;
 
 /// About as large may the digests and the positions of a golden get (bytes).
-const ROOM_FOR_DIGESTS: usize = 24 * 1024;
-const ROOM_FOR_PLACES: usize = 8 * 1024;
+pub(super) const ROOM_FOR_DIGESTS: usize = 24 * 1024;
+pub(super) const ROOM_FOR_PLACES: usize = 8 * 1024;
 /// A coordinate takes about so much (bytes).
-const COORDINATE: usize = 5;
-/// Numbers that describe the state are recorded at about so many frames.
-const FRAMES_WITH_NUMBERS: u64 = 10;
+pub(super) const COORDINATE: usize = 5;
 /// Positions are rounded to about this part of the room that the nodes take.
 const FINENESS: f64 = 1e-5;
 
@@ -71,56 +69,6 @@ impl Drawn {
     pub(super) fn new(file: &str, label: &Tags) -> Self {
         let (adapter, version) = (label.adapter.clone(), label.version.clone());
         Self { file: file.to_owned(), frame: label.frame().unwrap_or(0), adapter, version }
-    }
-}
-
-/// Which frames and nodes are recorded.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Plan {
-    /// Frames with pictures.
-    pub(super) pictures: BTreeSet<u64>,
-    /// Frames with a digest.
-    pub(super) digests: BTreeSet<u64>,
-    /// Frames with positions.
-    pub(super) places: BTreeSet<u64>,
-}
-
-impl Plan {
-    /// What is recorded of a scene of so many runs and nodes in which `pictures` are drawn.
-    pub(super) fn new(last: u64, runs: usize, nodes: usize, pictures: &BTreeSet<u64>) -> Self {
-        let row = 5 + (DIGITS + 1) * runs;
-        let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).max(1);
-        let ends = [0, last];
-        let digests = (0..=last).step_by(stride).chain(pictures.iter().copied()).chain(ends).collect();
-        let most = (ROOM_FOR_PLACES / (runs * nodes * 3 * COORDINATE).max(1)).max(1);
-        // The last frame first: whatever went astray is farthest away there. Then those that can be seen.
-        let evenly = (1..=FRAMES_WITH_NUMBERS).map(|at| last * at / FRAMES_WITH_NUMBERS);
-        let mut places = BTreeSet::new();
-        for frame in [last].into_iter().chain(pictures.iter().rev().copied()).chain(evenly).chain([0]) {
-            if places.len() < most {
-                places.insert(frame);
-            }
-        }
-        let mut plan = Self { pictures: pictures.clone(), digests, places };
-        plan.digests.extend(&plan.places);
-        plan
-    }
-
-    /// The same with all that another record knows, as far as the scene goes.
-    pub(super) fn with(mut self, record: &Record, last: u64) -> Self {
-        for (frame, state) in record.states.runs.iter().flat_map(|run| &run.states).filter(|(frame, _)| **frame <= last)
-        {
-            self.digests.insert(*frame);
-            if state.places.is_some() {
-                self.places.insert(*frame);
-            }
-        }
-        self
-    }
-
-    /// All frames that are looked at, rising.
-    pub(super) fn frames(&self) -> BTreeSet<u64> {
-        self.pictures.iter().chain(&self.digests).chain(&self.places).copied().collect()
     }
 }
 
@@ -499,12 +447,6 @@ mod tests {
 
     #[test]
     fn however_large_the_scene_is_the_record_is_not() {
-        let pictures = BTreeSet::from([100, 200]);
-        let plan = Plan::new(300, 2, 64, &pictures);
-        assert_eq!(plan.digests.len(), 301, "each frame of a usual scene");
-        assert!(plan.places.contains(&300) && plan.places.contains(&200), "{plan:?}");
-        let long = Plan::new(1_000_000, 3, 100_000, &pictures);
-        assert!(long.digests.len() < 1000 && long.places == BTreeSet::from([1_000_000]), "{}", long.digests.len());
         let mut large = Record::default();
         let at: Vec<_> = (0..100_000).map(|node| DVec3::splat(node as f64)).collect();
         let places = Some(Places { quantum: 0.0, every: 1, nodes: at.len(), at });

@@ -120,6 +120,14 @@ impl Side {
         }
     }
 
+    /// Where the picture of a name is.
+    pub(super) fn source(&self, name: &str) -> Option<&Source> {
+        match self.kind {
+            Kind::Picture => self.pictures.values().next(),
+            _ => self.pictures.get(name),
+        }
+    }
+
     /// The folder that pictures stand in, and perhaps an archive of their states.
     fn folder(&self) -> &Path {
         match self.kind {

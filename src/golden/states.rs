@@ -193,18 +193,18 @@ pub struct Moved {
 
 /// A run on both sides, frame by frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Course {
+pub struct RunDifference {
     /// Name of the run.
     pub run: String,
     /// To what displacements are known (m); 0: exactly.
     pub precision: f64,
     /// Frames that are known on both sides, rising.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<FrameDifference>,
 }
 
 /// A run on both sides at one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Moment {
+pub struct FrameDifference {
     /// The frame.
     pub frame: u64,
     /// The moment (s), if it is known.
@@ -216,25 +216,25 @@ pub struct Moment {
 }
 
 /// All runs that are known on both sides.
-pub(super) fn courses(expected: &States, actual: &States) -> Vec<Course> {
+pub(super) fn courses(expected: &States, actual: &States) -> Vec<RunDifference> {
     let course = |run: &Run| {
         let other = actual.run(&run.name)?;
         let both = run.states.iter().filter_map(|(frame, state)| Some((*frame, state, other.states.get(frame)?)));
-        let moments: Vec<Moment> = both
+        let moments: Vec<FrameDifference> = both
             .map(|(frame, before, after)| {
                 let moved = !before.equals(after);
                 let displacement = moved.then(|| displacement(frame, before, after)).flatten();
-                Moment { frame, time: after.time.or(before.time), moved, displacement }
+                FrameDifference { frame, time: after.time.or(before.time), moved, displacement }
             })
             .collect();
         let precision = moments.iter().filter_map(|moment| Some(moment.displacement?.precision)).fold(0.0, f64::max);
-        (!moments.is_empty()).then(|| Course { run: run.name.clone(), precision, moments })
+        (!moments.is_empty()).then(|| RunDifference { run: run.name.clone(), precision, moments })
     };
     expected.runs.iter().filter_map(course).collect()
 }
 
 /// The runs that moved, by their courses; and those on one side only.
-pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> Vec<Moved> {
+pub(super) fn moved(expected: &States, actual: &States, courses: &[RunDifference]) -> Vec<Moved> {
     if expected.is_empty() || actual.is_empty() {
         // Where nothing is known, nothing came and nothing went.
         return Vec::new();

@@ -15,10 +15,10 @@ pub fn frame_file_name(index: u64) -> String {
 /// The names of all frames as a pattern, for `run.json`.
 pub const FRAME_FILES: &str = "frame_*.png";
 
-/// Whether a file has the name of a frame.
-fn names_frame(name: &str) -> bool {
-    let digits = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".png"));
-    digits.is_some_and(|digits| digits.parse().is_ok_and(|index| frame_file_name(index) == name))
+/// The number of the frame whose name a file has.
+fn frame_number(name: &str) -> Option<u64> {
+    let index = name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()?;
+    (frame_file_name(index) == name).then_some(index)
 }
 
 /// The numbers and paths of all frames in a folder by their names, rising.
@@ -29,12 +29,7 @@ pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
-        let name = entry.file_name();
-        if let Some(index) = name
-            .to_str()
-            .filter(|name| names_frame(name))
-            .and_then(|name| name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok())
-        {
+        if let Some(index) = entry.file_name().to_str().and_then(frame_number) {
             frames.push((index, entry.path()));
         }
     }
@@ -210,7 +205,7 @@ impl Found {
             let name = entry.file_name();
             let Some(name) = name.to_str() else { continue };
             let is_record = [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name);
-            if !is_record && !names_frame(name) {
+            if !is_record && frame_number(name).is_none() {
                 continue;
             }
             let path = entry.path();
@@ -361,10 +356,10 @@ mod tests {
         assert_eq!(frame_file_name(7), "frame_00007.png");
         assert_eq!(frame_file_name(123_456), "frame_123456.png");
         for name in ["frame_00000.png", "frame_99999.png", "frame_100000.png"] {
-            assert!(names_frame(name), "{name}");
+            assert!(frame_number(name).is_some(), "{name}");
         }
         for name in ["frame_0.png", "frame_000000.png", "frame_.png", "frame_+0001.png", "frame_00000.jpg", "a.png"] {
-            assert!(!names_frame(name), "{name}");
+            assert_eq!(frame_number(name), None, "{name}");
         }
     }
 }

@@ -6,10 +6,12 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod printed;
 pub mod ratio;
 mod sheet;
 mod spread;
 pub mod table1;
+mod table1_text;
 
 pub use sheet::Sheet;
 pub use spread::Spread;

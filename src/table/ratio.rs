@@ -210,77 +210,48 @@ impl Ratios {
             std::env::consts::ARCH,
             std::env::consts::OS,
         );
-        let mut sheet = Sheet::new([
-            "cubes",
-            "springs",
-            "springs per cube",
-            "shape, ns per cube",
-            "springs, ns per cube",
-            "springs, ns per spring",
-            "ratio",
-            "paper",
-        ]);
-        for one in &self.comparisons {
+        let row = |one: &Comparison| {
             let per_cube = one.per_cube();
             let Spread { lower, median, upper, .. } = one.ratio;
-            sheet.rows.push([
-                format!("{}³", one.side),
-                typed(&one.springs),
-                figure(per_cube),
-                figure(one.shape.median),
-                figure(one.mass_spring.median),
-                figure(one.mass_spring.median / per_cube),
-                format!("{} ({} – {})", figure(median), figure(lower), figure(upper)),
-                PRINTED.to_string(),
-            ]);
-        }
-        text += &sheet.markdown(2);
+            [
+                ("cubes", format!("{}³", one.side)),
+                ("springs", typed(&one.springs)),
+                ("springs per cube", figure(per_cube)),
+                ("shape, ns per cube", figure(one.shape.median)),
+                ("springs, ns per cube", figure(one.mass_spring.median)),
+                ("springs, ns per spring", figure(one.mass_spring.median / per_cube)),
+                ("ratio", format!("{} ({} – {})", figure(median), figure(lower), figure(upper))),
+                ("paper", PRINTED.to_string()),
+            ]
+        };
+        text += &Sheet::of(self.comparisons.iter().map(row)).markdown(2);
         text
     }
 
     /// The table for programs, all digits.
-    fn sheet(&self) -> Sheet<17> {
-        let mut sheet = Sheet::new([
-            "cubes",
-            "springs",
-            "spring_count",
-            "threads",
-            "time",
-            "rounds",
-            "shape_ns_median",
-            "shape_ns_lower",
-            "shape_ns_upper",
-            "springs_ns_median",
-            "springs_ns_lower",
-            "springs_ns_upper",
-            "ratio_median",
-            "ratio_lower",
-            "ratio_upper",
-            "ratio_least",
-            "ratio_most",
-        ]);
-        for one in &self.comparisons {
-            sheet.rows.push([
-                one.cubes().to_string(),
-                typed(&one.springs),
-                one.count.to_string(),
-                self.threads.to_string(),
-                self.time.name().to_owned(),
-                self.rounds.to_string(),
-                exact(one.shape.median),
-                exact(one.shape.lower),
-                exact(one.shape.upper),
-                exact(one.mass_spring.median),
-                exact(one.mass_spring.lower),
-                exact(one.mass_spring.upper),
-                exact(one.ratio.median),
-                exact(one.ratio.lower),
-                exact(one.ratio.upper),
-                exact(one.ratio.least),
-                exact(one.ratio.most),
-            ]);
-        }
-        sheet
+    fn sheet(&self) -> Sheet {
+        let row = |one: &Comparison| {
+            [
+                ("cubes", one.cubes().to_string()),
+                ("springs", typed(&one.springs)),
+                ("spring_count", one.count.to_string()),
+                ("threads", self.threads.to_string()),
+                ("time", self.time.name().to_owned()),
+                ("rounds", self.rounds.to_string()),
+                ("shape_ns_median", exact(one.shape.median)),
+                ("shape_ns_lower", exact(one.shape.lower)),
+                ("shape_ns_upper", exact(one.shape.upper)),
+                ("springs_ns_median", exact(one.mass_spring.median)),
+                ("springs_ns_lower", exact(one.mass_spring.lower)),
+                ("springs_ns_upper", exact(one.mass_spring.upper)),
+                ("ratio_median", exact(one.ratio.median)),
+                ("ratio_lower", exact(one.ratio.lower)),
+                ("ratio_upper", exact(one.ratio.upper)),
+                ("ratio_least", exact(one.ratio.least)),
+                ("ratio_most", exact(one.ratio.most)),
+            ]
+        };
+        Sheet::of(self.comparisons.iter().map(row))
     }
 
     /// The table as one document.

@@ -1,24 +1,29 @@
 //! Rows and columns as CSV and as Markdown.
 
 /// A table of texts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sheet<const N: usize> {
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Sheet {
     /// What stands over the columns.
-    pub heads: [&'static str; N],
+    pub heads: Vec<&'static str>,
     /// The rows.
-    pub rows: Vec<[String; N]>,
+    pub rows: Vec<Vec<String>>,
 }
 
-impl<const N: usize> Sheet<N> {
-    /// A table without rows.
-    pub fn new(heads: [&'static str; N]) -> Self {
-        Self { heads, rows: Vec::new() }
+impl Sheet {
+    /// The table of rows of which each cell stands beside the head of its column.
+    pub fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, String); N]>) -> Self {
+        let mut sheet = Self::default();
+        for row in rows {
+            sheet.heads = row.iter().map(|(head, _)| *head).collect();
+            sheet.rows.push(row.into_iter().map(|(_, cell)| cell).collect());
+        }
+        sheet
     }
 
     /// As CSV (RFC 4180, with line feeds).
     pub fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.heads).expect("memory takes all");
+        writer.write_record(&self.heads).expect("memory takes all");
         self.rows.iter().for_each(|row| writer.write_record(row).expect("rows of equal length"));
         let bytes = writer.into_inner().expect("memory takes all");
         String::from_utf8(bytes).expect("made of texts")
@@ -30,7 +35,7 @@ impl<const N: usize> Sheet<N> {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let rule = |column| if column < left { "---" } else { "---:" }.to_owned();
         let mut text = line(self.heads.iter().map(|head| escaped(head)).collect());
-        text += &line((0..N).map(rule).collect());
+        text += &line((0..self.heads.len()).map(rule).collect());
         self.rows.iter().for_each(|row| text += &line(row.iter().map(|cell| escaped(cell)).collect()));
         text
     }
@@ -53,8 +58,7 @@ mod tests {
 
     #[test]
     fn both_forms_can_be_read_again() {
-        let mut sheet = Sheet::new(["name", "|w|"]);
-        sheet.rows.push(["a, \"b\"".to_owned(), "1".to_owned()]);
+        let sheet = Sheet::of([[("name", "a, \"b\"".to_owned()), ("|w|", "1".to_owned())]]);
         assert_eq!(sheet.csv(), "name,|w|\n\"a, \"\"b\"\"\",1\n");
         assert_eq!(sheet.markdown(1), "| name | \\|w\\| |\n| --- | ---: |\n| a, \"b\" | 1 |\n");
     }

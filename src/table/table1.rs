@@ -6,9 +6,8 @@
 //! friction. The paper tells neither how the cube was turned nor how often this was done, and the motion is chaotic:
 //! so there are many starts at rest, turned at random. The cubes of several starts are simulated together.
 
-use super::sheet::figure;
-use super::{Sheet, Spread, Watch, scene};
-use crate::output::exact;
+pub use super::printed::{Printed, ROWS, Row, STIFFNESSES};
+use super::{Spread, Watch, scene};
 use crate::scene::{Scene, random};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
 use crate::sim::model::Report;
@@ -16,87 +15,10 @@ use crate::sim::snapshot::Status;
 use crate::sim::state::State;
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use rayon::prelude::*;
-use serde::Serialize;
-use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// The names of the table's files: itself, the same as CSV, and each start as CSV.
 pub const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
-
-/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` where the paper says that it was too small to
-/// be measured.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Printed {
-    /// μ(α).
-    pub mean: Option<f64>,
-    /// σ(α).
-    pub deviation: Option<f64>,
-    /// max(α).
-    pub maximum: Option<f64>,
-}
-
-/// One row of the paper's Table 1 for all its k/m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
-    /// Its letter.
-    pub name: &'static str,
-    /// "Number of iteration": how often Eq. (15) is solved at each evaluation.
-    pub passes: u32,
-    /// For each of [`STIFFNESSES`] the time step ΔT (s), as printed, and what the paper found.
-    pub cases: [(f64, Printed); 3],
-}
-
-/// The ratios k/m of the paper (1/s²), in its order.
-pub const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
-
-/// The paper's Table 1 as printed.
-pub const ROWS: [Row; 4] = {
-    const fn printed(mean: f64, deviation: f64, maximum: f64) -> Printed {
-        const fn measured(number: f64) -> Option<f64> {
-            if number > 0.0 { Some(number) } else { None }
-        }
-        Printed { mean: measured(mean), deviation: measured(deviation), maximum: measured(maximum) }
-    }
-    const LESS: f64 = 0.0;
-    [
-        Row {
-            name: "A",
-            passes: 1,
-            cases: [
-                (0.006, printed(4.52554, 4.49862, 30.87597)),
-                (0.002, printed(1.987712, 1.68312, 9.119262)),
-                (0.0006, printed(1.301888, 1.297613, 7.570902)),
-            ],
-        },
-        Row {
-            name: "B",
-            passes: 1,
-            cases: [
-                (0.0006, printed(0.032915, 0.037503, 0.320008)),
-                (0.0002, printed(0.030974, 0.028445, 0.157926)),
-                (0.00006, printed(0.005511, 0.005129, 0.034552)),
-            ],
-        },
-        Row {
-            name: "C",
-            passes: 2,
-            cases: [
-                (0.006, printed(0.000493, 0.00211, 0.060352)),
-                (0.002, printed(LESS, 0.000001, 0.000017)),
-                (0.0006, printed(LESS, LESS, LESS)),
-            ],
-        },
-        Row {
-            name: "D",
-            passes: 3,
-            cases: [
-                (0.006, printed(LESS, LESS, 0.000001)),
-                (0.002, printed(LESS, LESS, LESS)),
-                (0.0006, printed(LESS, LESS, LESS)),
-            ],
-        },
-    ]
-};
 
 /// A way to find the rotation of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,11 +166,11 @@ pub struct Course {
 /// Table 1, measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table1 {
-    protocol: Protocol,
-    cases: Vec<Case>,
-    orientations: Vec<Orientation>,
+    pub(super) protocol: Protocol,
+    pub(super) cases: Vec<Case>,
+    pub(super) orientations: Vec<Orientation>,
     /// For each start, for each case.
-    courses: Vec<Course>,
+    pub(super) courses: Vec<Course>,
 }
 
 /// What all starts came to in one case.
@@ -428,13 +350,6 @@ impl Residuals {
     }
 }
 
-/// A figure of the paper in three digits, or fewer where its six decimals end before.
-fn as_printed(number: f64) -> String {
-    let short = format!("{number:.2e}");
-    let exponent = short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
-    format!("{number:.*}", (2 - exponent).clamp(0, 6) as usize)
-}
-
 impl Table1 {
     /// What all starts came to, case by case in the order of [`Protocol::cases`].
     pub fn summaries(&self) -> Vec<Summary> {
@@ -449,197 +364,6 @@ impl Table1 {
             }
         };
         self.cases.iter().enumerate().map(summary).collect()
-    }
-
-    /// The contents of [`FILES`].
-    pub fn files(&self) -> [String; 3] {
-        [self.markdown(), self.summary_sheet().csv(), self.course_sheet().csv()]
-    }
-
-    /// The table for people.
-    pub fn markdown(&self) -> String {
-        let Protocol { orientations, duration, .. } = self.protocol;
-        let plural = if orientations == 1 { "" } else { "s" };
-        let mut text = format!(
-            "<!-- {} -->\n\
-            # Table 1: evaluation values of approximation errors\n\n\
-            α of Eq. (18) in rad/s², at every evaluation of the forces in the {duration} s from the first contact on, of \
-            a free cube of side 0.1 m with 1 kg in each corner that falls 1 m onto a floor with restitution 1. g = 9.8 \
-            m/s², neither damping nor friction, semi-implicit Euler. μ, σ and max are the mean of α, its standard deviation \
-            and its largest value; k/m is in 1/s². Row A has one pass of the solver at each evaluation and steps of a tenth \
-            of the cycle, row B steps of a hundredth, row C two passes, row D three. The paper's figures are those of one start that it \
-            does not tell; ours are medians over {orientations} start{plural} at rest, turned at random, with the range \
-            over all of them in parentheses, but for σ. A dash among the paper's figures: below the lower limit of its \
-            measurable range; a dash for passes: the solver has none. Figures around 1e-9 and below are round-off.\n\n\
-            ## The paper's solver: Eq. (15), θ = atan |w|, true rotations accumulated, each evaluation starting from \
-            the last\n\n",
-            self.protocol.mark()
-        );
-        let summaries = self.summaries();
-        let (ours, others): (Vec<_>, Vec<_>) = summaries.iter().partition(|summary| summary.case.printed().is_some());
-        let range =
-            |spread: Spread| format!("{} ({} – {})", figure(spread.median), figure(spread.least), figure(spread.most));
-        let dash = |printed: Option<f64>| printed.map_or("–".to_owned(), as_printed);
-        let mut sheet = Sheet::new([
-            "k/m",
-            "row",
-            "passes",
-            "ΔT (s)",
-            "μ, paper",
-            "μ, here",
-            "σ, paper",
-            "σ, here",
-            "max, paper",
-            "max, here",
-        ]);
-        for Summary { case, mean, deviation, maximum, .. } in ours {
-            let printed = case.row.cases[case.stiffness].1;
-            sheet.rows.push([
-                format!("{:e}", case.stiffness_over_mass()),
-                case.row.name.to_owned(),
-                case.row.passes.to_string(),
-                case.step().to_string(),
-                dash(printed.mean),
-                range(mean),
-                dash(printed.deviation),
-                figure(deviation.median),
-                dash(printed.maximum),
-                range(maximum),
-            ]);
-        }
-        text += &sheet.markdown(2);
-        text += "\n## Better solvers on the same starts\n\n";
-        let mut sheet = Sheet::new(["solver", "k/m", "row", "passes", "ΔT (s)", "μ", "σ", "max"]);
-        for Summary { case, mean, deviation, maximum, .. } in others {
-            sheet.rows.push([
-                case.solver.words.to_owned(),
-                format!("{:e}", case.stiffness_over_mass()),
-                case.row.name.to_owned(),
-                case.passes().map_or("–".to_owned(), |passes| passes.to_string()),
-                case.step().to_string(),
-                range(mean),
-                figure(deviation.median),
-                range(maximum),
-            ]);
-        }
-        text += &sheet.markdown(3);
-        let diverged: usize = summaries.iter().map(|summary| summary.diverged).sum();
-        if diverged > 0 {
-            text += &format!("\n{diverged} of {} simulations blew up, and count until then.\n", self.courses.len());
-        }
-        text
-    }
-
-    /// The table for programs, all digits.
-    fn summary_sheet(&self) -> Sheet<17> {
-        let mut sheet = Sheet::new([
-            "solver",
-            "row",
-            "stiffness_over_mass",
-            "passes",
-            "step",
-            "paper_mean",
-            "paper_deviation",
-            "paper_maximum",
-            "orientations",
-            "mean_median",
-            "mean_least",
-            "mean_most",
-            "deviation_median",
-            "maximum_median",
-            "maximum_least",
-            "maximum_most",
-            "diverged",
-        ]);
-        let number = |number: Option<f64>| number.map_or(String::new(), exact);
-        for Summary { case, mean, deviation, maximum, diverged } in self.summaries() {
-            let printed = case.printed();
-            sheet.rows.push([
-                case.solver.name.to_owned(),
-                case.row.name.to_owned(),
-                exact(case.stiffness_over_mass()),
-                case.passes().map_or(String::new(), |passes| passes.to_string()),
-                exact(case.step()),
-                number(printed.and_then(|printed| printed.mean)),
-                number(printed.and_then(|printed| printed.deviation)),
-                number(printed.and_then(|printed| printed.maximum)),
-                self.orientations.len().to_string(),
-                exact(mean.median),
-                exact(mean.least),
-                exact(mean.most),
-                exact(deviation.median),
-                exact(maximum.median),
-                exact(maximum.least),
-                exact(maximum.most),
-                diverged.to_string(),
-            ]);
-        }
-        sheet
-    }
-
-    /// Each start in each case, all digits.
-    fn course_sheet(&self) -> Sheet<15> {
-        let mut sheet = Sheet::new([
-            "solver",
-            "row",
-            "stiffness_over_mass",
-            "passes",
-            "step",
-            "orientation",
-            "axis_x",
-            "axis_y",
-            "axis_z",
-            "angle",
-            "evaluations",
-            "mean",
-            "deviation",
-            "maximum",
-            "status",
-        ]);
-        for (at, case) in self.cases.iter().enumerate() {
-            let courses = self.courses.iter().skip(at).step_by(self.cases.len());
-            for (number, (Orientation { axis, angle }, course)) in self.orientations.iter().zip(courses).enumerate() {
-                sheet.rows.push([
-                    case.solver.name.to_owned(),
-                    case.row.name.to_owned(),
-                    exact(case.stiffness_over_mass()),
-                    case.passes().map_or(String::new(), |passes| passes.to_string()),
-                    exact(case.step()),
-                    number.to_string(),
-                    exact(axis.x),
-                    exact(axis.y),
-                    exact(axis.z),
-                    exact(*angle),
-                    course.evaluations.to_string(),
-                    exact(course.mean),
-                    exact(course.deviation),
-                    exact(course.maximum),
-                    if course.diverged { "diverged" } else { "ok" }.to_owned(),
-                ]);
-            }
-        }
-        sheet
-    }
-
-    /// The table as one document.
-    pub fn json(&self) -> Value {
-        let row = |summary: &Summary| {
-            let Summary { case, mean, deviation, maximum, diverged } = summary;
-            json!({
-                "solver": case.solver.name,
-                "row": case.row.name,
-                "stiffness_over_mass": case.stiffness_over_mass(),
-                "passes": case.passes(),
-                "step": case.step(),
-                "paper": case.printed(),
-                "mean": mean,
-                "deviation": deviation,
-                "maximum": maximum,
-                "diverged": diverged,
-            })
-        };
-        let rows: Vec<_> = self.summaries().iter().map(row).collect();
-        json!({ "orientations": self.orientations.len(), "duration": self.protocol.duration, "rows": rows })
     }
 }
 
@@ -687,23 +411,6 @@ mod tests {
             let Course { evaluations, mean, deviation, maximum, .. } = course(bad);
             assert_eq!(evaluations, bad.len() as u64);
             assert!(mean.is_nan() && deviation.is_nan() && maximum.is_nan(), "{bad:?}");
-        }
-    }
-
-    #[test]
-    fn the_papers_figures_have_three_digits_or_six_decimals() {
-        for (number, text) in [
-            (30.875_97, "30.9"),
-            (4.498_62, "4.50"),
-            (1.297_613, "1.30"),
-            (9.999, "10.0"),
-            (0.320_008, "0.320"),
-            (0.030_974, "0.0310"),
-            (0.000_493, "0.000493"),
-            (0.000_017, "0.000017"),
-            (0.000_001, "0.000001"),
-        ] {
-            assert_eq!(as_printed(number), text);
         }
     }
 

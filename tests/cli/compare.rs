@@ -443,7 +443,7 @@ fn what_is_no_picture_never_passes() {
             "has a palette",
         ),
         ("animated.png", with(&|encoder| encoder.set_animated(1, 0).unwrap(), 16 * 8 * 3), "is an animation"),
-        ("untold.png", text("localshape:version", "1"), "`localshape:state` is missing"),
+        ("untold.png", text("localshape:version", "1"), "`localshape:frame` is missing"),
         ("frame.png", states("-3", FULL), "`localshape:frame` is missing"),
         ("digest.png", states("3", "no-digest run"), "`localshape:state` is missing"),
         ("short.png", states("3", "ab run"), "`localshape:state` is missing"),

@@ -7,7 +7,8 @@ mod players;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use browser::{Browser, PLAIN, SHIFT};
-use localshape::golden::report::{Course, Moment, Report, Sheet};
+use localshape::golden::report::{PicturePair, Report};
+use localshape::golden::{Displacement, FrameDifference, RunDifference};
 use serde_json::{Value, json};
 
 /// Pictures are so large (px). A square of `INK` lies at the left of the expected ones, at the right of the actual ones.
@@ -38,9 +39,9 @@ fn square_at([left, top]: [u32; 2]) -> Vec<u8> {
 }
 
 /// A picture that passes, or whose state moved.
-fn sheet(name: &str, frame: Option<u64>, passes: bool) -> Sheet {
+fn sheet(name: &str, frame: Option<u64>, passes: bool) -> PicturePair {
     let visible = if passes { 3 } else { 512 };
-    Sheet {
+    PicturePair {
         name: name.into(),
         frame,
         time: frame.map(|frame| frame as f64 / 60.0),
@@ -57,21 +58,16 @@ fn sheet(name: &str, frame: Option<u64>, passes: bool) -> Sheet {
 }
 
 /// Two runs of which the second one moves from frame 20 on, less than can be known at first and nobody knows how far at last.
-fn courses(frames: u64) -> Vec<Course> {
+fn courses(frames: u64) -> Vec<RunDifference> {
     let course = |run: &str, moved_from: u64| {
         let moment = |frame: u64| {
             let moved = frame >= moved_from;
             let far = 1e-10 * 1.6_f64.powi(frame.saturating_sub(moved_from) as i32);
-            let displacement = if !moved { Some(0.0) } else { (frame < 38).then_some(far) };
-            Moment {
-                frame,
-                time: Some(frame as f64 / 60.0),
-                moved,
-                displacement,
-                node: displacement.and(moved.then_some(12)),
-            }
+            let is_known = moved && frame < 38;
+            let displacement = is_known.then_some(Displacement { frame, node: 12, distance: far, precision: 1e-9 });
+            FrameDifference { frame, time: Some(frame as f64 / 60.0), moved, displacement }
         };
-        Course { run: run.into(), precision: 1e-9, frames: (0..frames).map(moment).collect() }
+        RunDifference { run: run.into(), precision: 1e-9, moments: (0..frames).map(moment).collect() }
     };
     vec![course("Local shape", u64::MAX), course("Mass-spring", 20)]
 }
@@ -452,8 +448,8 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     let nothing = Report { courses: vec![], pictures: vec![], ..sequence() };
     let states_only = Report { pictures: vec![], ..sequence() };
     let mut many = Report { courses: courses(2000), ..sequence() };
-    let unseen = Sheet { expected: None, actual: None, difference: None, ..sheet("", None, false) };
-    let named = |frame| Sheet { name: format!("frame-{frame:05}.png"), frame: Some(frame), ..unseen.clone() };
+    let unseen = PicturePair { expected: None, actual: None, difference: None, ..sheet("", None, false) };
+    let named = |frame| PicturePair { name: format!("frame-{frame:05}.png"), frame: Some(frame), ..unseen.clone() };
     many.pictures = (0..2000).map(named).collect();
     for (report, width) in [(&single, 360), (&nothing, 360), (&states_only, 360), (&many, 360)] {
         browser.resize([width, 900]);

@@ -3,6 +3,7 @@
 //! The page is made of `page.html`, `page.css`, `strip.js` and `page.js`. What it shows stands in it as JSON, the pictures too; what
 //! is said of the whole is written into the page itself, so that it can be read without scripts.
 
+use super::states::RunDifference;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Serialize, Serializer};
@@ -37,41 +38,15 @@ pub struct Report {
     pub accept: Option<String>,
     /// The graphics adapters that drew the expected and the actual pictures; `None` if the pictures do not say.
     pub drawn_by: [Option<String>; 2],
-    /// One for each run whose states were compared; there may be none.
-    pub courses: Vec<Course>,
+    /// The runs whose states were compared; there may be none.
+    pub courses: Vec<RunDifference>,
     /// The pictures in the order of the sequence.
-    pub pictures: Vec<Sheet>,
-}
-
-/// How far the states of a run are from the expected ones, from its first frame to its last.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Course {
-    /// The run's name.
-    pub run: String,
-    /// What displacements are known to (m): shorter ones may be none. 0 if they are known exactly.
-    pub precision: f64,
-    /// Its frames in order.
-    pub frames: Vec<Moment>,
-}
-
-/// One frame of a run beside the expected one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Moment {
-    /// The frame's number.
-    pub frame: u64,
-    /// Its time (s); `None` if it is not known.
-    pub time: Option<f64>,
-    /// Whether the state is another one: whether its digest differs.
-    pub moved: bool,
-    /// The largest displacement of a node (m); `None` where it is not known.
-    pub displacement: Option<f64>,
-    /// The node that is displaced most; `None` where it is not known.
-    pub node: Option<usize>,
+    pub pictures: Vec<PicturePair>,
 }
 
 /// One picture beside the expected one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sheet {
+pub struct PicturePair {
     /// Its file's name, or its path in the folder.
     pub name: String,
     /// The frame that it shows; `None` if it does not say.
@@ -181,7 +156,7 @@ impl Report {
     /// The pictures with their verdicts, for readers without scripts.
     fn list(&self) -> String {
         let mut html = String::new();
-        for Sheet { name, words, passes, .. } in &self.pictures {
+        for PicturePair { name, words, passes, .. } in &self.pictures {
             let sign = if *passes { "✓" } else { "✕" };
             let _ = writeln!(html, "<li>{sign} <code>{}</code> {}</li>", escaped(name), escaped(words));
         }

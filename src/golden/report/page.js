@@ -62,6 +62,7 @@
       image.alt = `${title}: ${sheet.name}`;
       image.decoding = "sync"; // No blank between two pictures.
       image.addEventListener("load", () => {
+        if (!image.isConnected) return; // Another picture has been chosen meanwhile.
         size.textContent = `${image.naturalWidth} × ${image.naturalHeight}`;
         layout();
       });

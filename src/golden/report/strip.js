@@ -30,7 +30,7 @@ function showSequence(report, go) {
 
   /** Where something happened: frames if the sequence has any, else pictures one after the other. */
   const framed =
-    report.courses.some((course) => course.frames.length > 0) || sheets.every((sheet) => sheet.frame !== null);
+    report.courses.some((course) => course.moments.length > 0) || sheets.every((sheet) => sheet.frame !== null);
   const stations = (() => {
     const found = new Map();
     const station = (key, time) => {
@@ -38,7 +38,7 @@ function showSequence(report, go) {
       return found.get(key);
     };
     report.courses.forEach((course, run) => {
-      for (const moment of course.frames) station(moment.frame, moment.time).moments[run] = moment;
+      for (const moment of course.moments) station(moment.frame, moment.time).moments[run] = moment;
     });
     sheets.forEach((sheet, index) => {
       if (!framed) station(index + 1, sheet.time).pictures.push(index);
@@ -51,17 +51,16 @@ function showSequence(report, go) {
   function kind(moment, precision) {
     if (!moment.moved) return "same";
     if (moment.displacement === null) return "unknown";
-    return moment.displacement <= precision ? "below" : "known";
+    return moment.displacement.distance <= precision ? "below" : "known";
   }
 
   function momentInWords(moment, precision) {
     if (!moment) return "no such frame";
-    const node = moment.node === null ? "" : ` (node ${moment.node})`;
     const words = {
       same: () => "same state",
       unknown: () => "moved, nobody knows how far",
       below: () => (precision > 0 ? `moved by less than ${length(precision)}` : "another state, no node displaced"),
-      known: () => `moved by ${length(moment.displacement)}${node}`,
+      known: () => `moved by ${length(moment.displacement.distance)} (node ${moment.displacement.node})`,
     };
     return words[kind(moment, precision)]();
   }
@@ -137,11 +136,10 @@ function showSequence(report, go) {
   /** Displacements of all runs on a logarithmic scale; lanes for what has no place on it. Returns where they end. */
   function drawDisplacements(svg, top) {
     draw(svg, "text", { x: 0, y: top - 6, class: "row-name" }, "Largest displacement of a node");
-    const all = report.courses.flatMap(({ frames, precision }) =>
-      frames.map((moment) => ({ kind: kind(moment, precision), displacement: moment.displacement })),
-    );
-    const has = (kind) => all.some((moment) => moment.kind === kind);
-    const known = all.filter((moment) => moment.kind === "known").map((moment) => Math.log10(moment.displacement));
+    const logarithm = (moment) => Math.log10(moment.displacement.distance);
+    const of = (wanted) =>
+      report.courses.flatMap(({ moments, precision }) => moments.filter((moment) => kind(moment, precision) === wanted));
+    const known = of("known").map(logarithm);
     let y = top + LINE / 2;
     const lanes = {};
     const lane = (kind, words) => {
@@ -149,7 +147,7 @@ function showSequence(report, go) {
       lanes[kind] = y;
       y += LINE;
     };
-    if (has("unknown")) lane("unknown", "unknown");
+    if (of("unknown").length > 0) lane("unknown", "unknown");
     let scale = null;
     if (known.length > 0) {
       const lowest = Math.floor(known.reduce((a, b) => Math.min(a, b)) + 1e-9);
@@ -162,12 +160,12 @@ function showSequence(report, go) {
     }
     const precision = report.courses[0].precision;
     const isCommon = report.courses.every((course) => course.precision === precision);
-    if (has("below")) lane("below", !isCommon ? "below" : precision > 0 ? `< ${length(precision, 1)}` : "0 m");
+    if (of("below").length > 0) lane("below", !isCommon ? "below" : precision > 0 ? `< ${length(precision, 1)}` : "0 m");
     lanes.same = y;
     tick(svg, y, "same", "axis");
     const level = (moment, precision) => {
       const its = kind(moment, precision);
-      return its === "known" ? scale(Math.log10(moment.displacement)) : lanes[its];
+      return its === "known" ? scale(logarithm(moment)) : lanes[its];
     };
     report.courses.forEach(({ precision }, run) => {
       let [line, area, before] = ["", "", false];

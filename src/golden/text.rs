@@ -1,0 +1,105 @@
+//! A comparison as text, for terminals and messages of tests.
+
+use super::side::Kind;
+use super::{Compared, Comparison};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// So many pictures are told one by one.
+const MOST_TOLD: usize = 12;
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(true))
+    }
+}
+
+impl Comparison {
+    /// All of it in words, with the command that accepts what is there if that is asked for.
+    pub(crate) fn told(&self, with_command: bool) -> String {
+        let mut text = String::new();
+        self.tell(&mut text).expect("a string takes all");
+        if let Some(command) = self.command_to_accept().filter(|_| with_command) {
+            let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
+            text += &format!("{what}: {command}\n");
+        } else if let (Kind::Absent, Some(why)) = (self.sides[0].kind, self.unfit().filter(|_| with_command)) {
+            text += &format!("it cannot be made: {why}\n");
+        }
+        text
+    }
+
+    fn tell(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        if self.sides[0].kind == Kind::Absent {
+            let what = match self.sides[1].kind {
+                Kind::Picture => "picture",
+                Kind::Folder => "folder",
+                Kind::Golden | Kind::Absent | Kind::Drawn => "golden",
+            };
+            writeln!(f, "the {what} {} is missing", self.sides[0].origin.display())?;
+            return self.tell_end(f);
+        }
+        // Of two single pictures nobody knows which frame was first.
+        let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
+        for moved in self.moved.iter().filter(|_| !are_pictures) {
+            writeln!(f, "state moved: {moved}")?;
+        }
+        let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
+        for Compared { name, verdict, .. } in wrong.iter().take(MOST_TOLD) {
+            writeln!(f, "{name}: {verdict}")?;
+        }
+        if wrong.len() > MOST_TOLD {
+            writeln!(f, "and {} more", wrong.len() - MOST_TOLD)?;
+        }
+        for (run, step) in
+            self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
+        {
+            writeln!(f, "{run}: {step}")?;
+        }
+        if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
+            // A single picture that passes is told, too.
+            writeln!(f, "{}: {}", only.name, only.verdict)?;
+        }
+        if self.pictures.len() > 1 {
+            match wrong.len() {
+                0 => writeln!(f, "{}", self.pass())?,
+                1 => writeln!(f, "{}: 1 of {} pictures is not as expected", self.verdict(), self.pictures.len())?,
+                count => {
+                    writeln!(f, "{}: {count} of {} pictures are not as expected", self.verdict(), self.pictures.len())?;
+                }
+            }
+        }
+        if let Some(moved) = self.first_moved().filter(|_| self.pictures.len() > 1) {
+            writeln!(f, "the first picture whose state moved is {}", moved.name)?;
+        }
+        if let (states @ 1.., true) = (self.states_compared(), self.moved.is_empty() && self.sides[0].record.is_some())
+        {
+            writeln!(f, "{states} states are the same")?;
+        }
+        self.tell_end(f)
+    }
+
+    /// What is said of pictures that all pass.
+    pub(super) fn pass(&self) -> String {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for picture in &self.pictures {
+            *counts.entry(picture.verdict.kind()).or_default() += 1;
+        }
+        let counts: Vec<_> = counts.into_iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        let distances = self.pictures.iter().filter_map(|picture| Some((picture.verdict.distance()?, &picture.name)));
+        let nearest = distances.max_by(|one, other| one.0.of_limit().total_cmp(&other.0.of_limit()));
+        let nearest = nearest.map_or_else(String::new, |(distance, name)| {
+            format!("; nearest to its limit is {name} with {:.0} % of it", 100.0 * distance.of_limit())
+        });
+        match &self.pictures[..] {
+            [only] => format!("1 picture: {}", only.verdict),
+            all => format!("{} pictures: {}{nearest}", all.len(), counts.join(", ")),
+        }
+    }
+
+    fn tell_end(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        if self.same_scene == Some(false) {
+            writeln!(f, "the scene files are not the same")?;
+        }
+        self.notes.iter().try_for_each(|note| writeln!(f, "{note}"))
+    }
+}

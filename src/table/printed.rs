@@ -1,0 +1,107 @@
+//! Table 1 of the paper (section 4), as printed.
+
+use serde::Serialize;
+
+/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` where the paper says that it was too small to
+/// be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Printed {
+    /// μ(α).
+    pub mean: Option<f64>,
+    /// σ(α).
+    pub deviation: Option<f64>,
+    /// max(α).
+    pub maximum: Option<f64>,
+}
+
+/// One row of the paper's Table 1 for all its k/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Its letter.
+    pub name: &'static str,
+    /// "Number of iteration": how often Eq. (15) is solved at each evaluation.
+    pub passes: u32,
+    /// For each of [`STIFFNESSES`] the time step ΔT (s), as printed, and what the paper found.
+    pub cases: [(f64, Printed); 3],
+}
+
+/// The ratios k/m of the paper (1/s²), in its order.
+pub const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
+
+/// The paper's Table 1 as printed.
+pub const ROWS: [Row; 4] = {
+    const fn printed(mean: f64, deviation: f64, maximum: f64) -> Printed {
+        const fn measured(number: f64) -> Option<f64> {
+            if number > 0.0 { Some(number) } else { None }
+        }
+        Printed { mean: measured(mean), deviation: measured(deviation), maximum: measured(maximum) }
+    }
+    const LESS: f64 = 0.0;
+    [
+        Row {
+            name: "A",
+            passes: 1,
+            cases: [
+                (0.006, printed(4.52554, 4.49862, 30.87597)),
+                (0.002, printed(1.987712, 1.68312, 9.119262)),
+                (0.0006, printed(1.301888, 1.297613, 7.570902)),
+            ],
+        },
+        Row {
+            name: "B",
+            passes: 1,
+            cases: [
+                (0.0006, printed(0.032915, 0.037503, 0.320008)),
+                (0.0002, printed(0.030974, 0.028445, 0.157926)),
+                (0.00006, printed(0.005511, 0.005129, 0.034552)),
+            ],
+        },
+        Row {
+            name: "C",
+            passes: 2,
+            cases: [
+                (0.006, printed(0.000493, 0.00211, 0.060352)),
+                (0.002, printed(LESS, 0.000001, 0.000017)),
+                (0.0006, printed(LESS, LESS, LESS)),
+            ],
+        },
+        Row {
+            name: "D",
+            passes: 3,
+            cases: [
+                (0.006, printed(LESS, LESS, 0.000001)),
+                (0.002, printed(LESS, LESS, LESS)),
+                (0.0006, printed(LESS, LESS, LESS)),
+            ],
+        },
+    ]
+};
+
+/// A figure of the paper in three digits, or fewer where its six decimals end before.
+pub(super) fn as_printed(number: f64) -> String {
+    let short = format!("{number:.2e}");
+    let exponent = short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
+    format!("{number:.*}", (2 - exponent).clamp(0, 6) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_printed;
+
+    #[test]
+    fn the_papers_figures_have_three_digits_or_six_decimals() {
+        for (number, text) in [
+            (30.875_97, "30.9"),
+            (4.498_62, "4.50"),
+            (1.297_613, "1.30"),
+            (9.999, "10.0"),
+            (0.320_008, "0.320"),
+            (0.030_974, "0.0310"),
+            (0.000_493, "0.000493"),
+            (0.000_017, "0.000017"),
+            (0.000_001, "0.000001"),
+        ] {
+            assert_eq!(as_printed(number), text);
+        }
+    }
+}
