@@ -6,7 +6,7 @@
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
 use localshape::sim::crew::Crew;
-use localshape::sim::floor::multiply_adds;
+use localshape::sim::floor::{lanes, limit_lanes, multiply_adds};
 use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
 use std::time::Instant;
@@ -15,6 +15,8 @@ use std::time::Instant;
 const FLOOR: f64 = 320.0;
 /// Elements times steps in one sample: so many steps that what happens once a call, as once a frame, is a small part.
 const WORK: u64 = 3_000_000;
+/// Steps in one sample at least, for the same reason: each call keeps a copy of the state.
+const LEAST: u64 = 8;
 /// Cells along an edge.
 const SIZES: [u64; 6] = [3, 10, 20, 40, 80, 160];
 
@@ -34,7 +36,7 @@ impl Case {
         let count = scene.body.elements.len() as u64;
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
-        Self { name, world, count, steps: (WORK / count).max(1), times: Vec::new() }
+        Self { name, world, count, steps: (WORK / count).max(LEAST), times: Vec::new() }
     }
 
     fn sample(&mut self) {
@@ -78,6 +80,15 @@ fn floor() -> f64 {
     start.elapsed().as_secs_f64() * 1e9 / count as f64 * FLOOR
 }
 
+/// Something done in vectors of so many doubles at most.
+fn in_lanes<T>(most: usize, work: impl FnOnce() -> T) -> T {
+    let widest = lanes();
+    limit_lanes(most);
+    let done = work();
+    limit_lanes(widest);
+    done
+}
+
 /// Bytes a nanosecond of reading two and writing one array that fit no cache.
 fn bandwidth() -> f64 {
     let count = 1 << 24;
@@ -93,11 +104,11 @@ fn bandwidth() -> f64 {
     (0..5).map(|_| pass(&mut to)).fold(0.0, f64::max)
 }
 
-/// Times all cases and the floor in turns.
-fn measure(cases: &mut [Case], samples: usize) -> f64 {
-    let mut least = f64::INFINITY;
+/// Times all cases and the floor in turns; the latter, too, in vectors of four doubles.
+fn measure(cases: &mut [Case], samples: usize) -> [f64; 2] {
+    let mut least = [f64::INFINITY; 2];
     for _ in 0..samples {
-        least = least.min(floor());
+        least = [least[0].min(floor()), least[1].min(in_lanes(4, floor))];
         cases.iter_mut().for_each(|case| case.sample());
     }
     least
@@ -157,6 +168,9 @@ fn main() {
         let mut cases: Vec<_> = (0..runs.len()).map(|run| Case::new(names[run], &scene_of_lattice, run, 1)).collect();
         cases.push(Case::new("shape, 2 threads", &scene_of_lattice, 0, 2));
         cases.push(Case::new("springs, all, 2 threads", &scene_of_lattice, 2, 2));
+        if lanes() > 4 {
+            cases.push(in_lanes(4, || Case::new("shape, AVX2", &scene_of_lattice, 0, 1)));
+        }
         let one = [("kind = 'shape-based'", "")];
         let other =
             |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 1);
@@ -182,17 +196,20 @@ fn main() {
             41..=80 => 7,
             _ => 4,
         };
-        let floor = measure(&mut cases, samples);
-        println!("{cells}³ cubes, floor {floor:.2}");
-        print(&cases, floor);
+        let floors = measure(&mut cases, samples);
+        println!("{cells}³ cubes, floor {:.2}", floors[0]);
+        print(&cases, floors[0]);
         println!();
-        results.push((cells, floor, cases));
+        results.push((cells, floors, cases));
     }
-    if let Some((_, floor, cases)) = results.iter().find(|(cells, ..)| *cells == 40) {
+    if let Some((_, [floor, narrow], cases)) = results.iter().find(|(cells, ..)| *cells == 40) {
         let best = |name: &str| find(cases, name).best();
         // Of paired samples, the best speed-up.
         let pairs = find(cases, "shape").times.iter().zip(&find(cases, "shape, 2 threads").times);
         println!("ratio-to-floor: {:.2}", best("shape") / floor);
+        if lanes() > 4 {
+            println!("ratio-to-floor-avx2: {:.2}", best("shape, AVX2") / narrow);
+        }
         println!("general-to-floor: {:.2}", best("irregular hexahedra") / floor);
         println!("shape-to-spring: {:.2}", best("shape") / best("springs, all (13 a cube)"));
         println!("threads-2: {:.2}", pairs.map(|(one, two)| one / two).fold(0.0, f64::max));

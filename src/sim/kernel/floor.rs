@@ -1,6 +1,18 @@
 //! The machine's floor: how fast it multiplies and adds.
 
-use super::lanes::{Lanes, Set, Work};
+use super::lanes::{Lanes, Set, WIDEST, Work};
+use std::sync::atomic::Ordering;
+
+/// The number of doubles in the widest vectors of this processor, of those that [`limit_lanes`] allows.
+pub fn lanes() -> usize {
+    Set::best().lanes()
+}
+
+/// Lets simulations made from now on, and [`multiply_adds`], work with vectors of at most so many doubles, so that
+/// benchmarks can tell what narrower vectors cost. It changes no bit of a state.
+pub fn limit_lanes(most: usize) {
+    WIDEST.store(most, Ordering::Relaxed);
+}
 
 /// Multiplies and adds in all lanes of the widest vectors of this processor, in twelve independent chains, and returns how
 /// many multiply-adds of one lane that were. A step of the shape model on a lattice needs at least 320 of them a box: 155 to

@@ -8,6 +8,7 @@
 #![expect(unsafe_code, reason = "vector instructions, which a processor may lack, and unchecked loads and stores")]
 
 use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// An array of two, three, four or eight values, each by an expression of its index. Not `array::map`: its closures are functions of
 /// their own, compiled without the vector set, and not always made part of the kernel.
@@ -259,10 +260,27 @@ enum Kind {
     Neon,
 }
 
+/// The most lanes that [`Set::best`] may have.
+pub(super) static WIDEST: AtomicUsize = AtomicUsize::new(MOST);
+
 impl Set {
-    /// The widest that this processor has.
+    /// The widest that this processor has and [`WIDEST`] allows.
     pub(in crate::sim) fn best() -> Self {
-        Self::all().last().unwrap_or(Self(Kind::Portable))
+        let widest = WIDEST.load(Ordering::Relaxed);
+        Self::all().filter(|set| set.lanes() <= widest).last().unwrap_or(Self(Kind::Portable))
+    }
+
+    /// The number of lanes.
+    pub(super) fn lanes(self) -> usize {
+        match self.0 {
+            Kind::Portable => portable::Vector::WIDTH,
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => x86::Avx2::WIDTH,
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512 => x86::Avx512::WIDTH,
+            #[cfg(target_arch = "aarch64")]
+            Kind::Neon => neon::Vector::WIDTH,
+        }
     }
 
     /// All that this processor has, the narrowest first. None changes a bit of a result.

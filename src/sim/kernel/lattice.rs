@@ -810,6 +810,10 @@ impl Sweep<'_> {
     /// loops leave the processor no time to foresee them.
     #[inline(always)]
     fn expect<L: Lanes>(&self, plane: usize, at: usize) {
+        // Vectors of less than a cache line share them.
+        if !at.is_multiple_of(MOST) {
+            return;
+        }
         let turns = self.turns.wrapping_add(slot(plane * self.box_stride + at, 4));
         let _ = each!(4, part => L::expect(turns.wrapping_add(part * MOST)));
         let ahead = plane * self.stride + at + self.grid.row() + 2 * MOST;

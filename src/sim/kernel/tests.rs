@@ -13,7 +13,7 @@ use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use crate::sim::motion::{Ease, Key, Motion, Place};
+use crate::sim::motion::{Ease, Key, Motion, Offset};
 use crate::sim::rotation::{best, davenport1968, moment, planar};
 use crate::sim::state::State;
 use crate::sim::topology::Springs;
@@ -487,9 +487,9 @@ fn springs_in_several_slabs_step_like_the_reference() {
 /// springs in families and others.
 #[test]
 fn what_holds_and_moves_is_that_of_the_reference() {
-    let place = |x: f64, turn: f64| Place { shift: DVec3::new(x, 0.02, 0.0), turn: DVec3::Z * turn };
+    let offset = |x: f64, turn: f64| Offset { shift: DVec3::new(x, 0.02, 0.0), rotation: DVec3::Z * turn };
     let keys = [(0.0, 0.0, 0.0), (0.1, 0.03, 0.2), (0.15, 0.01, 0.1)];
-    let keys = keys.map(|(time, x, turn)| Key { time, place: place(x, turn) }).to_vec();
+    let keys = keys.map(|(time, x, turn)| Key { time, offset: offset(x, turn) }).to_vec();
     let dragging = Motion::Keys { keys, ease: Ease::Smooth, repeat: false };
     let grip = |nodes: &[u32], from: f64, until: f64, motion: &Motion| Grip {
         nodes: nodes.to_vec(),
