@@ -505,7 +505,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
     ];
     let some_time = vec![grip(&[5, 12], 0.02, 0.03, &dragging)];
     // It comes along with the nodes and pushes: nothing rebounds, which would cost digits.
-    let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: place(0.3, 0.4) };
+    let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: offset(0.3, 0.4) };
     let paddle = Obstacle {
         shape: Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 },
         motion: swing,
