@@ -25,7 +25,7 @@ pub(super) fn expected(schema: &Json) -> String {
 }
 
 /// The numbers that are allowed, in words.
-pub(super) fn range(
+pub(in crate::scene) fn range(
     noun: &str,
     least: Option<f64>,
     most: Option<f64>,
@@ -45,7 +45,7 @@ pub(super) fn range(
 }
 
 /// The first sentence of a description.
-pub(super) fn first_sentence(text: &str) -> &str {
+pub(in crate::scene) fn first_sentence(text: &str) -> &str {
     let ends = text.match_indices(". ").find(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
     ends.map_or(text, |(at, _)| &text[..=at])
 }

@@ -1,6 +1,6 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 
-mod expect;
+pub(super) mod expect;
 mod keys;
 
 use super::schema::{choices, variants};
