@@ -17,7 +17,8 @@ pub(crate) fn figures() -> String {
 
 /// An introduction, then one section for each table.
 fn written(introduction: &str, schema: &Value) -> String {
-    let mut reference = Reference { text: introduction.to_owned(), sections: Vec::new(), next: Vec::new() };
+    let mut reference =
+        Reference { text: introduction.to_owned(), sections: Vec::new(), lists: Vec::new(), next: Vec::new() };
     reference.text += "\n## Top level\n";
     reference.body(schema, "");
     reference.finish();
@@ -29,6 +30,8 @@ struct Reference<'s> {
     text: String,
     /// Tables that have a section, each with its path. A table that occurs at several paths has one section.
     sections: Vec<(&'s Value, String)>,
+    /// Lists of choices that were written, each with the path of its key. Elsewhere they are referred to.
+    lists: Vec<(&'s Value, String)>,
     /// Tables of the section just written, whose sections follow it.
     next: Vec<(&'s Value, String)>,
 }
@@ -57,7 +60,7 @@ impl<'s> Reference<'s> {
         let (_, first) = kinds[0];
         let shared = |key: &str, value: &Value| kinds.iter().all(|(_, kind)| kind["properties"][key] == *value);
         for (name, kind) in &kinds {
-            self.text += &format!("\n**`{tag} = \"{name}\"`** {}\n", description(kind));
+            self.text += &format!("\n**`{tag} = \"{name}\"`**: {}\n", description(kind));
             self.keys(kind, path, |key, value| key != tag && !shared(key, value));
         }
         self.text += &format!("\nKeys of every `{tag}`:\n");
@@ -80,21 +83,30 @@ impl<'s> Reference<'s> {
             } else if let Some(default) = value.get("default").and_then(default) {
                 kind += &format!(", default `{default}`");
             }
+            let choices = described_choices(value);
+            if let Some((_, path)) = self.lists.iter().find(|(known, _)| Some(*known) == choices) {
+                self.text += &format!("- **`{key}`** ({kind}, as for `{path}`): {meaning}\n");
+                continue;
+            }
             self.text += &format!("- **`{key}`** ({kind}): {meaning}\n");
-            for choice in described_choices(value) {
+            for choice in choices.into_iter().flat_map(entries) {
                 self.text += &format!("  - `{}`: {}\n", choice["const"], description(choice));
             }
+            self.lists.extend(choices.map(|choices| (choices, joined(path, key))));
         }
     }
 
     /// The anchor of the section of a table, which is written later unless there is one already.
     fn section(&mut self, table: &'s Value, path: &str, key: &str) -> String {
         let inner = table_of(table).expect("a table");
-        let known = self.sections.iter().find(|(known, _)| known["properties"] == inner["properties"] && known["oneOf"] == inner["oneOf"]);
+        let known = self
+            .sections
+            .iter()
+            .find(|(known, _)| known["properties"] == inner["properties"] && known["oneOf"] == inner["oneOf"]);
         let path = match known {
             Some((_, path)) => path.clone(),
             None => {
-                let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+                let path = joined(path, key);
                 self.sections.push((inner, path.clone()));
                 self.next.push((table, path.clone()));
                 path
@@ -102,6 +114,10 @@ impl<'s> Reference<'s> {
         };
         path.replace('.', "")
     }
+}
+
+fn joined(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 fn description(schema: &Value) -> &str {
@@ -124,14 +140,13 @@ fn kind(schema: &Value) -> String {
     }
     if let Some(choices) = choices(schema) {
         // Those with descriptions stand in a list of their own.
-        let described = described_choices(schema).next().is_some();
+        let described = described_choices(schema).is_some();
         let quoted: Vec<_> = choices.iter().map(|choice| format!("`\"{choice}\"`")).collect();
         return if described { "string".into() } else { quoted.join(" or ") };
     }
     let bound = |keyword: &str| schema[keyword].as_f64();
-    let numbers = |noun| {
-        range(noun, bound("minimum"), bound("maximum"), bound("exclusiveMinimum"), bound("exclusiveMaximum"))
-    };
+    let numbers =
+        |noun| range(noun, bound("minimum"), bound("maximum"), bound("exclusiveMinimum"), bound("exclusiveMaximum"));
     match (schema["type"].as_str(), schema["format"].as_str()) {
         (Some("number"), _) => numbers("number"),
         (Some("integer"), _) => numbers("whole number"),
@@ -154,11 +169,15 @@ fn kind(schema: &Value) -> String {
     }
 }
 
-/// The strings that a value may be, of which each has a description: its own, or those of its entries.
-fn described_choices(schema: &Value) -> impl Iterator<Item = &Value> {
+/// The strings that a value or its entries may be, of which each has a description.
+fn described_choices(schema: &Value) -> Option<&Value> {
     let inner = if schema["type"] == "array" { &schema["items"] } else { schema };
-    let alternatives = [&inner["oneOf"], &inner["anyOf"][1]["oneOf"]].into_iter().find_map(Value::as_array);
-    alternatives.into_iter().flatten().filter(|choice| choice["const"].is_string())
+    let lists = [&inner["oneOf"], &inner["anyOf"][1]["oneOf"]];
+    lists.into_iter().find(|list| list[0]["const"].is_string())
+}
+
+fn entries(array: &Value) -> impl Iterator<Item = &Value> {
+    array.as_array().into_iter().flatten()
 }
 
 /// A default as one would type it; none for tables and for what is empty.

@@ -36,10 +36,9 @@ fn the_schema_is_one_document() {
 #[test]
 fn the_references_in_docs_are_current() {
     let place = Place::new();
-    for (options, page) in [
-        ("", include_str!("../../docs/scenes.md")),
-        (" --figure", include_str!("../../docs/figures.md")),
-    ] {
+    for (options, page) in
+        [("", include_str!("../../docs/scenes.md")), (" --figure", include_str!("../../docs/figures.md"))]
+    {
         let ran = place.run(&format!("schema --markdown{options}")).good();
         let name = if options.is_empty() { "scenes" } else { "figures" };
         assert!(ran.out == page, "run: localshape schema --markdown{options} > docs/{name}.md");
