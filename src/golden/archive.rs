@@ -41,7 +41,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
     let names: Vec<String> =
         archive.names().iter().filter_map(|name| name.strip_suffix(".position").map(str::to_owned)).collect();
     if names.is_empty() {
-        return Err(format!("{STATES_FILE} holds no positions"));
+        return Err(format!("{STATES_FILE} has no positions"));
     }
     for run in names {
         let frames =
@@ -53,7 +53,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
             let told = |what: String| format!("{STATES_FILE}: `{name}` {what}");
             if array.shape.len() != 3 || array.shape[0] != frames.len() as u64 || array.shape[2] != 3 {
                 let (shape, count) = (array.shape_in_words(), frames.len());
-                return Err(told(format!("has the shape {shape}; {DIAGNOSTICS_FILE} tells of {count} frames")));
+                return Err(told(format!("has the shape {shape}; {DIAGNOSTICS_FILE} has {count} frames")));
             }
             // What is packed may be far larger than its file.
             if array.bytes().is_none_or(|bytes| bytes > LARGEST) {
@@ -84,7 +84,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
 /// The rows of each run, with what describes the states.
 fn rows(path: &Path) -> Result<HashMap<String, Vec<(Row, Chosen)>>, String> {
     let mut reader = csv::Reader::from_path(path).map_err(|error| {
-        format!("{DIAGNOSTICS_FILE}, which tells the frames of {STATES_FILE}, cannot be read: {error}")
+        format!("{DIAGNOSTICS_FILE}, which lists the frames of {STATES_FILE}, cannot be read: {error}")
     })?;
     let told = |error: csv::Error| format!("{DIAGNOSTICS_FILE}: {error}");
     let heads = reader.headers().map_err(told)?.clone();

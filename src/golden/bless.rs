@@ -28,13 +28,13 @@ pub struct Blessed {
 #[derive(Debug, thiserror::Error)]
 pub enum BlessError {
     /// The simulation gave other states, or ends earlier, and accepting that was not asked for.
-    #[error("the state moved, so nothing was accepted; if that is meant: {command}")]
+    #[error("the state moved, so nothing was accepted; to accept it anyway: {command}")]
     StateMoved {
         /// What would accept it.
         command: String,
     },
     /// What the golden expected cannot be read, so that nobody knows whether the state moved.
-    #[error("what was expected is damaged, so nothing was accepted; to replace it by what is there: {command}")]
+    #[error("the expected side is damaged, so nothing was accepted; to replace it: {command}")]
     Damaged {
         /// What would accept it.
         command: String,
@@ -85,7 +85,7 @@ impl Comparison {
             && let Some(other) = other_file(&expected.origin)
         {
             let folder = expected.origin.display();
-            return Some(format!("{folder} holds other files, such as {other}; name a folder that is not there"));
+            return Some(format!("{folder} has other files, such as {other}; name a folder that does not exist"));
         }
         if !self.unknown.is_empty() && actual.record.is_none() {
             return Some(format!("the states of {} are not known here", self.unknown.join(", ")));
@@ -101,7 +101,7 @@ impl Comparison {
             match self.actual_source(&picture.name)?.pixels() {
                 Err(error) => told(error.to_string()),
                 Ok(pixels) if is_golden && pixels.label.is_none() => {
-                    told("it does not say which state it shows, and cannot belong to a golden".to_owned())
+                    told("it has no recorded state and cannot belong to a golden".to_owned())
                 }
                 Ok(pixels) if is_golden && actual.record.is_none() => {
                     let size = expected.record.as_ref().map(|record| record.size);
@@ -206,7 +206,9 @@ impl Comparison {
                     }
                     (Some(_), None) => {
                         let (target, actual) = (target.display(), actual.origin.display());
-                        blessed.left.push(format!("{target} is not of these pictures any more, but {actual} has none"));
+                        blessed.left.push(format!(
+                            "{target} does not belong to these pictures any more, but {actual} has none"
+                        ));
                     }
                     _ => {}
                 }

@@ -288,12 +288,12 @@ impl fmt::Display for Distance {
         let Count { visible, largest, .. } = self.counted;
         let strict = match self.machines {
             Machines::Same => Some("one machine drew both"),
-            Machines::Unknown => Some("neither says who drew it"),
+            Machines::Unknown => Some("neither names its adapter"),
             Machines::OneKind | Machines::OtherKind => None,
         };
         if let Some(why) = strict {
             let pixels = differ(self.unequal);
-            return write!(f, "{pixels}, by up to {largest} of 255; none may, for {why}");
+            return write!(f, "{pixels}, by up to {largest} of 255; none may, because {why}");
         }
         let by = if largest > 0 { format!(", by up to {largest}") } else { String::new() };
         let pixels = format!("{} by more than {CHANNEL} of 255 ({}){by}", differ(visible), may(self.counted));
@@ -308,7 +308,7 @@ impl fmt::Display for Distance {
                 may(inner),
                 inner.largest
             ),
-            format!("of what stands in one picture only, {} ({})", differ(alone.visible), may(alone)),
+            format!("in objects of one picture only, {} ({})", differ(alone.visible), may(alone)),
         ];
         // What is wrong comes first.
         let kept: Vec<bool> = self.limits().map(|limit| limit.is_kept()).collect();

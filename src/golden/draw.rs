@@ -85,7 +85,7 @@ pub(crate) enum DrawError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// States that wait to be drawn could not be kept.
-    #[error("states that wait to be drawn cannot be kept in the folder for temporary files: {0}")]
+    #[error("states cannot be stored in the folder for temporary files: {0}")]
     Disk(#[from] std::io::Error),
     /// What was asked for is not there.
     #[error("{0}")]
@@ -201,7 +201,8 @@ fn draw_scene(
             let name = &scene.runs[run.run].name;
             states.add(name, index, state);
             if let Status::Diverged(Divergence { time, step, .. }) = run.snapshot.status {
-                let told = || format!("{name} diverged at {time:.3e} s (step {step}) and stands still from there on");
+                let told =
+                    || format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on");
                 stopped.entry(run.run).or_insert_with(told);
             }
         }

@@ -86,7 +86,7 @@ pub enum ComparisonError {
         file: PathBuf,
     },
     /// There is nothing to compare.
-    #[error("neither {} nor {} holds a PNG picture", expected.display(), actual.display())]
+    #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
     Empty {
         /// The folder with what was expected.
         expected: PathBuf,
@@ -95,7 +95,7 @@ pub enum ComparisonError {
     },
     /// The record of a golden makes no sense.
     #[error(
-        "{}: this is no record of a golden that can be read: {what}; if nothing else helps, delete the folder and make the \
+        "{}: this record of a golden cannot be read: {what}; if nothing else helps, delete the folder and make the \
          golden again",
         path.join(RECORD_FILE).display()
     )]
@@ -187,7 +187,7 @@ impl Comparison {
         notes.extend(other_moments(&read));
         if actual.kind == Kind::Folder && actual.pictures.is_empty() {
             let folder = actual.origin.display();
-            notes.push(format!("{folder} holds no PNG picture; to compare with a scene, name its file"));
+            notes.push(format!("{folder} has no PNG picture; to compare with a scene, name its file"));
         }
         notes.extend(actual.notes.iter().cloned());
         match ends(&expected, &actual) {
@@ -425,7 +425,7 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
     let drawn = record.pictures.iter().find(|drawn| drawn.file == picture.name);
     let contradiction = match (drawn, label) {
         (None, _) => Some("does not know this picture"),
-        (Some(_), None) => Some("knows its state, this picture has lost what it said of itself"),
+        (Some(_), None) => Some("knows its state, but this picture has lost its text chunks"),
         (Some(drawn), Some(label)) => {
             let is_other = label.states().iter().any(|(digest, run)| {
                 let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
@@ -501,7 +501,7 @@ impl Comparison {
     /// All of it in words, with the command that accepts what is there if that is asked for.
     pub(crate) fn told(&self, with_command: bool) -> String {
         let mut text = String::new();
-        self.tell(&mut text).expect("a string takes all");
+        self.tell(&mut text).expect("writing to a string");
         if let Some(command) = self.command_to_accept().filter(|_| with_command) {
             let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
             text += &format!("{what}: {command}\n");

@@ -23,7 +23,7 @@ pub enum PictureError {
     #[error("cannot be read")]
     Read(#[from] io::Error),
     /// It is no PNG file.
-    #[error("this is no PNG picture")]
+    #[error("this is not a PNG picture")]
     Foreign,
     /// It is larger than any picture that is compared.
     #[error("this file has {0} bytes; a picture that can be compared has at most {MOST_BYTES}")]
@@ -50,7 +50,7 @@ pub enum PictureError {
     )]
     Label(&'static str),
     /// It says behind its pixels what belongs before them.
-    #[error("the picture says behind its pixels what it shows; expected that before them, as this program writes it")]
+    #[error("the picture has its text chunks after its pixels; expected them before, as this program writes them")]
     Late,
 }
 

@@ -177,7 +177,7 @@ impl File {
         for FileRun { name, nodes, every, quantum, step, cycle } in &self.runs {
             let is_time = |time: &f64| time.is_finite() && *time > 0.0;
             if ![step, cycle].into_iter().flatten().all(is_time) {
-                return Err(format!("run “{}” has a step or cycle that is no positive number", short(name)));
+                return Err(format!("run “{}” has a step or cycle that is not a positive number", short(name)));
             }
             let is_sound = count.contains(every) && *nodes <= *count.end();
             if !is_sound || !quantum.is_finite() || *quantum <= 0.0 {
@@ -190,7 +190,7 @@ impl File {
         let is_plain =
             |file: &str| file.ends_with(".png") && !file.starts_with('.') && !file.contains(['/', '\\', ':']);
         if let Some(drawn) = self.pictures.iter().find(|drawn| !is_plain(&drawn.file)) {
-            return Err(format!("“{}” is no plain name of a PNG picture", short(&drawn.file)));
+            return Err(format!("“{}” is not a plain name of a PNG picture", short(&drawn.file)));
         }
         if self.pictures.is_empty() || twice(self.pictures.iter().map(|drawn| drawn.file.as_str()).collect()) {
             return Err("it has no `[[picture]]`, or two of one name".to_owned());
@@ -278,10 +278,10 @@ impl Record {
         let path = folder.join(RECORD_FILE);
         let found = path.metadata()?;
         if !found.is_file() || found.len() > LARGEST_FILE {
-            return Ok(Err("it is no file, or far too large for one; a record has some tens of kilobytes".to_owned()));
+            return Ok(Err("it is not a file, or is far too large: a record has some tens of kilobytes".to_owned()));
         }
         Ok(String::from_utf8(std::fs::read(&path)?)
-            .map_err(|_| "it is no text".to_owned())
+            .map_err(|_| "it is not text".to_owned())
             .and_then(|text| Self::parse(&text)))
     }
 
@@ -294,10 +294,10 @@ impl Record {
             // Only what is known of all runs is recorded.
             let states: Option<Vec<&State>> = self.states.runs.iter().map(|run| run.states.get(frame)).collect();
             let Some(states) = states else { continue };
-            write!(digests, "\n{frame}").expect("a string takes all");
+            write!(digests, "\n{frame}").expect("writing to a string");
             for state in states {
                 let digest: String = state.digest.chars().take(DIGITS).collect();
-                write!(digests, " {digest}").expect("a string takes all");
+                write!(digests, " {digest}").expect("writing to a string");
             }
         }
         let bytes = |run: &Run| {
@@ -319,18 +319,18 @@ impl Record {
                 let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
                 let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
                 if let Some(all) = &state.numbers {
-                    write!(numbers, "\n{frame} {number}").expect("a string takes all");
+                    write!(numbers, "\n{frame} {number}").expect("writing to a string");
                     for (_, value) in all.iter() {
                         match value {
                             Value::Count(count) => write!(numbers, " {count}"),
                             value => write!(numbers, " {:.5e}", value.size()),
                         }
-                        .expect("a string takes all");
+                        .expect("writing to a string");
                     }
                 }
-                write!(positions, "\n{frame} {number}").expect("a string takes all");
+                write!(positions, "\n{frame} {number}").expect("writing to a string");
                 for coordinate in places.at.iter().step_by(every).flat_map(DVec3::to_array) {
-                    write!(positions, " {}", (coordinate / quantum).round() as i64).expect("a string takes all");
+                    write!(positions, " {}", (coordinate / quantum).round() as i64).expect("writing to a string");
                 }
             }
         }
@@ -363,15 +363,15 @@ impl Record {
                 "\n[[run]]\nname = {}\nnodes = {nodes}\nevery = {every}\nquantum = {quantum:e}\n",
                 quoted(name)
             )
-            .expect("a string takes all");
+            .expect("writing to a string");
             if let Some(Step { step, cycle }) = run.step() {
-                write!(text, "step = {step:e}\ncycle = {cycle:e}\n").expect("a string takes all");
+                write!(text, "step = {step:e}\ncycle = {cycle:e}\n").expect("writing to a string");
             }
         }
         for Drawn { file, frame, adapter, version } in &self.pictures {
             let [file, adapter, version] = [file, adapter, version].map(|text| quoted(text));
             write!(text, "\n[[picture]]\nfile = {file}\nframe = {frame}\nadapter = {adapter}\nversion = {version}\n")
-                .expect("a string takes all");
+                .expect("writing to a string");
         }
         text
     }
@@ -486,8 +486,8 @@ mod tests {
             ("every = 1", "every = 0", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = nan", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = -1e-6", "expected positive numbers"),
-            ("cycle = 1e-1", "cycle = inf", "no positive number"),
-            ("frame_00010.png", "../frame_00010.png", "is no plain name"),
+            ("cycle = 1e-1", "cycle = inf", "not a positive number"),
+            ("frame_00010.png", "../frame_00010.png", "is not a plain name"),
             ("\n6 ", "\n5 ", "frame 5 twice"),
             ("size = [320", "size = [0", "cannot be drawn"),
             ("[[picture]]", "[picture_gone]", "picture_gone"),

@@ -145,7 +145,7 @@ impl Side {
                 if state.is_some_and(|state| state.digest != *digest) {
                     let frame = tags.frame;
                     return Err(told(format!(
-                        "states.npz is not of these pictures; frame {frame} shows another state"
+                        "states.npz does not belong to these pictures; frame {frame} shows another state"
                     )));
                 }
             }

@@ -94,8 +94,8 @@ impl Demand {
     pub(super) fn denied(&self) -> Option<Excess> {
         let bytes = usize::try_from(self.bytes()).unwrap_or(usize::MAX);
         Vec::<u8>::new().try_reserve_exact(bytes).err()?;
-        let message = format!("this takes about {} of memory, which this machine does not give", size(self.bytes()));
-        Some(Excess { message, help: "make the body smaller, or take a larger machine".to_owned(), run: None })
+        let message = format!("this takes about {} of memory, which this machine does not have", size(self.bytes()));
+        Some(Excess { message, help: "make the body smaller, or use a larger machine".to_owned(), run: None })
     }
 
     /// Why this is too much, if it is, and what to do.
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn what_no_machine_gives_is_said_beforehand() {
         let demand = listed(Dimension::Space, 8, 1 << 60, model("'shape-based'"));
-        assert!(demand.denied().unwrap().message.contains("which this machine does not give"));
+        assert!(demand.denied().unwrap().message.contains("which this machine does not have"));
         assert_eq!(block(&[1, 1, 1], &[model("'shape-based'")]).denied(), None);
     }
 

@@ -203,7 +203,7 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
         return not_text(0, what);
     }
     match (std::str::from_utf8(bytes), bytes.iter().position(|&byte| byte == 0)) {
-        (Ok(_), Some(offset)) => not_text(offset, "this is not text: it holds a zero byte"),
+        (Ok(_), Some(offset)) => not_text(offset, "this is not text: it contains a zero byte"),
         (Ok(text), None) => Ok(text),
         (Err(error), zero) => {
             let offset = error.valid_up_to().min(zero.unwrap_or(usize::MAX));

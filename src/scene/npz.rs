@@ -69,7 +69,7 @@ impl Number {
             }
             ("O", _) => {
                 return Err(format!(
-                    "holds Python objects, as lists of different lengths make them; {EXPECTED}, with -1 in the places that a short list does not use"
+                    "contains Python objects, as made from lists of different lengths; {EXPECTED}, with -1 at the end of short lists"
                 ));
             }
             _ => return Err(format!("has numbers of the type {}; {EXPECTED}", quoted(name))),
@@ -147,7 +147,7 @@ impl Npz {
         }
         // A pipe would keep everybody waiting.
         if path.exists() && !path.is_file() {
-            return Err("is no regular file; expected a NumPy archive (.npz)".to_owned());
+            return Err("is not a regular file; expected a NumPy archive (.npz)".to_owned());
         }
         let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
         let mut start = [0; 6];
@@ -160,7 +160,7 @@ impl Npz {
                 );
             }
             [b'P', b'K', ..] => {}
-            _ => return Err("is no NumPy archive (.npz), as numpy.savez writes them".to_owned()),
+            _ => return Err("is not a NumPy archive (.npz); expected one written by numpy.savez".to_owned()),
         }
         let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
         Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)? })
@@ -186,7 +186,7 @@ impl Npz {
             return Err(format!("is compressed by {packed}, which is not read; {expected}"));
         }
         let mut entry = self.zip.by_index(index).map_err(|error| format!("cannot be read: {error}"))?;
-        let short = || "has no whole head: the file is damaged, or no array of NumPy".to_owned();
+        let short = || "has no complete header: the file is damaged, or is not a NumPy array".to_owned();
         let mut fixed = [0; 12];
         entry.read_exact(&mut fixed[..10]).map_err(|_| short())?;
         if !fixed.starts_with(b"\x93NUMPY") {

@@ -44,7 +44,7 @@ fn two_pictures() {
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
-    let told = "b.png: same state, drawn differently: another kind of adapter drew it; of what stands in one picture only, \
+    let told = "b.png: same state, drawn differently: another kind of adapter drew it; in objects of one picture only, \
                 10 pixels differ (1 may); along silhouettes 0 pixels differ by more than 2 of 255 (none may); between them";
     assert!(drawn.out.starts_with(told), "{drawn:?}");
     assert!(drawn.out.contains("\naccept with: localshape compare --bless a.png b.png\n"), "{drawn:?}");
@@ -140,7 +140,7 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     assert_eq!(place.run("compare --bless was is").status, Some(1));
     std::fs::create_dir(place.path("empty")).unwrap();
     let empty = place.run("compare was empty");
-    assert!(empty.out.ends_with("\nempty holds no PNG picture; to compare with a scene, name its file\n"), "{empty:?}");
+    assert!(empty.out.ends_with("\nempty has no PNG picture; to compare with a scene, name its file\n"), "{empty:?}");
     std::fs::remove_file(place.path("was/gone.png")).unwrap();
     place.run("compare was is").good();
     let nothing = place.run("compare --bless was is").good();
@@ -270,7 +270,10 @@ fn exact_states_tell_node_distance_and_first_frame() {
     // States that are not those of the pictures beside them are not believed.
     std::fs::copy(place.path("stiffer/states.npz"), place.path("steady/states.npz")).unwrap();
     let told = place.run("compare steady stiffer").out;
-    assert!(told.contains("steady: states.npz is not of these pictures; frame 1 shows another state\n"), "{told}");
+    assert!(
+        told.contains("steady: states.npz does not belong to these pictures; frame 1 shows another state\n"),
+        "{told}"
+    );
     assert!(told.contains("by how much is not recorded"), "{told}");
     for (bytes, words) in [(&b"PK\x03\x04"[..], "damaged"), (b"", "is empty")] {
         std::fs::write(place.path("steady/states.npz"), bytes).unwrap();
@@ -306,7 +309,7 @@ fn foreign_pictures_pass_only_if_they_are_equal() {
         let same = place.run(&format!("compare was{end} same{end}")).good();
         assert_eq!(same.out, "a.png: no state recorded (the pixels are equal)\n");
         let differs = place.run(&format!("compare was{end} other{end}"));
-        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither says who drew it\n";
+        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither names its adapter\n";
         assert!(differs.status == Some(1) && differs.out.starts_with(told), "{differs:?}");
     }
 }
@@ -423,9 +426,9 @@ fn what_is_no_picture_never_passes() {
         ("long.png", text("comment", long), "carries more than 4 MiB beside its pixels"),
         ("bell.png", states("3", &FULL.replace("run", "r\u{7}n")), "`localshape:state` is missing"),
         ("interlaced.png", interlaced, "is interlaced"),
-        ("text.png", b"no picture".to_vec(), "this is no PNG picture"),
-        ("empty.png", Vec::new(), "this is no PNG picture"),
-        ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is no PNG picture"),
+        ("text.png", b"no picture".to_vec(), "this is not a PNG picture"),
+        ("empty.png", Vec::new(), "this is not a PNG picture"),
+        ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is not a PNG picture"),
         ("cut.png", whole[..whole.len() - 20].to_vec(), "damaged or cut short"),
         ("flipped.png", flipped, "damaged or cut short"),
         ("lies.png", header_lies, "damaged or cut short (a checksum is wrong)"),
@@ -471,7 +474,7 @@ fn what_is_no_file_of_a_picture_is_told_at_once() {
         vec![("large.png", "this file has 536870913 bytes; a picture that can be compared has at most 536870912")];
     if cfg!(unix) {
         run(std::process::Command::new("mkfifo").arg(place.path("pipe.png"))).good();
-        wrong.push(("pipe.png", "this is no PNG picture"));
+        wrong.push(("pipe.png", "this is not a PNG picture"));
     }
     for (name, words) in wrong {
         for order in [format!("{name} whole.png"), format!("whole.png {name}")] {
@@ -510,6 +513,6 @@ fn wrong_words() {
     place.run("compare none a.png").bad(2, &["none is a folder and a.png is a file"]);
     put(&place, "full/a.png", &picture("one", "1", 0, &GREY));
     place.run("compare full a.png").bad(2, &["full is a folder and a.png is a file"]);
-    place.run("compare none none").bad(2, &["holds a PNG picture"]);
+    place.run("compare none none").bad(2, &["has a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
 }

@@ -136,7 +136,7 @@ fn mistakes_of_colours_of_runs() {
     good(&of_runs("", &[&format!("colour = '{named}'")]));
     assert!(told("theme = 'dark'", "'navy'").contains("make it lighter, such as \"#"));
     let alarm = told("", "'#d45500'");
-    assert!(alarm.contains("`run[1].colour` is too like that of turned-over elements, #e2661c: to "), "{alarm}");
+    assert!(alarm.contains("`run[1].colour` is too similar to that of turned-over elements, #e2661c: to "), "{alarm}");
     assert!(alarm.contains("(CIEDE2000); expected at least 20") && alarm.contains("choose another hue"), "{alarm}");
 }
 
@@ -275,7 +275,7 @@ fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_element
         };
         let expected = format!("(deuteranopia) they differ by {found} (CIEDE2000); expected at least 20");
         view(&text, &[(20, 9, &expected)]);
-        view(&text, &[(20, 9, "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`")]);
+        view(&text, &[(20, 9, "remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`")]);
         // With a hatch, or where the field colours no surfaces, something else tells them.
         good(&with(&format!("colour = {{ by = 'speed', map = '{map}' }}")));
         good(&with(&format!("{text}\nshow = ['nodes']")));
@@ -286,12 +286,12 @@ fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_element
 fn turned_over_elements_that_anybody_could_overlook_are_refused() {
     view(
         "colours = { turned_over = '#8fa0c0' }",
-        &[(20, 27, "`view.colours.turned_over` is too like the body's #93a5ba in space: to eyes")],
+        &[(20, 27, "`view.colours.turned_over` is too similar to the body's #93a5ba in space: to eyes")],
     );
     view("colours = { turned_over = '#8fa0c0' }", &[(20, 27, "(CIEDE2000); expected at least 20 choose another hue")]);
     view(
         "colours = { body = 'coral' }",
-        &[(20, 20, "`view.colours.body` is too like that of turned-over elements, #e2661c")],
+        &[(20, 20, "`view.colours.body` is too similar to that of turned-over elements, #e2661c")],
     );
     // A red and a green that most can tell.
     let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
@@ -389,7 +389,7 @@ fn mistakes_of_fonts() {
     place.bad(
         "regular = 'text.ttf'",
         20,
-        &["`text.ttf` is no font; expected a TrueType or OpenType font (.ttf, .otf, .ttc)"],
+        &["`text.ttf` is not a font; expected a TrueType or OpenType font (.ttf, .otf, .ttc)"],
     );
     place.bad("regular = 'web.woff2'", 20, &["`web.woff2` is a font packed for web pages (WOFF)"]);
     place.bad("regular = 'sans.otf', semi_bold = 'text.ttf'", 44, &["`text.ttf` is no font"]);

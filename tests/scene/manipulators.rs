@@ -88,11 +88,7 @@ fn motions_that_a_step_cannot_follow() {
     case(
         WORLD,
         &sphere("swing = { period = 1e-3, shift = [1, 0, 0] }"),
-        &[(
-            5,
-            20,
-            "it would swing once in 0.001 s, but a time step takes 1.257e-3 s take a period of at least 4 steps",
-        )],
+        &[(5, 20, "it would swing once in 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps")],
     );
     case(
         WORLD,
@@ -245,7 +241,7 @@ fn nodes_in_two_hands_at_once() {
         )],
     );
     let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";
-    case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s for good")]);
+    case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s on")]);
     // One after the other is well.
     let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
     assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
@@ -254,7 +250,7 @@ fn nodes_in_two_hands_at_once() {
 #[test]
 fn nodes_that_are_none() {
     case(WORLD, "[[hold]]\nnodes = [1, 12]", &[(2, 13, "there is no node 12; the body has nodes 0 to 11")]);
-    case(WORLD, "[[hold]]\nnodes = [1, 1]", &[(2, 13, "node 1 stands twice in `hold[0].nodes`")]);
+    case(WORLD, "[[hold]]\nnodes = [1, 1]", &[(2, 13, "node 1 occurs twice in `hold[0].nodes`")]);
     case(WORLD, "[[hold]]\nnodes = []", &[(2, 9, "is empty")]);
     case(WORLD, "[[hold]]\nnodes = 'all'", &[(2, 9, "is the string \"all\"; expected an array or a table")]);
     case(
@@ -283,7 +279,7 @@ fn nodes_that_are_none() {
     case(
         WORLD,
         "[[grab]]\nnodes = [1]\npath = { repeat = true, keys = [{ time = 1 }, { time = 2 }] }",
-        &[(3, 10, "repeats, so the nodes would never be let go")],
+        &[(3, 10, "repeats, so the nodes would never be released")],
     );
     case(WORLD, "[[grab]]\nnodes = [1]", &[(1, 1, "`grab[0]` has no `path`")]);
 }
@@ -397,7 +393,7 @@ fn a_summary_tells_of_obstacles_and_grips() {
     for line in [
         "obstacle  sphere at (1, 1, 1) m, radius 0.1 m, e = 0, μ = 0, swinging once in 2 s",
         "obstacle  floor at 0 m along (0, 1, 0), e = 0, μ = 0",
-        "grip      node 0 held from 0 s for good",
+        "grip      node 0 held from 0 s on",
         "grip      2 nodes dragged from 0.5 s until 0.7 s",
     ] {
         assert!(text.contains(line), "{line}\n{text}");

@@ -258,7 +258,7 @@ fn wrong_lengths_and_texts() {
     case(PLANE, "[[0, 1, 2], [0, 2, 3]]", "[]", &[(7, 12, "`body.elements` is empty; expected at least 1")]);
     case(PLANE, "[[0, 1]]", "[[0, 1, 2]]", &[(8, 12, "`body.springs[0]` has 3 entries; expected 2")]);
     case(PLANE, "'Local shape'", "''", &[(11, 8, "`run[0].name` is empty; expected 1 to 80")]);
-    case(PLANE, "'Local shape'", "\"a\\tb\"", &[(11, 8, "holds the control character '\\t'")]);
+    case(PLANE, "'Local shape'", "\"a\\tb\"", &[(11, 8, "contains the control character '\\t'")]);
     case(
         PLANE,
         "'T/50'",
@@ -305,7 +305,7 @@ fn keys_that_exclude_or_need_each_other() {
 #[test]
 fn elements_that_are_none() {
     case(PLANE, "[0, 2, 3]", "[0, 2, 4]", &[(7, 31, "there is no node 4; the body has nodes 0 to 3")]);
-    case(PLANE, "[0, 2, 3]", "[0, 2, 2, 3]", &[(7, 31, "node 2 stands twice in `body.elements[1]`")]);
+    case(PLANE, "[0, 2, 3]", "[0, 2, 2, 3]", &[(7, 31, "node 2 occurs twice in `body.elements[1]`")]);
     case(
         PLANE,
         "[0, 2, 3]",
@@ -340,7 +340,7 @@ fn elements_that_are_none() {
         "[[0, 1], [1, 0], [2, 2], [3, 9]]",
         &[
             (8, 20, "`body.springs[1]` has the same nodes as `body.springs[0]`"),
-            (8, 32, "node 2 stands twice in `body.springs[2]`"),
+            (8, 32, "node 2 occurs twice in `body.springs[2]`"),
             (8, 40, "there is no node 9"),
         ],
     );
@@ -364,7 +364,7 @@ fn solids_turned_inside_out_or_flat() {
     // The order of many mesh formats, around each square.
     case(
         "[[0, 1, 3, 2, 4, 5, 7, 6]]",
-        "`body.elements[0]` lists its corners around its sides; expected bit order: x fastest, then y, then z \
+        "`body.elements[0]` lists its corners around its sides; expected x fastest, then y, then z \
          write [0, 1, 2, 3, 4, 5, 6, 7]",
     );
     case(
@@ -685,8 +685,8 @@ fn mistakes_of_what_is_shown() {
     view("colour = { range = [0, 1] }", &[(20, 10, "`view.colour` has no `by`")]);
     view("colour = { by = 'speed', range = [3, 1] }", &[(20, 34, "runs from 3 to 1; expected a rising range")]);
     view("colour = { by = 'speed', range = [0, inf] }", &[(20, 38, "is inf; expected a finite number")]);
-    view("title = \"a\\nb\"", &[(20, 9, "holds the control character")]);
-    view("caption = \"a\\tb\"", &[(20, 11, "holds the control character '\\t'; it is lines of text")]);
+    view("title = \"a\\nb\"", &[(20, 9, "contains the control character")]);
+    view("caption = \"a\\tb\"", &[(20, 11, "contains the control character '\\t'; it is lines of text")]);
     view("strip = 'turned over'", &[(20, 9, "did you mean \"turned_over\"?")]);
     view("opacity = 0", &[(20, 11, "expected a number from 0.1 to 1")]);
     view("explode = -1", &[(20, 11, "expected a number from 0 to 3")]);
@@ -705,7 +705,7 @@ fn mistakes_of_what_is_shown() {
     );
     view("labels = ['title']", &[(20, 11, "expected \"name\", \"model\", \"clock\", \"count\" or \"number\"")]);
     view("light = { elevation = 0 }", &[(20, 23, "expected a number from 0.2 to 1.57")]);
-    view("colours = { floor = '#333' }", &[(20, 21, "words on `view.colours.floor` would have a contrast of")]);
+    view("colours = { floor = '#333' }", &[(20, 21, "text on `view.colours.floor` would have a contrast of")]);
     view("floor = 'tiles'", &[(20, 9, "expected \"grid\", \"plain\" or \"none\"")]);
     view("edges = 'none'", &[(20, 9, "expected \"all\", \"visible\" or \"outline\"")]);
     view("show = []", &[(20, 8, "`view.show` is empty; expected at least 1")]);

@@ -113,8 +113,8 @@ fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<
             if let Some((typed, place, other)) = wrong {
                 let [typed, other] = [typed, other].map(quoted);
                 let message =
-                    format!("`body.lattice.elements` is {typed}, but the block is {place}: it has {axes} `cells`");
-                report.at(&at("lattice", "elements"), message, format!("take {other}, or other `cells`"));
+                    format!("`body.lattice.elements` is {typed}, but the lattice is {place}: it has {axes} `cells`");
+                report.at(&at("lattice", "elements"), message, format!("use {other}, or other `cells`"));
             }
             let sides = match side {
                 SideFile::PerAxis(sides) => sides.len(),
@@ -283,7 +283,7 @@ fn check_use(shape: StartShape, report: &mut Report<'_>) {
         let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
         if !used && report.is_typed(&path) {
             let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(shape.name()));
-            report.at_key(&path, message, "leave it out, or take another shape".to_owned());
+            report.at_key(&path, message, "remove it, or use another shape".to_owned());
         }
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     // A wrong index leaves the node that was meant without an element: said once is enough.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        place.tell(report, "nodes", &[node], message, "take it out, or list it in an element".to_owned());
+        place.tell(report, "nodes", &[node], message, "remove it, or list it in an element".to_owned());
     }
 }
 
@@ -171,7 +171,7 @@ impl Disorder {
                 ("have no volume: their nodes are in planes, or not in their order", CONVEX.to_owned())
             }
             (Wrong::Around, _) => (
-                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected bit order: x fastest, then y, then z",
+                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
                 format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}"),
             ),
             (Wrong::Turned, Dimension::Space) => {
@@ -207,14 +207,14 @@ fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, O
         }
         (Wrong::Flat, _) => {
             let help = match kind {
-                ElementKind::Hexahedron => "list the corners in bit order: x fastest, then y, then z",
+                ElementKind::Hexahedron => "list the corners with x fastest, then y, then z",
                 _ => CONVEX,
             };
             let message = format!("`{name}` has no volume: its nodes are in a plane, or not in their order");
             (message, Some(help.to_owned()))
         }
         (Wrong::Around, _) => {
-            let expected = "expected bit order: x fastest, then y, then z";
+            let expected = "expected x fastest, then y, then z";
             let message = format!("`{name}` lists its corners around its sides; {expected}");
             (message, Some(format!("write {:?}", AROUND.map(|place| element[place]))))
         }
@@ -270,7 +270,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
     let mut order: Vec<usize> = (0..list.len()).collect();
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
-        let message = format!("node {} stands twice in `{}`", list[pair[1]], place.name(key, &[at]));
+        let message = format!("node {} occurs twice in `{}`", list[pair[1]], place.name(key, &[at]));
         place.tell(report, key, &[at, pair[1]], message, None);
         sound = false;
     }
@@ -301,7 +301,7 @@ fn repeated<'l>(
     if first != at {
         let [this, other] = [at, first].map(|at| place.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        place.tell(report, key, &[at], message, "take one of them out".to_owned());
+        place.tell(report, key, &[at], message, "remove one of them".to_owned());
     }
     first != at
 }

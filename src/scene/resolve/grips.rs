@@ -41,8 +41,8 @@ pub(super) fn resolve(
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         let way = [&path[..], &[Way::Key("path")]].concat();
         if typed.path.repeat {
-            let message = format!("`grab[{at}].path` repeats, so the nodes would never be let go");
-            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "take `repeat` out".to_owned());
+            let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
+            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "remove `repeat`".to_owned());
             continue;
         }
         let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
@@ -50,7 +50,7 @@ pub(super) fn resolve(
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
             let message =
-                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be let go at once");
+                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
             report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are".to_owned());
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
             named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
@@ -66,7 +66,7 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
         let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
         if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
             let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
-            let help = "it would hold nothing: let it last longer".to_owned();
+            let help = "it would hold nothing: make it longer".to_owned();
             report.at(&[Way::Key("hold"), Way::Index(at), Way::Key("until")], message, help);
         }
     }
@@ -101,9 +101,9 @@ fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_
     for ([second, first], node) in clashes {
         let ((other, _, one), (words, path, two)) = (&named[first], &named[second]);
         let (from, until) = (one.from.max(two.from), one.until.min(two.until));
-        let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
+        let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
         let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
-        let help = "leave each node to one of them at a time".to_owned();
+        let help = "assign each node to one of them at a time".to_owned();
         report.at(&[&path[..], &[Way::Key("nodes")]].concat(), message, help);
     }
 }
@@ -131,7 +131,7 @@ fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>)
         if node as usize >= count {
             report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
         } else if first.insert(node, place).is_some() {
-            report.at(&at, format!("node {node} stands twice in `{}`", written(path)), None);
+            report.at(&at, format!("node {node} occurs twice in `{}`", written(path)), None);
         }
     }
     let mut nodes = list.to_vec();

@@ -195,7 +195,7 @@ const MESHES: [&str; 15] =
 
 /// What to do about a file that is no archive.
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
-                        -1 behind short ones); docs/bodies.md has an example";
+                        -1 at the end of short ones); docs/bodies.md has an example";
 
 /// The arrays that an archive may have, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
@@ -229,7 +229,7 @@ impl Reader<'_, '_> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
-            let message = format!("`{}` is no array that a body has", self.place.name(name, &[]));
+            let message = format!("`{}` is not an array of a body", self.place.name(name, &[]));
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
@@ -415,7 +415,7 @@ impl Reader<'_, '_> {
             let used = used.map_or(0, |last| last + 1);
             for column in 0..used {
                 match numbers.whole(row, column) {
-                    -1 => self.say(key, &[row, column], "is -1, and a node follows it; unused places come last"),
+                    -1 => self.say(key, &[row, column], "is -1, but a node follows; expected -1 only at the end"),
                     _ => row_of.extend(self.index(key, &numbers, [row, column])),
                 }
             }

@@ -230,11 +230,11 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
     let last = scene.last_frame();
     if last == 0 && scene.duration > 0.0 {
         let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
-        let message = format!("at {rate} frames per second, {duration} s have a single frame, the start");
+        let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
         report.warn(
             &[Way::Key("time"), Way::Key("frames_per_second")],
             message,
-            format!("at least {} show its end", short(1.0 / scene.duration)),
+            format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
     }
     let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));

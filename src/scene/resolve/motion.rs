@@ -19,13 +19,13 @@ pub(super) fn axis(
     match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
-            let message = format!("`{rotation}` has an `axis`, but the body is in the plane and turns within it");
-            report.at_key(&path, message, "take `axis` out; a positive angle turns counter-clockwise".to_owned());
+            let message = format!("`{rotation}` has an `axis`, but the body is in the plane");
+            report.at_key(&path, message, "remove `axis`; a positive angle rotates counter-clockwise".to_owned());
             None
         }
         (None, Dimension::Space) => {
             let help = "such as axis = [0, 0, 1]".to_owned();
-            report.at(&path, format!("`{rotation}` has no `axis`, which a turn in space needs"), help);
+            report.at(&path, format!("`{rotation}` has no `axis`, which a rotation in space needs"), help);
             None
         }
         (Some(axis), Dimension::Space) => {
@@ -88,7 +88,7 @@ pub(super) fn keys(
     if let (true, Some(first), Some(last)) = (typed.repeat, keys.first(), keys.last()) {
         if keys.len() == 1 {
             let message = format!("`{}` repeats, but has a single key", written(path));
-            report.at(path, message, "add keys, or take `repeat` out".to_owned());
+            report.at(path, message, "add keys, or remove `repeat`".to_owned());
             return None;
         }
         if !same(first.place, last.place) {
@@ -118,7 +118,7 @@ pub(super) fn swing(
     report: &mut Report<'_>,
 ) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
-        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would swing", written(path));
+        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
         report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
         return None;
     }

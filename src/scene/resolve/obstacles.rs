@@ -116,7 +116,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         let message = format!("the body starts inside this {name}: node {node} lies {depth:.3e} m below its surface");
         let help = match obstacle.shape {
             Shape::Floor { .. } => "move the floor, or set the body on it with `lowest` or `offset` in [body]",
-            _ => "move one of them; a path may bring the obstacle there later",
+            _ => "move one of them; a path can move the obstacle there later",
         };
         return report.at(path, message, help.to_owned());
     }
@@ -134,7 +134,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         let point =
             if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
         let message = format!("this {name} starts inside the body, at {point}, between its nodes");
-        report.at(path, message, "move one of them; only nodes bounce off an obstacle, from outside".to_owned());
+        report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside".to_owned());
     }
 }
 
@@ -177,8 +177,8 @@ pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mu
             motion::check_steps(typed, step, &[&path[..], &[Way::Key("path")]].concat(), report);
         }
         if let Some(swing) = common.swing.filter(|swing| swing.period < LEAST_STEPS * step) {
-            let message = format!("it would swing once in {} s, but a time step takes {step:.3e} s", swing.period);
-            let help = format!("take a period of at least {LEAST_STEPS} steps, or shorter steps");
+            let message = format!("it would oscillate once in {} s, but a time step takes {step:.3e} s", swing.period);
+            let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
             report.at(&[&path[..], &[Way::Key("swing"), Way::Key("period")]].concat(), message, help);
         }
     }

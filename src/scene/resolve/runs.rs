@@ -89,7 +89,7 @@ fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
         let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
         if let Some(first) = typed[..at].iter().position(same) {
             let message = format!("two runs are called {quoted}: `run[{first}]` and `run[{at}]`");
-            report.at(&path, message, "give each run a name of its own".to_owned());
+            report.at(&path, message, "give each run a unique name".to_owned());
         }
     }
 }

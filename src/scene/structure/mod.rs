@@ -173,7 +173,7 @@ impl<'p> Walk<'_, '_, 'p> {
             if let Some(control) = text.chars().find(|&c| c.is_control() && !(may_break && c == '\n')) {
                 let kind = if may_break { "lines" } else { "one line" };
                 let message =
-                    format!("`{}` holds the control character {control:?}; it is {kind} of text", self.here());
+                    format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
                 self.mistake(span, message, None);
             }
             // Texts that are drawn have a greatest length; names of files have none.
