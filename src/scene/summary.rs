@@ -1,4 +1,4 @@
-//! What a scene holds, in words and numbers, for whoever checks it.
+//! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::Scene;
 use crate::look::Follow;

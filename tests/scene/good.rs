@@ -94,7 +94,8 @@ fn scripts_that_need_shaping_are_warned_of() {
                     model = { kind = 'shape-based', stiffness = 1e4 }\n";
         good(&format!("{text}name = '{name}'")).warnings
     };
-    for (name, wrong) in [("سرد", 'س'), ("שלום", 'ש'), ("नमस्ते", 'न'), ("e\u{301}", '\u{301}')] {
+    for (name, wrong) in [("سرد", 'س'), ("שלום", 'ש'), ("नमस्ते", 'न'), ("e\u{301}", '\u{301}')]
+    {
         let [told] = &warnings(name)[..] else { panic!("one warning of {name}") };
         assert_eq!((told.line, told.column), (5, 8));
         assert!(told.message.starts_with(&format!("`run[0].name` has {wrong:?}")), "{}", told.message);

@@ -1,4 +1,4 @@
-//! Turns and paths.
+//! Rotations and paths.
 
 use super::{direction, vector};
 use crate::reading::report::{Report, Way, written};
@@ -7,7 +7,7 @@ use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Place};
 use glam::DVec3;
 
-/// The unit axis of a turn; a mistake if there is one too few or too many.
+/// The unit axis of a rotation; a mistake if it is missing in space or given in the plane.
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
@@ -34,7 +34,7 @@ pub(super) fn axis(
     }
 }
 
-/// A shift and a turn.
+/// A translation and a rotation.
 fn place(
     shift: Option<&Coordinates>,
     rotation: Option<&RotationFile>,
@@ -56,7 +56,7 @@ fn place(
     Some(Place { shift: shift?, turn: turn? })
 }
 
-/// A path from key to key. With a single key it stays there.
+/// A path of keyframes. With a single key it is constant.
 pub(super) fn keys(
     typed: &MotionFile,
     dimension: Dimension,
@@ -101,16 +101,16 @@ pub(super) fn keys(
     Some(Motion::Keys { keys, ease: typed.ease, repeat: typed.repeat })
 }
 
-/// Whether two places are the same up to rounding and whole turns.
+/// Whether two poses are equal up to rounding and whole turns.
 fn same(one: Place, other: Place) -> bool {
-    /// A rounding of what was typed is no jump.
+    /// Rounding of typed numbers is not a jump.
     const CLOSE: f64 = 1e-6;
     let [one_pose, other_pose] = [one, other].map(|place| Motion::at(place).pose(0.0));
     one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)
         && one_pose.turn.dot(other_pose.turn).abs() >= 1.0 - CLOSE * CLOSE
 }
 
-/// A motion to and fro.
+/// An oscillation.
 pub(super) fn swing(
     typed: &SwingFile,
     dimension: Dimension,
@@ -126,7 +126,7 @@ pub(super) fn swing(
     Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
 }
 
-/// Reports keys that are nearer to each other than a time step (s).
+/// Reports keys that are closer to each other than a time step (s).
 pub(super) fn check_steps(typed: &MotionFile, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;

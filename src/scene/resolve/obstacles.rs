@@ -91,10 +91,10 @@ fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &
     }
 }
 
-/// How deep a node may lie in an obstacle at the start, in body sizes: the rounding of a body set down on it.
+/// How deep a node can be in an obstacle at the start, in body sizes, because of rounding.
 const TOUCHING: f64 = 1e-9;
 
-/// Reports an obstacle in which nodes start, or which starts within the body.
+/// Reports obstacles with nodes inside at the start, and obstacles that start inside the body.
 fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) {
     let placed = obstacle.at(0.0, 1.0);
     let name = match obstacle.shape {
@@ -125,7 +125,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     let near = |point: &DVec3| point.cmpge(low).all() && point.cmple(high).all();
     let points = inner_points(&obstacle.shape, body.body.dimension);
     let points: Vec<_> = points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).collect();
-    // Of large bodies fewer points are asked, the middle of the obstacle always.
+    // For large bodies fewer points are tested, but always the centre of the obstacle.
     let faces = body.body.faces.nodes.len().max(1);
     let stride = (points.len() * faces).div_ceil(MOST_COMPARED).max(1);
     let within = points.into_iter().step_by(stride).find(|&point| is_within(body, point));
@@ -138,13 +138,13 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     }
 }
 
-/// How many points of an obstacle, times faces of the body, are looked at: some tenths of a second of work at most.
+/// How many points of an obstacle, times faces of the body, are tested: some tenths of a second at most.
 const MOST_COMPARED: usize = 10_000_000;
 
-/// How many steps are taken through an obstacle in each direction to see whether it lies in a body.
+/// How many points of an obstacle are tested along each axis.
 const SAMPLES: u32 = 8;
 
-/// Points all over the inside of an obstacle, its middle first; none of half-spaces, which nodes tell of.
+/// Points inside an obstacle, its centre first; none for half-spaces, for which testing the nodes is enough.
 fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     let steps = || (0..=SAMPLES).map(|at| f64::from(at) / f64::from(SAMPLES) * 2.0 - 1.0);
     let across =
@@ -168,7 +168,7 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     }
 }
 
-/// Reports motions so quick that a step cannot follow them: nodes would meet an obstacle that jumps.
+/// Reports motions that are too fast for the time step: the obstacle would jump.
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(common) = obstacle.as_ref().map(ObstacleFile::common) else { continue };
@@ -184,10 +184,10 @@ pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mu
     }
 }
 
-/// How many steps a swing to and fro must take at least to be one.
+/// The least number of steps in a period.
 const LEAST_STEPS: f64 = 4.0;
 
-/// Whether a point lies within the outer surface of a body at its start, by how often that winds around it.
+/// Whether a point is inside the surface of a body at its start, by the winding number.
 fn is_within(body: &ResolvedBody, point: DVec3) -> bool {
     let (shape, position) = (&body.body, &body.initial.position);
     let at = |node: u32| position[node as usize] - point;

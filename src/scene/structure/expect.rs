@@ -1,4 +1,4 @@
-//! What a schema asks for, in words.
+//! What a schema expects, in words.
 
 use crate::reading::words::{list, quoted};
 use crate::scene::schema::choices;
@@ -32,7 +32,7 @@ pub(in crate::scene) fn range(
     above: Option<f64>,
     below: Option<f64>,
 ) -> String {
-    // That a whole number has 32 bits is nothing that anybody asked for.
+    // The limit of 32 bits is an implementation detail.
     let most = most.filter(|&most| most < f64::from(u32::MAX));
     match (least, most, above, below) {
         (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),

@@ -44,7 +44,7 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
             }
             (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
                 walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                // What is beyond the limit has been refused as a whole.
+                // Entries beyond the limit were reported together.
                 let most = inner["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
                 Json::Array(walk.entries(inner, &items[..most]))
             }
@@ -176,7 +176,7 @@ impl<'p> Walk<'_, '_, 'p> {
                     format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
                 self.mistake(span, message, None);
             }
-            // Texts that are drawn have a greatest length; names of files have none.
+            // Texts that are drawn have a maximum length; names of files have none.
             if let Some(character) =
                 text.chars().find(|&c| needs_shaping(c)).filter(|_| schema.get("maxLength").is_some())
             {
@@ -314,7 +314,7 @@ fn needs_shaping(character: char) -> bool {
     )
 }
 
-/// What goes on after the text that is no colour, if it should be one, and what to do.
+/// The rest of the message and the help for a text that should be a colour, but is not.
 fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
     match schema.get("format").and_then(Json::as_str)? {
         "colour" => TypedColour::mistake(text),
