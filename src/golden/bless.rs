@@ -1,4 +1,4 @@
-//! Accepting what is there as what is expected from now on.
+//! Accepting the actual side as the expected one.
 
 use super::picture::{PictureError, Pixels};
 use super::record::{Drawn, RECORD_FILE, Record};
@@ -186,7 +186,7 @@ impl Comparison {
                         file.append(&bytes)?;
                         staged.push(file);
                     }
-                    // The picture of a golden for which nothing stands any more.
+                    // A picture of the golden that does not exist any more on the actual side.
                     None if !belongs && expected.pictures.contains_key(&picture.name) => gone.push(target),
                     None if expected.kind == Kind::Golden && !belongs => {}
                     None => {
@@ -242,7 +242,7 @@ impl Comparison {
         Ok(blessed)
     }
 
-    /// The record that a golden has after blessing; `None` if it is no golden.
+    /// The record of a golden after accepting; `None` if the side is not a golden.
     fn record_to_write(&self) -> Result<Option<Record>, BlessError> {
         let [expected, actual] = &self.sides;
         let old = match (expected.kind, &expected.record) {
@@ -252,12 +252,12 @@ impl Comparison {
             _ => return Ok(None),
         };
         let mut record = match &actual.record {
-            // Only pictures are renewed, and with them who drew them.
+            // Only pictures and their adapters are updated.
             _ if !self.needs_state() => old.clone(),
             Some(record) => record.clone(),
             None => Record { states: self.states_for(old)?, ..old.clone() },
         };
-        // The adapters of pictures that stay are those that drew them.
+        // Pictures that are kept keep their adapters.
         let passes = |name: &str| self.pictures.iter().any(|picture| picture.name == name && picture.verdict.passes());
         let label = |name: &str| self.actual_source(name).and_then(|source| source.pixels().ok()?.label);
         let names = actual.record.as_ref().unwrap_or(old).pictures.iter().map(|drawn| drawn.file.as_str());
@@ -294,17 +294,17 @@ impl Comparison {
     }
 }
 
-/// Files that stand beside the frames of a folder and are of the same states.
+/// Files beside the frames of a folder that describe the same states.
 const BESIDE: [&str; 3] = [STATES_FILE, DIAGNOSTICS_FILE, SUMMARY_FILE];
 
-/// A file or folder in a folder, but for hidden ones.
+/// A file or folder in a folder, except hidden ones.
 fn other_file(folder: &Path) -> Option<String> {
     let names = std::fs::read_dir(folder).ok()?.flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.filter(|name| !name.starts_with('.')).min()
 }
 
-/// The bytes of a picture, for a golden as few as can be had.
+/// The bytes of a picture, with the strongest compression for a golden.
 fn bytes(source: &Source, is_golden: bool) -> io::Result<Cow<'_, [u8]>> {
     let bytes = source.bytes().map_err(|error| match error {
         PictureError::Read(error) => error,
