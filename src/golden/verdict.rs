@@ -203,7 +203,7 @@ mod tests {
             (alone.passes(), alone.to_string().as_str()),
             (
                 false,
-                "same state, drawn differently: 1 pixel differs, by up to 1 of 255; none may, for one machine drew both"
+                "same state, drawn differently: 1 pixel differs, by up to 1 of 255; none may, because one machine drew both"
             )
         );
         let other = of(&pixels("soft (2)", "1", hardly));
@@ -249,7 +249,7 @@ mod tests {
         assert!(foreign(&untold).passes());
         let hardly = |bytes: &mut [u8]| bytes[0] += 1;
         let by_one = Pixels { label: None, ..pixels("", "1", hardly) };
-        let told = "no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither names its adapter";
+        let told = "no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, because neither names its adapter";
         assert_eq!((foreign(&by_one).to_string().as_str(), foreign(&by_one).passes()), (told, false));
         assert!(!foreign(&Pixels { size: [30, 40], ..untold.clone() }).passes());
     }

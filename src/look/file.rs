@@ -264,8 +264,8 @@ pub(crate) struct ColourFile {
 pub(crate) struct CameraFile {
     /// Azimuth to the right, from looking along −z (rad). Default: 0.541, which is 31°. Not in the plane.
     pub(crate) azimuth: Option<f64>,
-    /// Elevation above the horizon (rad). Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not
-    /// in the plane.
+    /// Elevation above the horizon (rad), less than a quarter turn (1.57) either way, so that the camera does not look along
+    /// its up-axis. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not in the plane.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(crate) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.

@@ -178,7 +178,7 @@ fn no_damaged_picture_is_ever_accepted() {
     // But a damaged golden can be renewed, if it is known that its state is lost.
     place
         .run("compare --bless cut.png was.png")
-        .bad(1, &["what was expected is damaged", "--bless-state cut.png was.png"]);
+        .bad(1, &["the expected side is damaged", "--bless-state cut.png was.png"]);
     place.run("compare --bless-state cut.png was.png").good();
     assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
 }
@@ -309,7 +309,7 @@ fn foreign_pictures_pass_only_if_they_are_equal() {
         let same = place.run(&format!("compare was{end} same{end}")).good();
         assert_eq!(same.out, "a.png: no state recorded (the pixels are equal)\n");
         let differs = place.run(&format!("compare was{end} other{end}"));
-        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither names its adapter\n";
+        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, because neither names its adapter\n";
         assert!(differs.status == Some(1) && differs.out.starts_with(told), "{differs:?}");
     }
 }
@@ -354,7 +354,7 @@ fn a_report_is_one_file() {
     assert_eq!(place.run("compare a.png c.png --report page.html -q").status, Some(1));
     place.write("precious.toml", "body = 7");
     for name in ["precious.toml", "a.png", "."] {
-        place.run(&format!("compare a.png c.png --report {name} -q")).bad(2, &["no page of a comparison"]);
+        place.run(&format!("compare a.png c.png --report {name} -q")).bad(2, &["not a page of a comparison"]);
     }
     assert_eq!(place.read("precious.toml"), "body = 7");
 }
@@ -421,7 +421,7 @@ fn what_is_no_picture_never_passes() {
     let wrong: [(&str, Vec<u8>, &str); 23] = [
         ("damaged-text.png", damaged, "damaged or cut short (a checksum is wrong)"),
         ("twice.png", twice, "is missing, damaged or there twice"),
-        ("late.png", late.concat(), "says behind its pixels what it shows"),
+        ("late.png", late.concat(), "text chunks after its pixels"),
         ("sum.png", sum_lies, "damaged or cut short"),
         ("long.png", text("comment", long), "carries more than 4 MiB beside its pixels"),
         ("bell.png", states("3", &FULL.replace("run", "r\u{7}n")), "`localshape:state` is missing"),
@@ -500,13 +500,13 @@ fn wrong_words() {
         place.run("compare a.png a.png --size 20x20").bad(2, &["--size is for scenes and figures"]);
     }
     place.write("small.toml", SMALL);
-    place.run("compare a.png small.toml").bad(2, &["a.png is no golden"]);
+    place.run("compare a.png small.toml").bad(2, &["a.png is not a golden"]);
     place
         .run("compare small.toml none")
-        .bad(2, &["small.toml is a scene or figure and comes last: localshape compare none"]);
+        .bad(2, &["small.toml is a scene or figure and must come last: localshape compare none"]);
     std::fs::create_dir(place.path("broken")).unwrap();
     place.write("broken/golden.toml", "format = 7");
-    place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "no record of a golden"]);
+    place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "record of a golden cannot be read"]);
     place.write("wrong.toml", "body.lattice = { cells = [1, 1, 1], size = 0.1 }");
     let words = if cfg!(feature = "render") { "`size`" } else { "without the feature `render`" };
     place.run("compare none2 wrong.toml").bad(2, &["wrong.toml", words]);

@@ -290,13 +290,13 @@ fn heads_of_every_length_and_version() {
             wrong(&file(version, 118, told), &["`body.npz: nodes` has the shape (4, 2), which does not fit"]);
         }
         for (length, told) in [(118, 374), (118, 4097), (4097, 4097)] {
-            wrong(&file(version, length, told), &["`body.npz: nodes` has no whole head"]);
+            wrong(&file(version, length, told), &["`body.npz: nodes` has no complete header"]);
         }
     }
     for version in [2, 3] {
         // Longer than any file, by the third and the fourth byte alone.
         for told in [118 + (1 << 16), 118 + (1 << 24)] {
-            wrong(&file(version, 118, told), &["`body.npz: nodes` has no whole head"]);
+            wrong(&file(version, 118, told), &["`body.npz: nodes` has no complete header"]);
         }
     }
     wrong(&file(4, 118, 118), &["`body.npz: nodes` is written in version 4 of NumPy's format; expected 1, 2 or 3"]);
@@ -468,13 +468,13 @@ fn arrays_that_are_none() {
     wrong(&with(|arrays| arrays[0].descr = "'>f8'".into()), &["`body.npz: nodes` has big-endian numbers"]);
     wrong(&with(|arrays| arrays[0].descr = "'<c8'".into()), &["has numbers of the type \"<c8\"; expected float64"]);
     wrong(&with(|arrays| arrays[0].descr = "[('x', '<f8')]".into()), &["`body.npz: nodes` has rows of several fields"]);
-    wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` holds Python objects"]);
+    wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` contains Python objects"]);
     wrong(
         &with(|arrays| arrays[1].descr = "'<f8'".into()),
         &["`body.npz: elements` is float64; expected integers, as by"],
     );
-    wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no whole head"]);
-    wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no whole head"]);
+    wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no complete header"]);
+    wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no complete header"]);
     wrong(
         &with(|arrays| arrays.push(indices("springs", "(2, 3)", &[0, 1, 2, 1, 2, 3]))),
         &["`body.npz: springs` has the shape (2, 3); expected one row for each spring with 2 nodes"],

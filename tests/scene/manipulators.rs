@@ -88,7 +88,11 @@ fn motions_that_a_step_cannot_follow() {
     case(
         WORLD,
         &sphere("swing = { period = 1e-3, shift = [1, 0, 0] }"),
-        &[(5, 20, "it would swing once in 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps")],
+        &[(
+            5,
+            20,
+            "it would oscillate once in 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps",
+        )],
     );
     case(
         WORLD,
@@ -129,7 +133,7 @@ fn motions_that_the_longest_of_several_steps_cannot_follow() {
         case(&world, &path, &[(5, 37, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
         case(&world, hold, &[(4, 9, "lasts 5.000e-3 s, but a time step takes 1.000e-2 s")]);
         case(&world, grab, &[(3, 39, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
-        case(&world, &swing, &[(5, 20, "it would swing once in 0.03 s, but a time step takes 1.000e-2 s")]);
+        case(&world, &swing, &[(5, 20, "it would oscillate once in 0.03 s, but a time step takes 1.000e-2 s")]);
     }
     let short = world(["1e-3", "2e-3"]);
     [path.as_str(), hold, grab, &swing].iter().for_each(|added| drop(good(&format!("{short}{added}"))));
@@ -237,7 +241,7 @@ fn nodes_in_two_hands_at_once() {
         &[(
             4,
             9,
-            "node 2 is held by `hold[0]` and grabbed by `grab[0]` at once, from 0.2 s until 0.5 s leave each node",
+            "node 2 is held by `hold[0]` and grabbed by `grab[0]` at once, from 0.2 s until 0.5 s assign each node",
         )],
     );
     let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";

@@ -123,7 +123,7 @@ fn missing_keys() {
         )],
     );
     case(PLANE, "kind = 'mass-spring', ", "", &[(15, 9, "has no `kind`; expected \"shape-based\" or \"mass-spring\"")]);
-    case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edge (m)")]);
+    case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edges (m)")]);
     case(
         SPACE,
         "lattice = { cells = [1, 1, 1], side = 0.1 }",
@@ -369,7 +369,7 @@ fn solids_turned_inside_out_or_flat() {
     );
     case(
         "[[0, 1, 2, 3, 4, 6, 5, 7]]",
-        "has no volume: its nodes are in a plane, or not in their order list the corners in bit order",
+        "has no volume: its nodes are in a plane, or not in their order list the corners with x fastest",
     );
     case("[[0, 2, 1, 4]]", "turned inside out at rest write [0, 1, 2, 4]");
     case("[[0, 1, 2, 3]]", "has no volume");
@@ -606,12 +606,12 @@ fn bodies_that_no_rule_makes() {
         &[(
             5,
             55,
-            "`body.lattice.elements` is \"triangles\", but the block is in space: it has 3 `cells` take \"tetrahedra\"",
+            "`body.lattice.elements` is \"triangles\", but the lattice is in space: it has 3 `cells` use \"tetrahedra\"",
         )],
     );
     plane(
         "lattice = { cells = [1, 1], side = 0.1, elements = 'tetrahedra' }",
-        &[(5, 52, "is \"tetrahedra\", but the block is in the plane: it has 2 `cells` take \"triangles\"")],
+        &[(5, 52, "is \"tetrahedra\", but the lattice is in the plane: it has 2 `cells` use \"triangles\"")],
     );
     body(
         "lattice = { cells = [1, 1, 1], side = 0.1, elements = 'tetraeder' }",
@@ -692,11 +692,11 @@ fn mistakes_of_what_is_shown() {
     view("explode = -1", &[(20, 11, "expected a number from 0 to 3")]);
     view(
         "explode = 1\nshow = ['surfaces', 'springs']",
-        &[(20, 1, "`view.explode` draws elements apart, where springs have no place")],
+        &[(20, 1, "`view.explode` draws elements apart, so springs cannot be shown")],
     );
     view(
         "explode = 1\nshow = ['surfaces', 'displacements']",
-        &[(20, 1, "`view.explode` draws elements apart, where displacements have no place")],
+        &[(20, 1, "`view.explode` draws elements apart, so displacements cannot be shown")],
     );
     view("spring_colour = {}", &[(20, 1, "`view.spring_colour` is given, but springs are not shown")]);
     view(
@@ -725,5 +725,5 @@ fn cameras_that_see_nothing() {
         &[(10, 10, "inside the body at its start move it out with a larger `view.camera.distance`")],
     );
     camera("elevation = 1.5708", &[(10, 24, "is 1.5708; expected a number between -1.57 and 1.57")]);
-    camera("elevation = -1.6", &[(10, 24, "or the camera would look along its up-axis")]);
+    camera("elevation = -1.6", &[(10, 24, "does not look along its up-axis")]);
 }
