@@ -1,4 +1,4 @@
-//! `check`: what scenes hold, or every mistake in them.
+//! `check`: what scenes contain, or every mistake in them.
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, warn, with_causes};
@@ -12,7 +12,7 @@ Examples:
   localshape check scenes/fig4b.toml
   localshape check scenes/*.toml --quiet && echo all right";
 
-/// Read scenes and print what they hold, or every mistake found
+/// Check scenes and print what they contain, or every mistake in them
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Check {

@@ -8,10 +8,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What stands at the beginning of each comment, by which a file is known as one of ours.
+/// Beginning of each comment, by which files of this program are recognised.
 const MARK: &str = "made by localshape ";
 
-/// What was made, on a line.
+/// The result, on one line.
 pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     let bytes = path.metadata().map_or(0, |found| found.len());
     let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
@@ -26,21 +26,21 @@ fn file_size(bytes: u64) -> String {
     if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
 }
 
-/// What an animation says about itself.
+/// The comment of an animation.
 pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
     let version = env!("CARGO_PKG_VERSION");
     format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
 }
 
-/// Refuses to replace what this program did not make.
+/// Refuses to replace files that this program did not make.
 pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     /// Comments stand near the beginning, in films behind tables of all pictures.
     const BEGINNING: u64 = 1 << 20;
     let Ok(found) = path.metadata() else { return Ok(()) };
     let name = path.display();
     if !found.is_file() {
-        return Err(Failure::usage(format!("{name} is no file; choose another name with -o")));
+        return Err(Failure::usage(format!("{name} is not a file; choose another name with -o")));
     }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
@@ -48,10 +48,10 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     if is_ours(&bytes) {
         return Ok(());
     }
-    let told = format!(
-        "{name} is there already, and was not made by this command; choose another name with -o, or replace it with --overwrite"
+    let message = format!(
+        "{name} exists and was not made by this command; choose another name with -o, or replace it with --overwrite"
     );
-    Err(Failure::usage(told))
+    Err(Failure::usage(message))
 }
 
 /// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
@@ -89,7 +89,7 @@ impl From<AnimationError> for Failure {
             | AnimationError::Ffmpeg { .. }
             | AnimationError::Full(_) => Self::files(with_causes(&error)),
             AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
-                Self::files("cannot write to standard output: its reader has ended before the animation has")
+                Self::files("cannot write to standard output: the reader ended before the animation")
             }
             AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
             AnimationError::Stopped => Self::silent(Status::Interrupted),

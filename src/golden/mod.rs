@@ -1,7 +1,7 @@
-//! Comparing pictures so that a difference says what moved: the simulation, or the drawing of it.
+//! Compares pictures, and says whether the simulation or its drawing changed.
 //!
-//! Frames carry digests of the states that they show, and a golden, a folder with a few small pictures and a record of all
-//! its scene's states, also knows roughly where the nodes were. So the verdict is about physics first and about pixels then.
+//! Frames have digests of the states that they show. A golden, a folder with a few small pictures and a record of all states
+//! of its scene, also has rounded positions of nodes. So states are compared first, and then pixels.
 //!
 //! Two pictures, or two folders of them:
 //!
@@ -13,7 +13,7 @@
 //! # Ok::<(), localshape::golden::ComparisonError>(())
 //! ```
 //!
-//! To test scenes of one's own against goldens, in `cargo test`, there is `Suite` (with the feature `render`).
+//! `Suite` tests scenes against goldens in `cargo test` (with the feature `render`).
 
 mod archive;
 mod bless;
@@ -88,7 +88,7 @@ pub enum ComparisonError {
         file: PathBuf,
     },
     /// There is nothing to compare.
-    #[error("neither {} nor {} holds a PNG picture", expected.display(), actual.display())]
+    #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
     Empty {
         /// The folder with what was expected.
         expected: PathBuf,
@@ -97,7 +97,7 @@ pub enum ComparisonError {
     },
     /// The record of a golden makes no sense.
     #[error(
-        "{}: this is no record of a golden that can be read: {what}; if nothing else helps, delete the folder and make the \
+        "{}: this record of a golden cannot be read: {what}; if nothing else helps, delete the folder and make the \
          golden again",
         path.join(RECORD_FILE).display()
     )]
@@ -186,7 +186,7 @@ impl Comparison {
         notes.extend(other_moments(&read));
         if actual.kind == Kind::Folder && actual.pictures.is_empty() {
             let folder = actual.origin.display();
-            notes.push(format!("{folder} holds no PNG picture; to compare with a scene, name its file"));
+            notes.push(format!("{folder} has no PNG picture; to compare with a scene, name its file"));
         }
         notes.extend(actual.notes.iter().cloned());
         match ends(&expected, &actual) {
@@ -224,7 +224,7 @@ impl Comparison {
             .collect();
         pictures.sort_by(|one, other| one.name.cmp(&other.name));
         if actual.is_undrawn {
-            // What is wrong with the golden itself is wrong without pictures, too.
+            // Mistakes in the golden itself are reported even without pictures.
             pictures.retain(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
             notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
         }
@@ -243,7 +243,7 @@ impl Comparison {
             if let Some(record) = &sides[at].record {
                 return record.states.clone();
             }
-            // Archives may be large: they are read only to tell how far states are apart, or where pictures do not tell.
+            // Archives can be large: they are read only for distances, or for states that pictures do not record.
             if has_record || differs {
                 match sides[at].archive(&labels[at]) {
                     // It says the same of every frame that has a picture, and more of it.
@@ -273,7 +273,7 @@ impl Comparison {
 
     /// The verdict on the whole, in the words of the gravest on a picture.
     pub fn verdict(&self) -> &'static str {
-        // From the gravest on.
+        // From the most severe.
         const ORDER: [&str; 8] = [
             "unreadable",
             "state moved",
@@ -383,7 +383,7 @@ fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Tags>, P
     more.map(|(name, source)| (name.clone(), label(source))).collect()
 }
 
-/// What is wrong with a frame that has no picture in the golden; `None` if nothing is.
+/// The mistake in a frame that has no picture in the golden, if any.
 fn judge(name: &str, label: &Result<Option<Tags>, PictureError>, expected: &Side) -> Option<Compared> {
     let verdict = match label {
         Err(error) => Verdict::Unreadable { message: format!("{name}: {error}") },
@@ -407,7 +407,7 @@ fn judge(name: &str, label: &Result<Option<Tags>, PictureError>, expected: &Side
     Some(Compared { name: name.to_owned(), frame, verdict })
 }
 
-/// Adds what is known besides the two pictures: by how much a state moved, and whether a golden contradicts itself.
+/// Adds what is known besides the two pictures: how far a state moved, and whether a golden is contradictory.
 fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, courses: &[RunDifference]) {
     if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
         for here in runs {
@@ -424,7 +424,7 @@ fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, cours
     let drawn = record.pictures.iter().find(|drawn| drawn.file == picture.name);
     let contradiction = match (drawn, label) {
         (None, _) => Some("does not know this picture"),
-        (Some(_), None) => Some("knows its state, this picture has lost what it said of itself"),
+        (Some(_), None) => Some("knows its state, but this picture has lost its text chunks"),
         (Some(drawn), Some(label)) => {
             let is_other = label.states.iter().any(|(digest, run)| {
                 let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
@@ -446,7 +446,7 @@ fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, cours
     }
 }
 
-/// That pictures of one name show different frames or times, in words.
+/// A message if pictures of one name show different frames or times.
 fn other_moments(pairs: &[Pair]) -> Option<String> {
     let told = |pair: &Pair| {
         let shown = |label: &Option<Tags>| match label.as_ref()?.shows {
@@ -458,7 +458,7 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
         if frame != recorded {
             return Some(format!("{name} shows frame {frame} instead of frame {recorded}"));
         }
-        // Scenes whose steps are not alike have frames at slightly different times.
+        // With different steps, frames have slightly different times.
         let is_other = (is - was).abs() > 0.01 * is.abs().max(was.abs());
         is_other.then(|| {
             let [was, is] = [was, is].map(|time| rounded(time, 4));

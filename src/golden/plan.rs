@@ -3,7 +3,7 @@
 use super::record::{COORDINATE, DIGITS, ROOM_FOR_DIGESTS, ROOM_FOR_PLACES, Record};
 use std::collections::BTreeSet;
 
-/// Numbers that describe the state are recorded at about so many frames.
+/// Approximate number of frames with diagnostics.
 const FRAMES_WITH_NUMBERS: u64 = 10;
 
 /// Which frames and nodes are recorded.

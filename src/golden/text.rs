@@ -5,7 +5,7 @@ use super::{Compared, Comparison};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// So many pictures are told one by one.
+/// Number of pictures that are listed one by one.
 const MOST_TOLD: usize = 12;
 
 impl fmt::Display for Comparison {
@@ -18,7 +18,7 @@ impl Comparison {
     /// All of it in words, with the command that accepts what is there if that is asked for.
     pub(crate) fn told(&self, with_command: bool) -> String {
         let mut text = String::new();
-        self.tell(&mut text).expect("a string takes all");
+        self.tell(&mut text).expect("writing to a string");
         if let Some(command) = self.command_to_accept().filter(|_| with_command) {
             let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
             text += &format!("{what}: {command}\n");
@@ -38,7 +38,7 @@ impl Comparison {
             writeln!(f, "the {what} {} is missing", self.sides[0].origin.display())?;
             return self.tell_end(f);
         }
-        // Of two single pictures nobody knows which frame was first.
+        // For two single pictures the first frame is unknown.
         let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
         for moved in self.moved.iter().filter(|_| !are_pictures) {
             writeln!(f, "state moved: {moved}")?;
@@ -56,7 +56,7 @@ impl Comparison {
             writeln!(f, "{run}: {step}")?;
         }
         if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
-            // A single picture that passes is told, too.
+            // A single picture that passes is listed, too.
             writeln!(f, "{}: {}", only.name, only.verdict)?;
         }
         if self.pictures.len() > 1 {

@@ -44,7 +44,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
         let found = texts.map(|text| contrast(text, floor)).into_iter().fold(f64::INFINITY, f64::min);
         if found < LEAST_CONTRAST {
             let message = format!(
-                "words on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
+                "text on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
                 rounded_down(found)
             );
             report.at(&way("floor"), message, "bring the floor nearer to the background".to_owned());
@@ -59,11 +59,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
             written(palette.background)
         );
         let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
-        report.at(
-            &way("text"),
-            message,
-            format!("make the text {towards}, or leave it out: it follows the background"),
-        );
+        report.at(&way("text"), message, format!("make it {towards}, or remove it: it follows the background"));
     }
 }
 
@@ -86,13 +82,16 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
             let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
             let help = match like_alarm(other) {
                 None => format!("make it {towards}, such as \"{}\"", written(other)),
-                Some(_) => format!("choose another hue; this one, made {towards}, would be like turned-over elements"),
+                Some(_) => {
+                    format!("choose another hue; this one, made {towards}, would be similar to turned-over elements")
+                }
             };
             report.at(&path, message, help);
         } else if let Some(found) = like_alarm(colour) {
             let alarm = written(palette.alarm);
-            let message = format!("`run[{at}].colour` is too like that of turned-over elements, {alarm}: {found}");
-            report.at(&path, message, "choose another hue, or leave it out".to_owned());
+            let message =
+                format!("`run[{at}].colour` is too similar to that of turned-over elements, {alarm}: {found}");
+            report.at(&path, message, "choose another hue, or remove it".to_owned());
         }
     }
 }
@@ -107,7 +106,7 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
     let sound = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
     let Some(found) = TooLike::find(sound, palette.alarm) else { return };
     let opposite = written(if key == "body" { palette.alarm } else { found.colour });
-    let message = format!("`view.colours.{key}` is too like {other} {opposite} {}: {found}", found.place);
+    let message = format!("`view.colours.{key}` is too similar to {other} {opposite} {}: {found}", found.place);
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
 }
 
@@ -118,12 +117,12 @@ fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut R
     let shades = ramp(colour.map, theme).into_iter().map(|shade| (shade, ()));
     let Some(found) = TooLike::find(shades, palette.alarm) else { return };
     let message = format!(
-        "without a hatch, turned-over elements are told from the field by their colour alone, and {} is too like {} on \
-         its scale: {found}",
+        "without hatching, only their colour distinguishes turned-over elements from the field, and {} is too similar to \
+         {} on its scale: {found}",
         written(palette.alarm),
         written(found.colour)
     );
-    let help = "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
+    let help = "remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
     report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 

@@ -1,4 +1,4 @@
-//! How large a scene may be, asked before anything is allocated.
+//! Untrusted sizes are validated here before anything is allocated.
 
 use super::file::RunFile;
 use crate::reading::words::{count, size};
@@ -176,7 +176,7 @@ mod tests {
     fn what_no_machine_gives_is_said_beforehand() {
         let enormous = BodySize::new(8, [(usize::MAX, 1)]);
         let message = beyond(&enormous, &runs(["'shape-based'"]), &Limits::NONE).unwrap().message;
-        assert!(message.contains("which this machine does not give"), "{message}");
+        assert!(message.contains("which this machine does not have"), "{message}");
         assert_eq!(beyond(&block(1), &runs(["'shape-based'"]), &Limits::NONE), None);
     }
 

@@ -1,4 +1,4 @@
-//! Blocks of cells, whole or cut into triangles, tetrahedra or whatever fits.
+//! Lattices of cells, whole or cut into triangles, tetrahedra or mixed elements.
 
 use super::grid::Grid;
 use super::{Made, irregular, mixed};
@@ -23,7 +23,7 @@ pub(super) fn size(typed: &LatticeFile) -> BodySize {
     BodySize::new(product(1).saturating_add(middles), [(corners, cells.saturating_mul(pieces))])
 }
 
-/// A block. In the plane its cells are squares or triangles, in space cubes or tetrahedra, whatever the other asks for.
+/// A lattice. In the plane its cells are squares or triangles, in space cubes or tetrahedra.
 pub(super) fn make(typed: &LatticeFile) -> Made {
     let grid = Grid::new(typed);
     let mut elements = IndexLists::default();

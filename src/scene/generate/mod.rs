@@ -1,6 +1,6 @@
-//! Bodies made by a rule: blocks of cells, polygons, discs and chains of bars.
+//! Generated bodies: lattices, polygons, discs and chains of bars.
 //!
-//! Each says first how large it will be, then makes itself. What is typed has been checked before.
+//! Sizes are computed first, to be validated before the body is made. The input has been checked before.
 
 mod grid;
 mod irregular;
@@ -18,7 +18,7 @@ use super::limits::BodySize;
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
 
-/// A body that a scene names by a rule.
+/// A body that is generated.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Generator<'a> {
     /// A block of cells.
@@ -41,7 +41,7 @@ pub(super) struct Made {
 }
 
 impl<'a> Generator<'a> {
-    /// The one that a scene names; the first, should there be several.
+    /// The generator in a scene; the first, if there are several.
     pub(super) fn of(file: &'a BodyFile) -> Option<Self> {
         let lattice = file.lattice.as_ref().map(Self::Lattice);
         let polygon = || file.polygon.as_ref().map(Self::Polygon);
@@ -83,7 +83,7 @@ impl<'a> Generator<'a> {
         }
     }
 
-    /// The length of all edges (m), where that is what was typed.
+    /// The length of all edges (m), if it was typed.
     pub(super) fn side(self) -> Option<f64> {
         match self {
             Self::Lattice(LatticeFile { side: SideFile::Equal(side), elements: CellsFile::Cells, .. }) => Some(*side),

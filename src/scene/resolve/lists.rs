@@ -13,7 +13,7 @@ use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// Where the lists stand.
+/// Where the lists are.
 #[derive(Clone, Debug)]
 pub(super) enum ListSource {
     /// In the scene itself.
@@ -23,7 +23,7 @@ pub(super) enum ListSource {
 }
 
 impl ListSource {
-    /// How a list or an entry is called.
+    /// The name of a list or an entry in messages.
     pub(super) fn name(&self, key: &str, at: &[usize]) -> String {
         let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
         match self {
@@ -59,7 +59,7 @@ impl ListSource {
         }
     }
 
-    /// In the scene there is only the name of the file to point at, so the message says the rest.
+    /// The position is that of the file's name in the scene, so the message names list and entry.
     fn tell_of_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
@@ -142,13 +142,12 @@ impl Lists {
         (report.total() == before).then_some(lists).flatten()
     }
 
-    /// A digest of everything listed: whatever changes the body changes it, and neither compression nor the width of
-    /// numbers nor where the file lies does.
+    /// A digest of all lists: it depends on the body, not on compression, the width of numbers or the location of the file.
     pub(super) fn digest(&self) -> String {
         let mut hasher = Sha256::new();
         let coordinates = |points: &[DVec3], hasher: &mut Sha256| {
             for point in points {
-                // Both zeros mean the same.
+                // Zero and −0 are equal.
                 hasher.update(point.to_array().map(|coordinate| (coordinate + 0.0).to_le_bytes()).as_flattened());
             }
         };
@@ -161,7 +160,7 @@ impl Lists {
         for (key, lists) in [("elements", Some(&self.elements)), ("faces", self.faces.as_ref())] {
             let Some(lists) = lists else { continue };
             lengths(&mut hasher, key, lists.len());
-            // One by one, numbers cost more than their digest.
+            // Hashing numbers one by one is slower.
             let mut bytes = Vec::new();
             for list in lists.iter() {
                 bytes.clear();
@@ -188,13 +187,13 @@ impl Lists {
     }
 }
 
-/// Endings of files of meshes.
+/// Extensions of mesh files.
 const MESHES: [&str; 15] =
     ["obj", "stl", "ply", "off", "msh", "mesh", "vtk", "vtu", "gltf", "glb", "node", "ele", "inp", "fbx", "3mf"];
 
-/// What to do about a file that is no archive.
+/// The help for a file that is not an archive.
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
-                        -1 behind short ones); docs/bodies.md has an example";
+                        -1 at the end of short ones); docs/bodies.md has an example";
 
 /// The arrays that an archive may have, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
@@ -212,7 +211,7 @@ impl Reader<'_, '_> {
         self.source.tell(self.report, key, at, message, help);
     }
 
-    /// Says something that begins with the name of an array or of one of its places.
+    /// Reports a mistake whose message begins with the name of an array or entry.
     fn say(&mut self, key: &str, at: &[usize], message: &str) {
         let message = format!("`{}` {message}", self.source.name(key, at));
         self.tell(key, at, message, None);
@@ -220,13 +219,13 @@ impl Reader<'_, '_> {
 
     fn lists(&mut self) -> Option<Lists> {
         for name in self.npz.names().iter().filter(|name| !ARRAYS.contains(&name.as_str())) {
-            // As `meshio` calls them.
+            // The names in `meshio`.
             let known = [("points", "nodes"), ("cells", "elements")].into_iter().find(|(other, _)| other == name);
             let help = match known.map(|(_, ours)| ours).or_else(|| nearest(name, &ARRAYS)) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
-            let message = format!("`{}` is no array that a body has", self.source.name(name, &[]));
+            let message = format!("`{}` is not an array of a body", self.source.name(name, &[]));
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
@@ -249,7 +248,7 @@ impl Reader<'_, '_> {
         Some(Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
     }
 
-    /// The head of an array that must be there.
+    /// The header of a required array.
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.optional_head(key);
         if found.is_none() {
@@ -260,12 +259,12 @@ impl Reader<'_, '_> {
         found.flatten()
     }
 
-    /// The head of an array that need not be there.
+    /// The header of an optional array.
     fn optional(&mut self, key: &str) -> Option<Array> {
         self.optional_head(key).flatten()
     }
 
-    /// Nothing if there is no such array; none in it if it has a mistake, which is reported.
+    /// `None` if there is no such array; `Some(None)` if it has a mistake, which is reported.
     fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
         match self.npz.array(key)? {
             Ok(array) if array.shape.first() == Some(&0) && !["faces"].contains(&key) => {
@@ -396,7 +395,7 @@ impl Reader<'_, '_> {
         Some(pairs)
     }
 
-    /// Rows of nodes without the places that they do not use.
+    /// Rows of nodes without their unused entries.
     fn rows_of_indices(&mut self, key: &str, array: &Array, least: usize) -> Option<IndexLists> {
         let expected = format!("one row for each of the {key} with at least {least} nodes");
         let values = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
@@ -409,7 +408,7 @@ impl Reader<'_, '_> {
             let used = used.map_or(0, |last| last + 1);
             for column in 0..used {
                 match values.whole(row, column) {
-                    -1 => self.say(key, &[row, column], "is -1, and a node follows it; unused places come last"),
+                    -1 => self.say(key, &[row, column], "is -1, but a node follows; expected -1 only at the end"),
                     _ => row_of.extend(self.index(key, &values, [row, column])),
                 }
             }
