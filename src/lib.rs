@@ -4,33 +4,37 @@
 //! Manipulation Based on Maintaining Local Shapes*: elasticity belongs to volume elements that remember their shape, and
 //! not to springs. [`paper`] maps its equations to this crate.
 //!
-//! # From a scene to a picture
+//! # From code to a picture
 //!
 #![cfg_attr(feature = "render", doc = "```")]
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
-//! use localshape::gpu::{AdapterChoice, Gpu};
-//! use localshape::scene::{Limits, Scene};
-//! use localshape::runner::Runner;
-//! use localshape::{picture, render::Renderer};
+//! use localshape::scene::{BodyBuilder, Lattice, Limits, ObstacleBuilder, Rotation, Scene};
+//! use localshape::sim::model::{mass_spring, shape_based};
+//! use localshape::{gpu::AdapterChoice, gpu::Gpu, picture, render::Renderer, runner::Runner};
 //!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let scene = Scene::load("scenes/fig4b.toml".as_ref(), &Limits::default())?;
-//! // Both runs, half a second after they touched the floor.
-//! let frame = Runner::new(&scene, &[0, 1]).frame(30);
-//! assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 0);
-//! assert_eq!(frame.runs[1].snapshot.diagnostics.turned_over, 9);
-//! # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
-//! let gpu = Gpu::new(&AdapterChoice::Auto)?;
-//! let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
-//! # let folder = tempfile::tempdir()?; let path = folder.path().join("cubes.png");
-//! # let _ = r#"
-//! image.save("cubes.png")?;
-//! # "#; image.save(path)?;
-//! # Ok(())
-//! # }
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! #     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
+//! #     let folder = tempfile::tempdir()?;
+//!     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.
+//!     let cubes = BodyBuilder::lattice(Lattice::new([3, 3, 3], 0.1));
+//!     let scene = Scene::builder("cubes", cubes.rotation(Rotation::about([1.0, 0.0, 1.0], 0.4)).lowest(0.2))
+//!         .gravity([0.0, -9.8, 0.0])
+//!         .obstacle(ObstacleBuilder::floor(0.0).restitution(0.5))
+//!         .run("Local shape", shape_based::Parameters::new(1e4))
+//!         .run("Springs", mass_spring::Parameters::new(1e4))
+//!         .build(&Limits::default())?;
+//!     // Both runs half a second after the start, beside each other.
+//!     let frame = Runner::new(&scene, &[0, 1]).frame(30);
+//!     let gpu = Gpu::new(&AdapterChoice::Auto)?;
+//!     let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
+//! #     let _ = r#"
+//!     image.save("cubes.png")?;
+//! #     "#; image.save(folder.path().join("cubes.png"))?;
+//!     Ok(())
+//! }
 //! ```
 //!
-//! A body made in code becomes a scene by [`Scene::new`](scene::Scene::new), with a camera that shows it.
+//! [`Scene::load`](scene::Scene::load) reads the same from a file.
 //!
 //! # The way of the data
 //!

@@ -14,9 +14,9 @@ pub(crate) mod typed;
 mod view;
 
 pub(crate) use contrast::check_runs;
-pub(crate) use framing::{Around, camera};
+pub(crate) use framing::Around;
 pub use palette::{LineStyle, Palette};
-pub(crate) use resolve::{columns, resolve};
+pub(crate) use resolve::resolve;
 pub use view::{
     Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,
     Visible,

@@ -66,10 +66,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// What a scene shows that says nothing about it, from a metre before the origin; see [`Scene::framed`] for a camera
-    /// that shows a body.
-    ///
-    /// [`Scene::framed`]: crate::scene::Scene::framed
+    /// What a scene shows that says nothing about it, from a metre before the origin.
     fn default() -> Self {
         Self {
             size: [1280, 720],

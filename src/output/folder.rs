@@ -327,22 +327,18 @@ impl Owner {
 mod tests {
     use super::*;
     use crate::output::Summary;
-    use crate::sim::body::{Body, Dimension, Solids};
-    use crate::sim::integrate::Integrator;
+    use crate::scene::{BodyBuilder, Limits};
     use crate::sim::model::shape_based::ShapeBased;
-    use glam::DVec3;
+    use std::sync::Arc;
 
     /// They have no digest that could tell them apart.
     #[test]
-    fn scenes_made_in_code_are_never_taken_for_each_other() {
+    fn scenes_with_models_of_their_own_are_never_taken_for_each_other() {
         let scene = |title: &str, side: f64| {
-            let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|node| side * node).to_vec();
-            let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
-            let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
             let (rotation, damping_of) = Default::default();
             let model = ShapeBased { stiffness: 1e4, damping: 0.0, passes: 2, rotation, damping_of };
-            let run = crate::scene::Run::new("run", std::sync::Arc::new(model), Integrator::SemiImplicitEuler, 1e-3);
-            Scene::new(title, body, vec![run])
+            let scene = Scene::builder(title, BodyBuilder::polygon(3, side)).own_run("run", Arc::new(model));
+            scene.build(&Limits::default()).unwrap()
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();

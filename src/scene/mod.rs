@@ -9,7 +9,7 @@
 //! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font`
 //! reads, lie beside it, too.
 
-mod code;
+mod builder;
 mod digest;
 mod error;
 pub mod figure;
@@ -27,7 +27,9 @@ mod summary;
 pub(crate) use generate::random;
 
 pub use crate::reading::{Mistake, Mistakes};
+pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, SceneBuilder};
 pub use error::SceneError;
+pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Start, StartShape, Swing};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;

@@ -3,6 +3,7 @@
 use super::{Coordinates, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::mem::swap;
 
 /// The body: a `lattice`, a `polygon`, a `fan`, a `disc` or `bars`, or `nodes` and `elements` listed one by one, here or in
 /// a `file`.
@@ -28,7 +29,7 @@ use serde::{Deserialize, Serialize};
 pub(in crate::scene) struct BodyFile {
     /// A block of equal cubes, or of equal squares in the plane, whole or cut into other elements. It stands on y = 0, and
     /// its middle is at x = 0 and z = 0.
-    pub(in crate::scene) lattice: Option<LatticeFile>,
+    pub(in crate::scene) lattice: Option<Lattice>,
     /// One regular polygon in the plane as a single element. It stands with a side on y = 0, its middle above the origin.
     pub(in crate::scene) polygon: Option<PolygonFile>,
     /// A regular polygon in the plane, cut into triangles around a node in its middle. It stands like a `polygon`.
@@ -57,7 +58,7 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
     /// A shape without depth, turned inside out or at random in which the body starts instead of its own. Default: its
     /// own.
-    pub(in crate::scene) start: Option<StartFile>,
+    pub(in crate::scene) start: Option<Start>,
     /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not turned by `rotation`.
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass` for all.
@@ -76,7 +77,7 @@ pub(in crate::scene) struct BodyFile {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
     /// A turn about the mean of the nodes before the start. Default: none.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
     /// A shift after the turn (m). Default: none.
     pub(in crate::scene) offset: Option<Coordinates>,
     /// Height (m) at which the lowest node starts, along y, after turn and shift. Default: wherever those left it.
@@ -87,10 +88,43 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) spin: Option<SpinFile>,
 }
 
+impl BodyFile {
+    /// Exchanges all lists with those of another body.
+    pub(in crate::scene) fn swap_lists(&mut self, other: &mut Self) {
+        swap(&mut self.nodes, &mut other.nodes);
+        swap(&mut self.elements, &mut other.elements);
+        swap(&mut self.springs, &mut other.springs);
+        swap(&mut self.faces, &mut other.faces);
+        swap(&mut self.positions, &mut other.positions);
+        swap(&mut self.velocities, &mut other.velocities);
+        swap(&mut self.masses, &mut other.masses);
+    }
+
+    /// Takes all lists out. A single valid entry stands for each that has any.
+    pub(in crate::scene) fn take_lists(&mut self) -> Self {
+        fn short<T>(list: &Option<Vec<T>>, entry: T) -> Option<Vec<T>> {
+            list.as_ref().map(|list| list.first().map(|_| entry).into_iter().collect())
+        }
+        let point = || Coordinates(vec![0.0; 2]);
+        let mut lists = Self {
+            nodes: short(&self.nodes, point()),
+            elements: short(&self.elements, vec![0; 2]),
+            springs: short(&self.springs, [0; 2]),
+            faces: short(&self.faces, vec![0; 3]),
+            positions: short(&self.positions, point()),
+            velocities: short(&self.velocities, point()),
+            masses: short(&self.masses, Positive(1.0)),
+            ..Self::default()
+        };
+        self.swap_lists(&mut lists);
+        lists
+    }
+}
+
 /// A start from which bodies seldom come back, around the middle of the nodes at rest.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct StartFile {
+pub struct Start {
     /// Whether all nodes are at a `point`, on a `line` or in a `plane`, each as near as can be to where it is at rest; or
     /// in a `mirror-image`; or at random places in the box around the body, a `cloud`.
     pub(in crate::scene) shape: StartShape,
@@ -98,7 +132,7 @@ pub(in crate::scene) struct StartFile {
     /// Default: along x.
     pub(in crate::scene) direction: Option<Coordinates>,
     /// Chooses among random clouds; nothing else has one. The same seed makes the same cloud everywhere.
-    #[serde(default = "first")]
+    #[serde(default = "first", skip_serializing_if = "is_first")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub(in crate::scene) seed: u32,
 }
@@ -106,7 +140,7 @@ pub(in crate::scene) struct StartFile {
 /// What a body becomes at its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub(in crate::scene) enum StartShape {
+pub enum StartShape {
     /// All nodes at one place.
     Point,
     /// All nodes on a straight line.
@@ -157,7 +191,7 @@ pub(in crate::scene) struct SpinFile {
 /// -0.3 m to 0.3 m. Nodes are numbered with x fastest, then y, then z.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct LatticeFile {
+pub struct Lattice {
     /// How many cells along x, y and z; two numbers make squares in the plane.
     #[schemars(length(min = 2, max = 3), inner(range(min = 1, max = 4_000_000_000_u32)))]
     pub(in crate::scene) cells: Vec<u32>,
@@ -165,7 +199,7 @@ pub(in crate::scene) struct LatticeFile {
     pub(in crate::scene) side: SideFile,
     /// What the cells are: the elements themselves, or cut or joined to others.
     #[serde(default)]
-    pub(in crate::scene) elements: CellsFile,
+    pub(in crate::scene) elements: Cells,
     /// Nodes are moved at random by up to this part of a cell's shortest side. Those on the outside move only within it
     /// and the corners not at all, so that the block keeps its shape; less far where an element would come out flat.
     #[serde(default)]
@@ -181,6 +215,10 @@ fn first() -> u32 {
     1
 }
 
+fn is_first(seed: &u32) -> bool {
+    *seed == first()
+}
+
 /// The sides of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
@@ -194,7 +232,7 @@ pub(in crate::scene) enum SideFile {
 /// What becomes of the cells of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum CellsFile {
+pub enum Cells {
     /// Each is an element.
     #[default]
     Cells,
@@ -250,7 +288,7 @@ pub(in crate::scene) struct BarsFile {
 /// A turn.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct RotationFile {
+pub struct Rotation {
     /// The axis, of any length but zero, about which the turn is counter-clockwise when it points at the viewer. In
     /// the plane there is none.
     pub(in crate::scene) axis: Option<Coordinates>,

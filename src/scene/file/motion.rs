@@ -1,6 +1,6 @@
 //! Paths and grips as typed.
 
-use super::{Coordinates, RotationFile};
+use super::{Coordinates, Rotation};
 use crate::sim::motion::Ease;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A path from key to key.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct MotionFile {
+pub struct MotionPath {
     /// Where it is at which times, in rising order. Before the first key it is at the first, after the last at the last.
     #[schemars(length(min = 1))]
     pub(in crate::scene) keys: Vec<KeyFile>,
@@ -31,13 +31,13 @@ pub(in crate::scene) struct KeyFile {
     pub(in crate::scene) shift: Option<Coordinates>,
     /// The turn, about the middle unless `about` says otherwise. Angles beyond a whole turn go round more than once.
     /// Default: no turn, whatever the key before has.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
 }
 
 /// A motion to and fro: `sin(2π t / period + phase)` times a shift and a turn.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct SwingFile {
+pub struct Swing {
     /// Duration of one swing to and fro (s).
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) period: f64,
@@ -47,7 +47,7 @@ pub(in crate::scene) struct SwingFile {
     /// The farthest shift (m). Default: none.
     pub(in crate::scene) shift: Option<Coordinates>,
     /// The farthest turn, about the middle unless `about` says otherwise. Default: none.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
 }
 
 /// Nodes that are held where they are.
@@ -73,7 +73,7 @@ pub(in crate::scene) struct GrabFile {
     pub(in crate::scene) nodes: NodesFile,
     /// The way of the hand: it grabs the nodes at the time of the first key, wherever they are then, drags them as far
     /// as the hand has moved since, turning about their middle, and lets them go at the last key.
-    pub(in crate::scene) path: MotionFile,
+    pub(in crate::scene) path: MotionPath,
 }
 
 /// Some nodes of a body: a list, or those in a region at the start. `localshape check` prints where the body starts.

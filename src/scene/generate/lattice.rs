@@ -1,7 +1,7 @@
 //! Blocks of cells, whole or cut into triangles, tetrahedra or whatever fits.
 
 use super::{Made, irregular, mixed};
-use crate::scene::file::{CellsFile, LatticeFile, SideFile};
+use crate::scene::file::{Cells, Lattice, SideFile};
 use crate::sim::body::IndexLists;
 use crate::sim::census::Census;
 use glam::DVec3;
@@ -17,7 +17,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    fn new(typed: &LatticeFile) -> Self {
+    fn new(typed: &Lattice) -> Self {
         let axis = |axis: usize| match &typed.side {
             SideFile::Equal(side) => *side,
             SideFile::PerAxis(sides) => sides.get(axis).map_or(1.0, |side| side.0),
@@ -77,17 +77,17 @@ impl Grid {
 }
 
 /// How large a block will be; see [`super::Generator::census`].
-pub(super) fn census(typed: &LatticeFile, most_nodes: u64) -> Census {
+pub(super) fn census(typed: &Lattice, most_nodes: u64) -> Census {
     let whole = Census::of_lattice(&typed.cells);
     let grid = Grid::new(typed);
     let cells = whole.count();
     let pieces = |nodes: u128, elements| Census { nodes, elements, lattice: false, ..whole.clone() };
     let each = |corners: usize, number: u128| BTreeMap::from([(corners, cells.saturating_mul(number))]);
     match typed.elements {
-        CellsFile::Cells => whole,
-        CellsFile::Triangles => pieces(whole.nodes, each(3, 2)),
-        CellsFile::Tetrahedra => pieces(whole.nodes, each(4, 5)),
-        CellsFile::Mixed if grid.len() <= most_nodes.min(u32::MAX.into()) => {
+        Cells::Cells => whole,
+        Cells::Triangles => pieces(whole.nodes, each(3, 2)),
+        Cells::Tetrahedra => pieces(whole.nodes, each(4, 5)),
+        Cells::Mixed if grid.len() <= most_nodes.min(u32::MAX.into()) => {
             let (mut middles, mut elements) = (0, BTreeMap::new());
             mixed::visit(
                 &grid,
@@ -101,24 +101,24 @@ pub(super) fn census(typed: &LatticeFile, most_nodes: u64) -> Census {
             pieces(whole.nodes + middles, elements)
         }
         // Twice as many triangles as squares, or twelve tetrahedra around the middle of each cube.
-        CellsFile::Mixed if grid.is_flat() => pieces(whole.nodes, each(3, 2)),
-        CellsFile::Mixed => pieces(whole.nodes.saturating_add(cells), each(4, 12)),
+        Cells::Mixed if grid.is_flat() => pieces(whole.nodes, each(3, 2)),
+        Cells::Mixed => pieces(whole.nodes.saturating_add(cells), each(4, 12)),
     }
 }
 
 /// A block. In the plane its cells are squares or triangles, in space cubes or tetrahedra, whatever the other asks for.
-pub(super) fn make(typed: &LatticeFile) -> Made {
+pub(super) fn make(typed: &Lattice) -> Made {
     let grid = Grid::new(typed);
     let mut elements = IndexLists::default();
     // The cells that have a node in their middle; these nodes follow those at the corners.
     let mut middles: Vec<[u32; 8]> = Vec::new();
     let corners = grid.len() as u32;
     match typed.elements {
-        CellsFile::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
-        CellsFile::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
-        CellsFile::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
-        CellsFile::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
-        CellsFile::Mixed => mixed::visit(
+        Cells::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
+        Cells::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
+        Cells::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
+        Cells::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
+        Cells::Mixed => mixed::visit(
             &grid,
             typed.seed,
             |number, cell| {
@@ -162,12 +162,12 @@ mod tests {
     use crate::sim::diagnose::volume_by_faces;
     use crate::sim::topology::kind;
 
-    fn typed(cells: &[u32], elements: CellsFile, irregular: f64, seed: u32) -> LatticeFile {
-        LatticeFile { cells: cells.to_vec(), side: SideFile::Equal(0.5), elements, irregular, seed }
+    fn typed(cells: &[u32], elements: Cells, irregular: f64, seed: u32) -> Lattice {
+        Lattice { cells: cells.to_vec(), side: SideFile::Equal(0.5), elements, irregular, seed }
     }
 
     fn plain(cells: &[u32]) -> Made {
-        make(&typed(cells, CellsFile::Cells, 0.0, 1))
+        make(&typed(cells, Cells::Cells, 0.0, 1))
     }
 
     #[test]
@@ -191,30 +191,30 @@ mod tests {
     #[test]
     fn each_axis_may_have_its_own_side() {
         let sides = SideFile::PerAxis([0.1, 0.2, 0.4].map(Positive).to_vec());
-        let made = make(&LatticeFile { side: sides, ..typed(&[3, 2, 1], CellsFile::Cells, 0.0, 1) });
+        let made = make(&Lattice { side: sides, ..typed(&[3, 2, 1], Cells::Cells, 0.0, 1) });
         let (low, high) = bounds(&made.nodes);
         assert!((low - DVec3::new(-0.15, 0.0, -0.2)).length() < 1e-15 && (high.y - 0.4).abs() < 1e-15);
     }
 
     /// Blocks of all kinds of pieces, even and uneven.
-    fn blocks() -> Vec<LatticeFile> {
+    fn blocks() -> Vec<Lattice> {
         let mut blocks = Vec::new();
         for irregular in [0.0, 0.1, 0.4] {
             for seed in [1, 2, 77] {
                 for cells in [&[1, 1][..], &[2, 1], &[7, 4], &[1, 9]] {
-                    for elements in [CellsFile::Cells, CellsFile::Triangles, CellsFile::Mixed] {
+                    for elements in [Cells::Cells, Cells::Triangles, Cells::Mixed] {
                         blocks.push(typed(cells, elements, irregular, seed));
                     }
                 }
                 for cells in [&[1, 1, 1][..], &[2, 1, 1], &[5, 4, 3], &[8, 8, 8]] {
-                    for elements in [CellsFile::Cells, CellsFile::Tetrahedra, CellsFile::Mixed] {
+                    for elements in [Cells::Cells, Cells::Tetrahedra, Cells::Mixed] {
                         blocks.push(typed(cells, elements, irregular, seed));
                     }
                 }
             }
         }
         let thin = SideFile::PerAxis([1.0, 0.01, 0.1].map(Positive).to_vec());
-        blocks.push(LatticeFile { side: thin, ..typed(&[6, 6, 6], CellsFile::Mixed, 0.4, 5) });
+        blocks.push(Lattice { side: thin, ..typed(&[6, 6, 6], Cells::Mixed, 0.4, 5) });
         blocks
     }
 
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn mixed_blocks_have_elements_of_every_kind() {
-        let kinds = |cells: &[u32]| census(&typed(cells, CellsFile::Mixed, 0.0, 1), u64::MAX).elements;
+        let kinds = |cells: &[u32]| census(&typed(cells, Cells::Mixed, 0.0, 1), u64::MAX).elements;
         let plane = kinds(&[12, 12]);
         assert!((3..=6).all(|corners| plane[&corners] >= 8), "{plane:?}");
         let space = kinds(&[6, 6, 6]);
@@ -305,7 +305,7 @@ mod tests {
         for cells in [&[9, 9][..], &[9, 9, 9]] {
             let flat = plain(cells).nodes;
             let distances = |seed| -> Vec<f64> {
-                let moved = make(&typed(cells, CellsFile::Cells, 0.2, seed)).nodes;
+                let moved = make(&typed(cells, Cells::Cells, 0.2, seed)).nodes;
                 moved.iter().zip(&flat).map(|(a, b)| a.distance(*b) / 0.5).collect()
             };
             let one = distances(1);

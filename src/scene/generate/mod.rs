@@ -12,7 +12,7 @@ mod start;
 pub(super) use start::brought_to_start;
 
 use super::file::BodyFile;
-use super::file::{BarsFile, CellsFile, DiscFile, LatticeFile, PolygonFile, SideFile};
+use super::file::{BarsFile, Cells, DiscFile, Lattice, PolygonFile, SideFile};
 use crate::sim::body::{Dimension, IndexLists};
 use crate::sim::census::Census;
 use glam::DVec3;
@@ -21,7 +21,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Generator<'a> {
     /// A block of cells.
-    Lattice(&'a LatticeFile),
+    Lattice(&'a Lattice),
     /// One regular polygon.
     Polygon(&'a PolygonFile),
     /// Triangles around a middle node.
@@ -86,7 +86,7 @@ impl<'a> Generator<'a> {
     /// The length of all edges (m), where that is what was typed.
     pub(super) fn side(self) -> Option<f64> {
         match self {
-            Self::Lattice(LatticeFile { side: SideFile::Equal(side), elements: CellsFile::Cells, .. }) => Some(*side),
+            Self::Lattice(Lattice { side: SideFile::Equal(side), elements: Cells::Cells, .. }) => Some(*side),
             _ => None,
         }
     }

@@ -27,6 +27,14 @@ macro_rules! models {
             $($(#[$doc])* $name($module::Parameters),)*
         }
 
+        $(
+            impl From<$module::Parameters> for ModelParameters {
+                fn from(parameters: $module::Parameters) -> Self {
+                    Self::$name(parameters)
+                }
+            }
+        )*
+
         impl ModelParameters {
             fn typed(&self) -> &dyn TypedModel {
                 match self {
