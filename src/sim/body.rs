@@ -1,9 +1,9 @@
 //! What is simulated: a [`Body`], which never changes.
 
 use super::hull::Hulls;
-pub use super::lists::IndexLists;
+pub(crate) use super::lists::IndexLists;
 use super::topology;
-pub use super::topology::{Dimension, ElementKind, Faces, Solids};
+pub(crate) use super::topology::{Dimension, ElementKind, Faces, Solids};
 use glam::DVec3;
 
 /// A deformable body as it is at rest. It never changes during a simulation and all runs of a scene share it.
@@ -20,7 +20,7 @@ pub struct Body {
     /// What each element is.
     pub kinds: Vec<ElementKind>,
     /// The faces at rest of those elements that are of no particular kind.
-    pub hulls: Hulls,
+    pub(crate) hulls: Hulls,
     /// What can be drawn.
     pub faces: Faces,
 }
@@ -34,7 +34,7 @@ impl Body {
     ///
     /// # Panics
     /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has checked its input.
-    pub fn new(
+    pub(crate) fn new(
         dimension: Dimension,
         rest: Vec<DVec3>,
         mass: Vec<f64>,
@@ -93,7 +93,7 @@ fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
 }
 
 /// The corners of the box around `points`, low and high; zero for no points.
-pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+pub(crate) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
 }

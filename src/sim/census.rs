@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// The sizes of a body that is not made yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Census {
+pub(crate) struct Census {
     /// In the plane or in space.
     pub dimension: Dimension,
     /// Nodes.
@@ -22,7 +22,7 @@ pub struct Census {
 
 impl Census {
     /// A block of cells, of any size: cubes along three axes, squares along two.
-    pub fn of_lattice(cells: &[u32]) -> Self {
+    pub(crate) fn of_lattice(cells: &[u32]) -> Self {
         let product = |extra: u128| cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
         let (dimension, corners) = if cells.len() == 2 { (Dimension::Plane, 4) } else { (Dimension::Space, 8) };
         let elements = BTreeMap::from([(corners, product(0))]);
@@ -30,23 +30,23 @@ impl Census {
     }
 
     /// The number of elements.
-    pub fn count(&self) -> u128 {
+    pub(crate) fn count(&self) -> u128 {
         self.elements.values().fold(0, |sum, &count| sum.saturating_add(count))
     }
 
     /// Entries in all element lists together.
-    pub fn corners(&self) -> u128 {
+    pub(crate) fn corners(&self) -> u128 {
         self.sum(|_, nodes| nodes as u128)
     }
 
     /// Entries in the lists of the faces of all elements that are convex hulls, at most.
-    pub fn hull_corners(&self) -> u128 {
+    pub(crate) fn hull_corners(&self) -> u128 {
         let hulls = |kind, nodes: usize| if kind == ElementKind::Other { face_corners(kind, nodes) } else { 0 };
         self.sum(hulls)
     }
 
     /// The sum over all elements of something that follows from an element's kind and its number of nodes.
-    pub fn sum(&self, of_one: impl Fn(ElementKind, usize) -> u128) -> u128 {
+    pub(crate) fn sum(&self, of_one: impl Fn(ElementKind, usize) -> u128) -> u128 {
         self.elements.iter().fold(0, |sum: u128, (&nodes, &count)| {
             sum.saturating_add(of_one(topology::kind(self.dimension, self.solids, nodes), nodes).saturating_mul(count))
         })

@@ -15,7 +15,7 @@ use std::sync::Arc;
 const LEAST_ELEMENTS: usize = 1024;
 
 /// What is known of a body beforehand.
-pub struct Diagnose {
+pub(crate) struct Diagnose {
     body: Arc<Body>,
     sizes: Vec<ElementSize>,
     /// Total volume at rest (m³, in the plane m²).
@@ -38,7 +38,7 @@ enum ElementSize {
 
 impl Diagnose {
     /// Measures the body at rest.
-    pub fn new(body: &Arc<Body>) -> Self {
+    pub(crate) fn new(body: &Arc<Body>) -> Self {
         let sizes: Vec<_> = (0..body.elements.len()).map(|element| element_size(body, element)).collect();
         let volume_at_rest = sizes
             .iter()
@@ -53,14 +53,19 @@ impl Diagnose {
     }
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
-    pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
+    pub(crate) fn state(
+        &self,
+        state: Nodes<'_>,
+        gravity: DVec3,
+        report: &Report,
+    ) -> (Diagnostics, Vec<bool>, Placement) {
         let facts = self.facts(state, gravity, || report.clone());
         let all = Diagnostics::of(&facts, |_| true);
         (all, facts.volumes.turned_over.clone(), *facts.placement)
     }
 
     /// Some diagnostics of a state; the others are zero. What no one of them needs is not computed.
-    pub fn some(
+    pub(crate) fn some(
         &self,
         state: Nodes<'_>,
         gravity: DVec3,

@@ -19,20 +19,20 @@ pub struct Grip {
 
 impl Grip {
     /// How far the hand has gone since it gripped, at a time (s), turning about the mean of the nodes then.
-    pub fn way(&self, time: f64) -> Pose {
+    pub(crate) fn way(&self, time: f64) -> Pose {
         let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
         Pose { shift: now.shift - first.shift, turn: now.turn * first.turn.conjugate() }
     }
 
     /// Whether the nodes follow the hand at a time (s).
-    pub fn holds(&self, time: f64) -> bool {
+    pub(crate) fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until
     }
 }
 
 /// One step in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// When it begins (s).
     pub begin: f64,
     /// When it ends (s).

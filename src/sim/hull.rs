@@ -62,7 +62,7 @@ impl Hulls {
 ///
 /// Faces are found one beside the other by turning a plane about each edge ("gift wrapping"), which takes the product
 /// of the numbers of points and faces.
-pub fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
+pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
     let (low, high) = super::body::bounds(points);
     let size = (high - low).max_element();
     if size <= 0.0 || !size.is_finite() {

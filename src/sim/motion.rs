@@ -22,7 +22,7 @@ impl Pose {
     }
 
     /// The point (m) of the thing that the displacement has brought to `point`.
-    pub fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
+    pub(crate) fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
         pivot + self.turn.conjugate() * (point - pivot - self.shift)
     }
 }
@@ -113,7 +113,7 @@ pub enum Motion {
 
 impl Motion {
     /// Staying at a place.
-    pub fn at(place: Place) -> Self {
+    pub(crate) fn at(place: Place) -> Self {
         Self::Keys { keys: vec![Key { time: 0.0, place }], ease: Ease::Linear, repeat: false }
     }
 
@@ -132,7 +132,7 @@ impl Motion {
     }
 
     /// The longest way (m) from one place of the path to another, at a distance from the pivot (m).
-    pub fn longest_way(&self, distance: f64) -> f64 {
+    pub(crate) fn longest_way(&self, distance: f64) -> f64 {
         let way = |place: Place| place.shift.length() + place.turn.length().min(PI) * distance;
         match self {
             Self::Still => 0.0,
@@ -142,7 +142,7 @@ impl Motion {
     }
 
     /// The greatest speed (m/s) at a distance from the pivot (m).
-    pub fn greatest_speed(&self, distance: f64) -> f64 {
+    pub(crate) fn greatest_speed(&self, distance: f64) -> f64 {
         let way = |place: Place| place.shift.length() + place.turn.length() * distance;
         match self {
             Self::Still => 0.0,

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// One body in a simulation, and where its nodes and its memory lie in the [`State`].
-pub struct Part {
+pub(crate) struct Part {
     /// The body.
     pub body: Arc<Body>,
     /// Its model's forces.

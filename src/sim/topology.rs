@@ -53,7 +53,7 @@ pub struct Faces {
 
 /// What elements of four, five, six and eight nodes in space are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Solids {
+pub(crate) enum Solids {
     /// Tetrahedra, pyramids, wedges and hexahedra, whose nodes stand in an order of their own.
     #[default]
     Ordered,
@@ -62,7 +62,7 @@ pub enum Solids {
 }
 
 /// The kind of an element from the number of its nodes.
-pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
+pub(crate) fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
     match (dimension, nodes) {
         (Dimension::Space, 4..) if solids == Solids::Convex => ElementKind::Other,
         (_, 2) => ElementKind::Segment,
@@ -109,7 +109,7 @@ fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
 
 /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; a polygon is its
 /// own face.
-pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
+pub(crate) fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
     if kind == ElementKind::Polygon {
         return visit(nodes);
     }
@@ -137,7 +137,7 @@ pub struct Elements<'a> {
 
 impl Elements<'_> {
     /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside.
-    pub fn for_each_face(&self, element: usize, visit: impl FnMut(&[u32])) {
+    pub(crate) fn for_each_face(&self, element: usize, visit: impl FnMut(&[u32])) {
         match self.kinds[element] {
             ElementKind::Other => self.hulls.of(element).for_each(visit),
             kind => for_each_face(kind, &self.nodes[element], visit),
@@ -181,7 +181,7 @@ impl Elements<'_> {
     }
 
     /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
-    pub fn shared_faces(&self) -> Faces {
+    pub(crate) fn shared_faces(&self) -> Faces {
         let mut faces = Faces::default();
         // Those that wait for their other side. Elements that are faces themselves stay single.
         let mut waiting = Alike::new(self.rest.len());
@@ -290,7 +290,11 @@ fn every_pair(nodes: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
 
 /// Faces given by hand, each with the elements that hold all its nodes: the first one out of which it looks, and the
 /// first one into which it looks. `looks_out` says which of them an element is.
-pub fn assign_faces(given: &IndexLists, elements: &IndexLists, looks_out: impl Fn(&[u32], u32) -> bool) -> Faces {
+pub(crate) fn assign_faces(
+    given: &IndexLists,
+    elements: &IndexLists,
+    looks_out: impl Fn(&[u32], u32) -> bool,
+) -> Faces {
     let mut elements_of_node: HashMap<u32, Vec<u32>> = HashMap::new();
     for (element, nodes) in (0u32..).zip(elements.iter()) {
         for &node in nodes {
@@ -312,12 +316,12 @@ pub fn assign_faces(given: &IndexLists, elements: &IndexLists, looks_out: impl F
 }
 
 /// The sides of a polygon: each node with the next.
-pub fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+pub(crate) fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     face.iter().enumerate().map(|(at, &node)| [node, face[(at + 1) % face.len()]])
 }
 
 /// A pair with the smaller index first.
-pub fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 

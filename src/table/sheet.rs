@@ -2,7 +2,7 @@
 
 /// A table of texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sheet<const N: usize> {
+pub(crate) struct Sheet<const N: usize> {
     /// What stands over the columns.
     pub heads: [&'static str; N],
     /// The rows.
@@ -11,12 +11,12 @@ pub struct Sheet<const N: usize> {
 
 impl<const N: usize> Sheet<N> {
     /// A table without rows.
-    pub fn new(heads: [&'static str; N]) -> Self {
+    pub(crate) fn new(heads: [&'static str; N]) -> Self {
         Self { heads, rows: Vec::new() }
     }
 
     /// As CSV (RFC 4180, with line feeds).
-    pub fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(self.heads).expect("memory takes all");
         self.rows.iter().for_each(|row| writer.write_record(row).expect("rows of equal length"));
@@ -25,7 +25,7 @@ impl<const N: usize> Sheet<N> {
     }
 
     /// As Markdown, its first `left` columns to the left and the others, numbers, to the right.
-    pub fn markdown(&self, left: usize) -> String {
+    pub(crate) fn markdown(&self, left: usize) -> String {
         let escaped = |cell: &str| cell.replace('|', "\\|");
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let rule = |column| if column < left { "---" } else { "---:" }.to_owned();

@@ -18,12 +18,12 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The names of the table's files: itself, the same as CSV, and each start as CSV.
-pub const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
+pub(crate) const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
 
 /// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` where the paper says that it was too small to
 /// be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Printed {
+pub(crate) struct Printed {
     /// μ(α).
     pub mean: Option<f64>,
     /// σ(α).
@@ -34,7 +34,7 @@ pub struct Printed {
 
 /// One row of the paper's Table 1 for all its k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// Its letter.
     pub name: &'static str,
     /// "Number of iteration": how often Eq. (15) is solved at each evaluation.
@@ -44,10 +44,10 @@ pub struct Row {
 }
 
 /// The ratios k/m of the paper (1/s²), in its order.
-pub const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
+pub(crate) const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
 
 /// The paper's Table 1 as printed.
-pub const ROWS: [Row; 4] = {
+pub(crate) const ROWS: [Row; 4] = {
     const fn printed(mean: f64, deviation: f64, maximum: f64) -> Printed {
         const fn measured(number: f64) -> Option<f64> {
             if number > 0.0 { Some(number) } else { None }
@@ -97,7 +97,7 @@ pub const ROWS: [Row; 4] = {
 
 /// A way to find the rotation of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Solver {
+pub(crate) struct Solver {
     /// What scenes call it: `rotation = "…"` in a shape-based model.
     pub name: &'static str,
     /// In words.
@@ -107,7 +107,7 @@ pub struct Solver {
 }
 
 /// The paper's solver as read here, then better ones.
-pub const SOLVERS: [Solver; 3] = [
+pub(crate) const SOLVERS: [Solver; 3] = [
     Solver { name: "arctangent", words: "Eq. (15)", has_passes: true },
     Solver { name: "symmetric", words: "Eq. (15) with the symmetric part of its matrix", has_passes: true },
     Solver { name: "exact", words: "exact rotation", has_passes: false },
@@ -115,7 +115,7 @@ pub const SOLVERS: [Solver; 3] = [
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Protocol {
+pub(crate) struct Protocol {
     /// How many starts, turned at random: each is the same in any number of them, on every machine.
     pub orientations: u32,
     /// Time measured from the first contact on (s).
@@ -133,7 +133,7 @@ impl Default for Protocol {
 
 /// One solver in one row at one k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Case {
+pub(crate) struct Case {
     /// How rotations are found.
     pub solver: Solver,
     /// The row.
@@ -144,22 +144,22 @@ pub struct Case {
 
 impl Case {
     /// k/m (1/s²).
-    pub fn stiffness_over_mass(&self) -> f64 {
+    pub(crate) fn stiffness_over_mass(&self) -> f64 {
         STIFFNESSES[self.stiffness]
     }
 
     /// ΔT (s).
-    pub fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         self.row.cases[self.stiffness].0
     }
 
     /// What the paper found, if this is its solver.
-    pub fn printed(&self) -> Option<Printed> {
+    pub(crate) fn printed(&self) -> Option<Printed> {
         (self.solver == SOLVERS[0]).then_some(self.row.cases[self.stiffness].1)
     }
 
     /// How often Eq. (15) is solved; `None` for solvers that do without.
-    pub fn passes(&self) -> Option<u32> {
+    pub(crate) fn passes(&self) -> Option<u32> {
         self.solver.has_passes.then_some(self.row.passes)
     }
 
@@ -171,7 +171,7 @@ impl Case {
 
 impl Protocol {
     /// Everything that is measured for each start, solver by solver, k/m by k/m, row by row.
-    pub fn cases(&self) -> Vec<Case> {
+    pub(crate) fn cases(&self) -> Vec<Case> {
         let wanted = |stiffness: &usize| STIFFNESSES[*stiffness] <= self.stiffest;
         let mut cases = Vec::new();
         for solver in SOLVERS {
@@ -189,19 +189,19 @@ impl Protocol {
     }
 
     /// How often α is taken in all: what [`measure`] tells its watch comes to this.
-    pub fn work(&self) -> u64 {
+    pub(crate) fn work(&self) -> u64 {
         u64::from(self.orientations) * self.cases().iter().map(|case| self.evaluations(case)).sum::<u64>()
     }
 
     /// The mark of the Markdown file, by which it is known again: how it is made.
-    pub fn mark(&self) -> String {
+    pub(crate) fn mark(&self) -> String {
         format!("localshape table table1 --orientations {}", self.orientations)
     }
 }
 
 /// How the cube is turned at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Orientation {
+pub(crate) struct Orientation {
     /// The axis, a unit vector.
     pub axis: DVec3,
     /// The angle (rad).
@@ -211,7 +211,7 @@ pub struct Orientation {
 impl Orientation {
     /// One of endlessly many, evenly spread over all rotations: the first of the points hashed for its number that lies
     /// in the unit ball of four dimensions, as a quaternion.
-    pub fn random(number: u32) -> Self {
+    pub(crate) fn random(number: u32) -> Self {
         const SEED: u32 = 1;
         let coordinate = |usage: u64| 2.0 * random::unit(SEED, u64::from(number), usage) - 1.0;
         let point = |attempt: u64| DVec4::from_array([0, 1, 2, 3].map(|axis| coordinate(4 * attempt + axis)));
@@ -225,7 +225,7 @@ impl Orientation {
 
 /// What one start came to in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
+pub(crate) struct Course {
     /// How often α was taken; fewer than wanted if it blew up. If never, all that follows is not-a-number.
     pub evaluations: u64,
     /// Its mean (rad/s²).
@@ -240,7 +240,7 @@ pub struct Course {
 
 /// Table 1, measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table1 {
+pub(crate) struct Table1 {
     protocol: Protocol,
     cases: Vec<Case>,
     orientations: Vec<Orientation>,
@@ -250,7 +250,7 @@ pub struct Table1 {
 
 /// What all starts came to in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// The case.
     pub case: Case,
     /// The means of all starts (rad/s²).
@@ -265,7 +265,7 @@ pub struct Summary {
 
 /// Measures Table 1 on the pool of threads that it is called on; `None` if `watch`, which is told how many more times α
 /// was taken, stops it. The result has the same bits for any number of threads.
-pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> {
+pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> {
     let cases = protocol.cases();
     let orientations: Vec<_> = (0..protocol.orientations).map(Orientation::random).collect();
     let starts = orientations.par_iter().map(|orientation| watch(0).then(|| start(orientation, &cases)));
@@ -379,7 +379,7 @@ fn as_printed(number: f64) -> String {
 
 impl Table1 {
     /// What all starts came to, case by case in the order of [`Protocol::cases`].
-    pub fn summaries(&self) -> Vec<Summary> {
+    pub(crate) fn summaries(&self) -> Vec<Summary> {
         let summary = |(at, &case): (usize, &Case)| {
             let courses = || self.courses.iter().skip(at).step_by(self.cases.len());
             Summary {
@@ -394,12 +394,12 @@ impl Table1 {
     }
 
     /// The contents of [`FILES`].
-    pub fn files(&self) -> [String; 3] {
+    pub(crate) fn files(&self) -> [String; 3] {
         [self.markdown(), self.summary_sheet().csv(), self.course_sheet().csv()]
     }
 
     /// The table for people.
-    pub fn markdown(&self) -> String {
+    pub(crate) fn markdown(&self) -> String {
         let Protocol { orientations, duration, .. } = self.protocol;
         let plural = if orientations == 1 { "" } else { "s" };
         let mut text = format!(
@@ -564,7 +564,7 @@ impl Table1 {
     }
 
     /// The table as one document.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let row = |summary: &Summary| {
             let Summary { case, mean, deviation, maximum, diverged } = summary;
             json!({

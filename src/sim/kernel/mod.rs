@@ -8,7 +8,7 @@
 mod array;
 mod crew;
 mod drive;
-pub mod floor;
+pub(crate) mod floor;
 pub(in crate::sim) mod general;
 mod lanes;
 pub(in crate::sim) mod lattice;
