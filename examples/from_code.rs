@@ -1,8 +1,8 @@
 //! A scene made in code, simulated and drawn: `cargo run --release --example from_code` writes `cubes.png`.
 
-use localshape::scene::{BodyBuilder, Lattice, Limits, ObstacleBuilder, Rotation, Scene};
+use localshape::gpu::AdapterChoice;
 use localshape::sim::model::{mass_spring, shape_based};
-use localshape::{gpu::AdapterChoice, gpu::Gpu, picture, render::Renderer, runner::Runner};
+use localshape::{BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene, picture};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.

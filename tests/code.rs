@@ -6,12 +6,8 @@ use localshape::scene::{
     BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, Scene, SceneBuilder, Start,
     StartShape, Swing,
 };
-use localshape::sim::diagnostics::Diagnostic;
-use localshape::sim::field::Field;
-use localshape::sim::integrate::Integrator;
 use localshape::sim::model::{mass_spring, shape_based};
-use localshape::sim::motion::Ease;
-use localshape::sim::topology::Springs;
+use localshape::sim::{Diagnostic, Ease, Field, Integrator, Springs};
 
 fn springs(stiffness: f64) -> mass_spring::Parameters {
     mass_spring::Parameters::new(stiffness)

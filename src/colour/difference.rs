@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Whose eyes look at a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sight {
+pub(crate) enum Sight {
     /// Those with three kinds of cones.
     Usual,
     /// Those without green cones, some 1 % of all men.
@@ -33,10 +33,10 @@ const VIENOT_1999: [Loss; 2] = [
 
 impl Sight {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Usual, Self::Deuteranopia, Self::Protanopia];
+    pub(crate) const ALL: [Self; 3] = [Self::Usual, Self::Deuteranopia, Self::Protanopia];
 
     /// Its name within a sentence, after *to*.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Usual => "eyes with all cones",
             Self::Deuteranopia => "eyes without green cones (deuteranopia)",
@@ -47,7 +47,7 @@ impl Sight {
 
 /// What linear light looks like to somebody, as light that looks the same to all, once for each of two models of the loss
 /// of cones: Machado 2009 and Viénot 1999.
-pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
+pub(crate) fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
     match sight {
         Sight::Usual => [light; 2],
@@ -58,7 +58,7 @@ pub fn seen_by(sight: Sight, light: [f64; 3]) -> [[f64; 3]; 2] {
 
 /// How different two colours look to somebody: the smaller CIEDE2000 of both models of that sight. Some 1 can just be
 /// told when the colours touch; 20 nobody takes for one another.
-pub fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
+pub(crate) fn difference(one: Colour, other: Colour, sight: Sight) -> f64 {
     let [one, other] = [one, other].map(|colour| seen_by(sight, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
@@ -80,7 +80,8 @@ pub fn lab([r, g, b]: [f64; 3]) -> Lab {
 }
 
 /// The distance of two colours in CIELAB (CIE 1976).
-pub fn cie76(Lab(one): Lab, Lab(other): Lab) -> f64 {
+#[cfg(test)]
+pub(crate) fn cie76(Lab(one): Lab, Lab(other): Lab) -> f64 {
     (0..3).map(|axis| (one[axis] - other[axis]) * (one[axis] - other[axis])).sum::<f64>().sqrt()
 }
 

@@ -116,7 +116,7 @@ impl States {
 
 /// How far a node is from where it was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Displacement {
+pub(crate) struct Displacement {
     /// The frame.
     pub frame: u64,
     /// The node that is farthest away, counted from 0.
@@ -130,7 +130,7 @@ pub struct Displacement {
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Change {
+pub(crate) enum Change {
     /// Its states are other ones.
     Moved,
     /// It is not there any more.
@@ -141,7 +141,7 @@ pub enum Change {
 
 /// Another time step than was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StepChange {
+pub(crate) struct StepChange {
     /// As it was expected (s).
     pub before: f64,
     /// As it is (s).
@@ -170,7 +170,7 @@ impl fmt::Display for StepChange {
 
 /// A run whose states are not those that were expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Moved {
+pub(crate) struct Moved {
     /// Name of the run.
     pub run: String,
     /// What became of it.
@@ -193,7 +193,7 @@ pub struct Moved {
 
 /// A run on both sides, frame by frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Course {
+pub(crate) struct Course {
     /// Name of the run.
     pub run: String,
     /// To what displacements are known (m); 0: exactly.
@@ -204,7 +204,7 @@ pub struct Course {
 
 /// A run on both sides at one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Moment {
+pub(crate) struct Moment {
     /// The frame.
     pub frame: u64,
     /// The moment (s), if it is known.

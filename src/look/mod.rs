@@ -13,9 +13,10 @@ mod resolve;
 pub(crate) mod typed;
 mod view;
 
+pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
 pub(crate) use framing::Around;
-pub use palette::{LineStyle, Palette};
+pub(crate) use palette::{LineStyle, Palette};
 pub(crate) use resolve::resolve;
 pub use view::{
     Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, Theme, View,

@@ -168,7 +168,7 @@ pub struct Visible {
 impl Visible {
     /// What a scene that says nothing about it shows of a body of a number of nodes: its surfaces, and in the plane the
     /// nodes, too, unless they are many.
-    pub fn usual(dimension: Dimension, nodes: usize) -> Self {
+    pub(crate) fn usual(dimension: Dimension, nodes: usize) -> Self {
         const MANY_NODES: usize = 150;
         Self { surfaces: true, nodes: dimension == Dimension::Plane && nodes <= MANY_NODES, ..Self::default() }
     }
@@ -214,7 +214,7 @@ pub struct Look {
     /// What the colours come from: the theme asked for, unless its text could not be read on the background.
     pub theme: Theme,
     /// All colours.
-    pub palette: Palette,
+    pub(crate) palette: Palette,
     /// Whether the background is left out, so that whatever a picture is laid on shows.
     pub transparent: bool,
     /// The font.

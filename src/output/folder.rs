@@ -8,12 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The file name of frame `index`: `frame_00000.png`.
-pub fn frame_file_name(index: u64) -> String {
+pub(crate) fn frame_file_name(index: u64) -> String {
     format!("frame_{index:05}.png")
 }
 
 /// The names of all frames as a pattern, for `run.json`.
-pub const FRAME_FILES: &str = "frame_*.png";
+pub(crate) const FRAME_FILES: &str = "frame_*.png";
 
 /// Whether a file has the name of a frame.
 fn names_frame(name: &str) -> bool {
@@ -25,7 +25,7 @@ fn names_frame(name: &str) -> bool {
 ///
 /// # Errors
 /// If the folder cannot be read.
-pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
@@ -44,7 +44,7 @@ pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
 
 /// What frames must have in common to be one sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Width and height (px).
     pub size: [u32; 2],
     /// Names of the runs drawn, in the scene's order.
@@ -53,7 +53,7 @@ pub struct Look {
 
 /// What may be replaced in a folder besides the files of the same scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replace {
+pub(crate) enum Replace {
     /// Nothing.
     Nothing,
     /// What earlier versions of the same scene file made.
@@ -64,7 +64,7 @@ pub enum Replace {
 
 /// A folder for the output of one scene, looked at but not yet touched.
 #[derive(Debug)]
-pub struct Folder {
+pub(crate) struct Folder {
     path: PathBuf,
     scene: Whose,
     look: Option<Look>,
@@ -92,7 +92,12 @@ impl Folder {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is none.
-    pub fn inspect(path: &Path, scene: &Scene, look: Option<Look>, replace: Replace) -> Result<Self, OutputError> {
+    pub(crate) fn inspect(
+        path: &Path,
+        scene: &Scene,
+        look: Option<Look>,
+        replace: Replace,
+    ) -> Result<Self, OutputError> {
         let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
         let mut folder = Self { path: path.to_owned(), scene, look, replace, earlier: None };
         if is_folder(path)? {
@@ -112,13 +117,13 @@ impl Folder {
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// What is replaced of an earlier version of the scene file, in words: `31 frames made by an earlier version of
     /// sag.toml`.
-    pub fn earlier(&self) -> Option<&str> {
+    pub(crate) fn earlier(&self) -> Option<&str> {
         self.earlier.as_deref()
     }
 
@@ -129,7 +134,7 @@ impl Folder {
     /// # Errors
     /// If the folder cannot be made or written to; or as [`Self::inspect`], for only now nobody else can change what is
     /// there.
-    pub fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone(&self.path)?;
         let found = self.find()?;
@@ -144,14 +149,14 @@ impl Folder {
 
 /// A folder in which nobody else writes until this is dropped.
 #[derive(Debug)]
-pub struct Claimed {
+pub(crate) struct Claimed {
     path: PathBuf,
     _lock: FolderLock,
 }
 
 impl Claimed {
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 }

@@ -93,9 +93,7 @@ pub struct FigureTags {
     pub figure: String,
     /// `localshape:scene`: the digests of its scenes, one line each.
     pub scenes: Vec<String>,
-    /// `localshape:state`: digest and name of each state shown, one line each; see [`Moments::states`].
-    ///
-    /// [`Moments::states`]: crate::moments::Moments::states
+    /// `localshape:state`: digest and name of each state shown, one line each; see `Moments::states`.
     pub states: Vec<(String, String)>,
     /// `localshape:version`: the version of this crate that drew it.
     pub version: String,
@@ -154,7 +152,7 @@ pub(crate) fn encode_commented(size: [u32; 2], pixels: &[u8], comment: &str) -> 
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn is_figure(path: &Path) -> Result<bool, OutputError> {
+pub(crate) fn is_figure(path: &Path) -> Result<bool, OutputError> {
     Ok(header(path, |info| chunk(info, "figure").is_some())? == Some(true))
 }
 
@@ -206,7 +204,7 @@ pub fn read_tags(path: &Path) -> Result<Option<Tags>, OutputError> {
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
+pub(crate) fn read_frame(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
     let described = |info: &png::Info<'_>| tags_of(info).map(|tags| ([info.width, info.height], tags));
     Ok(header(path, described)?.flatten())
 }

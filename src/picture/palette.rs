@@ -1,5 +1,5 @@
 //! The colours of a picture, which its scene has resolved.
 
-pub use crate::colour::Colour;
+pub(crate) use crate::colour::Colour;
 pub(super) use crate::look::LineStyle;
-pub use crate::look::Palette;
+pub(crate) use crate::look::Palette;

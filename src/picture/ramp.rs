@@ -5,7 +5,7 @@ use crate::look::ramp;
 pub(super) use crate::look::ramp::ramp;
 
 /// How many colours stand for a whole scale; between them a straight line cannot be told from the curve.
-pub const SHADES: usize = ramp::SHADES;
+pub(crate) const SHADES: usize = ramp::SHADES;
 
 /// The colour of a place on a scale, from 0 to 1.
 pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {

@@ -12,7 +12,7 @@
 mod builder;
 mod digest;
 mod error;
-pub mod figure;
+pub(crate) mod figure;
 mod file;
 mod generate;
 mod limits;
@@ -34,7 +34,6 @@ pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use schema::schema;
-pub use summary::{RunSummary, Summary};
 
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
@@ -105,7 +104,7 @@ pub struct Run {
 
 impl Run {
     /// Its line in pictures of a palette.
-    pub fn line(&self, palette: &Palette) -> LineStyle {
+    pub(crate) fn line(&self, palette: &Palette) -> LineStyle {
         palette.line(self.place, self.colour)
     }
 }

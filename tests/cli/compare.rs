@@ -1,7 +1,7 @@
 //! `compare`: verdicts on pictures and folders of them.
 
 use crate::support::{Place, SMALL, run};
-use localshape::output::{Tags, encode};
+use localshape::internals::{Tags, encode};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 

@@ -71,7 +71,7 @@ fn frames_on_a_full_disk() {
 #[cfg(feature = "render")]
 #[test]
 fn animations_on_a_full_disk() {
-    use localshape::output::{Tags, encode};
+    use localshape::internals::{Tags, encode};
     let place = Place::new();
     for number in 0..4 {
         // Noise, which takes room.

@@ -1,8 +1,8 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
 use crate::support::{Place, SMALL, run, skip};
-use localshape::golden::Pixels;
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::internals::Pixels;
 
 /// A place with `small.toml`, if there is anything to draw with.
 fn place() -> Option<Place> {
@@ -100,8 +100,8 @@ fn drawing_is_never_taken_for_physics() {
     let path = place.path("golden/frame_00004.png");
     let pixels = Pixels::read(&path).unwrap();
     std::fs::create_dir(place.path("fast")).unwrap();
-    let localshape::output::Label::Frame(tags) = pixels.label.as_ref().unwrap() else { panic!("a frame") };
-    let fast = localshape::output::encode(pixels.size, &pixels.bytes, tags);
+    let localshape::internals::Label::Frame(tags) = pixels.label.as_ref().unwrap() else { panic!("a frame") };
+    let fast = localshape::internals::encode(pixels.size, &pixels.bytes, tags);
     assert_ne!(fast.len(), std::fs::read(&path).unwrap().len());
     std::fs::write(place.path("fast/frame_00004.png"), fast).unwrap();
     let same = place.run("compare golden/frame_00004.png fast/frame_00004.png").good();

@@ -1,10 +1,10 @@
 //! `simulate`: diagnostics, summary and states.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, documented, lasting};
-use localshape::output::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
+use localshape::internals::{FigureTags, Spent, Tags, Timings, encode, encode_figure};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::diagnostics::Diagnostic;
+use localshape::sim::Diagnostic;
 use serde_json::Value;
 use std::io::Read;
 
