@@ -20,30 +20,29 @@ const EXAMPLES: &str = "\
 Examples:
   localshape animate output/fig4b -o fig4b.gif --width 800      for chats and READMEs
   localshape animate output/fig4b -o fig4b.mp4 --speed 0.25     slow motion for slides
-  localshape animate output/fig4b -o fig4b.apng --frames 0-60   every pixel as it is
+  localshape animate output/fig4b -o fig4b.apng --frames 0-60   lossless
   localshape animate soft stiff -o both.webm --stack            one above the other
   localshape animate output/fig4b -o sheet.png --frames 0-44x4  stills with their times
-  localshape animate output/fig4b -o - | ffplay -               for other programs
+  localshape animate output/fig4b -o - | ffplay -               uncompressed, for other programs
 
-The ending of FILE chooses the format: .gif, .apng, .y4m, and .png for a sheet are made by this program alone; .mp4 \
-(H.264) and .webm (VP9) by ffmpeg, where that is installed. Each frame is shown until the time of the next. GIF knows \
-hundredths of a second, and players want two of them for each picture: of frames that follow each other faster, it shows \
-every second one. Transparent frames stand on white.";
+The extension of FILE chooses the format: .gif, .apng, .y4m, or .png for a contact sheet; .mp4 (H.264) and .webm (VP9) \
+need ffmpeg. Each frame is shown until the time of the next. GIF has a resolution of 1/100 s, and players need 2/100 s for \
+each frame: at more than 50 frames a second every second frame is left out. Transparent frames get a white background.";
 
-/// What stands at the beginning of each comment, by which a file is known as one of ours.
+/// Beginning of each comment, by which files of this program are recognised.
 const MARK: &str = "made by localshape ";
 /// The name of standard output.
 const STANDARD_OUTPUT: &str = "-";
 
-/// Make an animation, or a sheet of still pictures, from frames
+/// Make an animation, or a contact sheet, from frames
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Animate {
-    /// Folders of frames, as `render` makes them; several stand side by side
+    /// Folders of frames made by `render`; several are shown side by side
     #[arg(value_name = "DIR", required = true, value_hint = ValueHint::DirPath)]
     folders: Vec<PathBuf>,
 
-    /// The file to make, whose ending chooses the format; - for y4m on standard output
+    /// Output file, whose extension chooses the format; - for y4m on standard output
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     out: PathBuf,
 
@@ -51,35 +50,35 @@ pub(super) struct Animate {
     #[arg(long)]
     overwrite: bool,
 
-    /// Frames to show, ends included: 0-119, every third as 0-119x3, or 5,9,40-60 [default: all; on a sheet twelve]
+    /// Frames to show, inclusive: 0-119, every third as 0-119x3, or 5,9,40-60 [default: all; twelve on a sheet]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     frames: Option<FrameRanges>,
 
-    /// How many times as fast as in the scene: 0.25 for slow motion
+    /// Playback speed: 0.25 for slow motion
     #[arg(long, value_name = "TIMES", value_parser = positive, allow_hyphen_values = true)]
     speed: Option<f64>,
 
-    /// Pictures a second [default: one for each frame]
+    /// Frames per second of the animation [default: every frame is shown]
     #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
     fps: Option<f64>,
 
-    /// How often it plays, 0 for ever (GIF and APNG) [default: 0]
+    /// How often it plays; 0 for endless (GIF and APNG) [default: 0]
     #[arg(long = "loop", value_name = "N", value_parser = plays, allow_hyphen_values = true)]
     plays: Option<u16>,
 
-    /// Show the last frame longer by so much (s)
+    /// Show the last frame longer by this time (s)
     #[arg(long, value_name = "SECONDS", value_parser = pause, allow_hyphen_values = true)]
     hold_last: Option<f64>,
 
-    /// There and back again
+    /// Play forwards, then backwards
     #[arg(long)]
     boomerang: bool,
 
-    /// Put folders one above the other
+    /// Show folders one above the other instead of side by side
     #[arg(long)]
     stack: bool,
 
-    /// Scale to this width (px) [default: as the frames are]
+    /// Scale to this width (px) [default: that of the frames]
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=16384))]
     width: Option<u32>,
 
@@ -87,15 +86,15 @@ pub(super) struct Animate {
     #[arg(long, value_name = "WxH", value_parser = size, conflicts_with = "width")]
     size: Option<[u32; 2]>,
 
-    /// Threads to work with [default: one for each processor]; the file is the same for any number
+    /// Number of threads, which does not change the file [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Neither progress nor summary; only errors
+    /// Print errors only, neither progress nor summary
     #[arg(short, long)]
     quiet: bool,
 
-    /// Print what was made as one JSON document
+    /// Print the result as one JSON document
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
 }
@@ -152,7 +151,7 @@ impl Animate {
         match result {
             Ok(written) => {
                 if !to_standard_output {
-                    self.tell(reel.moments.len(), &written)?;
+                    self.report(reel.moments.len(), &written)?;
                 }
                 Ok(Status::Done)
             }
@@ -163,7 +162,7 @@ impl Animate {
         }
     }
 
-    /// Refuses options that mean nothing for what is to be made: left out silently, they would only surprise.
+    /// Rejects options that have no effect in the chosen format; to ignore them silently would surprise.
     fn check(&self, format: Format) -> Result<(), Failure> {
         let is_sheet = format == Format::Sheet;
         let of_time = [
@@ -172,26 +171,25 @@ impl Animate {
             ("--hold-last", self.hold_last.is_some()),
             ("--boomerang", self.boomerang),
         ];
-        let told = if let Some((option, _)) = of_time.iter().find(|(_, is_given)| is_sheet && *is_given) {
-            format!("{option} is for animations; a sheet (.png) shows stills, which --frames chooses")
+        let message = if let Some((option, _)) = of_time.iter().find(|(_, is_given)| is_sheet && *is_given) {
+            format!("{option} is for animations; choose the frames of a sheet (.png) with --frames")
         } else if self.width.is_some() && is_sheet {
-            "--width is for animations; how large a sheet (.png) is, --size says, such as --size 1920x1080".to_owned()
+            "--width is for animations; use --size for a sheet (.png), such as --size 1920x1080".to_owned()
         } else if self.size.is_some() && !is_sheet {
-            "--size is for sheets (.png); an animation is scaled with --width".to_owned()
+            "--size is for sheets (.png); use --width for an animation".to_owned()
         } else if self.plays.is_some() && !matches!(format, Format::Gif | Format::Apng) {
-            "--loop is for .gif and .apng, which say how often they play; for other files, whoever plays them does"
-                .to_owned()
+            "--loop is for .gif and .apng; with other formats the player decides how often they play".to_owned()
         } else if self.stack && self.folders.len() == 1 {
-            "--stack puts several folders one above the other; expected more than one".to_owned()
+            "--stack shows several folders one above the other; expected more than one".to_owned()
         } else if self.json && self.out == Path::new(STANDARD_OUTPUT) {
-            "--json tells of a file, and with -o - standard output is for the pictures".to_owned()
+            "--json describes a file; with -o - standard output is for the pictures".to_owned()
         } else {
             return Ok(());
         };
-        Err(Failure::usage(told))
+        Err(Failure::usage(message))
     }
 
-    fn tell(&self, frames: usize, written: &Written) -> Result<(), Failure> {
+    fn report(&self, frames: usize, written: &Written) -> Result<(), Failure> {
         if self.json {
             let bytes = self.out.metadata().map_or(0, |found| found.len());
             let Written { pictures, duration, size } = *written;
@@ -204,7 +202,7 @@ impl Animate {
     }
 }
 
-/// What was made, on a line.
+/// The result, on one line.
 pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     let bytes = path.metadata().map_or(0, |found| found.len());
     let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
@@ -222,21 +220,21 @@ fn file_size(bytes: u64) -> String {
     if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
 }
 
-/// What an animation says about itself.
+/// The comment of an animation.
 pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
     let version = env!("CARGO_PKG_VERSION");
     format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
 }
 
-/// Refuses to replace what this program did not make.
+/// Refuses to replace files that this program did not make.
 pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     /// Comments stand near the beginning, in films behind tables of all pictures.
     const BEGINNING: u64 = 1 << 20;
     let Ok(found) = path.metadata() else { return Ok(()) };
     let name = path.display();
     if !found.is_file() {
-        return Err(Failure::usage(format!("{name} is no file; choose another name with -o")));
+        return Err(Failure::usage(format!("{name} is not a file; choose another name with -o")));
     }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
@@ -244,10 +242,10 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     if is_ours(&bytes) {
         return Ok(());
     }
-    let told = format!(
-        "{name} is there already, and was not made by this command; choose another name with -o, or replace it with --overwrite"
+    let message = format!(
+        "{name} exists and was not made by this command; choose another name with -o, or replace it with --overwrite"
     );
-    Err(Failure::usage(told))
+    Err(Failure::usage(message))
 }
 
 /// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
@@ -285,7 +283,7 @@ impl From<AnimationError> for Failure {
             | AnimationError::Ffmpeg { .. }
             | AnimationError::Full(_) => Self::files(with_causes(&error)),
             AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
-                Self::files("cannot write to standard output: its reader has ended before the animation has")
+                Self::files("cannot write to standard output: the reader ended before the animation")
             }
             AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
             AnimationError::Stopped => Self::silent(Status::Interrupted),
@@ -326,30 +324,28 @@ impl Folders {
             let ([one, other], [name, beside]) = ([first, folder], [options.folders[0].display(), path.display()]);
             let [[w, h], [w2, h2]] = [one.size, other.size];
             if one.size != other.size {
-                let told = format!(
-                    "{name} has frames of {w}×{h} and {beside} of {w2}×{h2}; only equal sizes fit side by side"
-                );
-                return Err(Failure::usage(told));
+                let message = format!("{name} has frames of {w}×{h} and {beside} of {w2}×{h2}; expected equal sizes");
+                return Err(Failure::usage(message));
             }
             let unlike = one.frames.iter().zip(&other.frames).find(|(a, b)| a.0 != b.0).map(|(a, b)| a.0.min(b.0));
             let (a, b) = (one.frames.len(), other.frames.len());
             let unlike = unlike.or_else(|| (a != b).then(|| if a < b { other.frames[a].0 } else { one.frames[b].0 }));
             if let Some(number) = unlike {
-                let told = format!(
-                    "frame {number} is only in one of {name} and {beside}; choose frames that both have with --frames"
+                let message = format!(
+                    "frame {number} is in only one of {name} and {beside}; choose frames that both have with --frames"
                 );
-                return Err(Failure::usage(told));
+                return Err(Failure::usage(message));
             }
             // Each takes its frames at the end of a step of its own.
             let between = one.frames.windows(2).map(|pair| pair[1].1 - pair[0].1);
             let from_start = one.frames.iter().filter(|frame| frame.0 > 0).map(|frame| frame.1 / frame.0 as f64);
             let step = between.chain(from_start).fold(f64::INFINITY, f64::min);
             if let Some((a, b)) = one.frames.iter().zip(&other.frames).find(|(a, b)| (a.1 - b.1).abs() > step / 2.0) {
-                let told = format!(
-                    "frame {} is at {:.4} s in {name} and at {:.4} s in {beside}; only frames of equal times fit side by side",
+                let message = format!(
+                    "frame {} is at {:.4} s in {name} and at {:.4} s in {beside}; expected equal times",
                     a.0, a.1, b.1
                 );
-                return Err(Failure::usage(told));
+                return Err(Failure::usage(message));
             }
         }
         let files = |at: usize| folders.iter().map(|folder| folder.frames[at].2.clone()).collect();
@@ -373,7 +369,7 @@ impl Folders {
         if size.iter().any(|&side| side > 16_384) {
             let [width, height] = size;
             return Err(Failure::usage(format!(
-                "together the frames have {width}×{height} pixels, which is more than 16384 a side"
+                "together the frames have {width}×{height} pixels; expected at most 16384 a side"
             )));
         }
         Ok(Self { paths, moments, scenes, own, size, stack: options.stack })
@@ -386,9 +382,9 @@ impl Folders {
         let is_it = matches!(&found.label, Some(Label::Frame(Tags { frame, .. })) if *frame == number);
         let is_same = found.size == self.own && is_it;
         if !is_same {
-            let told =
-                format!("{} has become another picture meanwhile; try again when nobody writes there", path.display());
-            return Err(AnimationError::Wrong(told));
+            let message =
+                format!("{} has changed meanwhile; try again when no other process writes there", path.display());
+            return Err(AnimationError::Wrong(message));
         }
         Ok(found.into())
     }
@@ -427,7 +423,7 @@ impl Folder {
             Ok(found) if found.is_dir() => {}
             Ok(_) => {
                 return Err(Failure::usage(format!(
-                    "{name} is no folder; expected one with frames of `localshape render`"
+                    "{name} is not a folder; expected one with frames of `localshape render`"
                 )));
             }
             Err(error) => {
@@ -438,14 +434,15 @@ impl Folder {
         }
         let mut files = frame_files(path)?;
         let Some(&(last, _)) = files.last() else {
-            let told = format!(
-                "{name} has no frames, such as {}; `localshape render SCENE -o {name}` makes some",
+            let message = format!(
+                "{name} has no frames, such as {}; make some with `localshape render SCENE -o {name}`",
                 frame_file_name(0)
             );
-            return Err(Failure::usage(told));
+            return Err(Failure::usage(message));
         };
         if let Some(asked) = asked {
-            let wanted = asked.select(last).map_err(|told| Failure::usage(format!("frames of {name}: {told}")))?;
+            let wanted =
+                asked.select(last).map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
             if let Some(missing) =
                 wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
             {
@@ -456,20 +453,20 @@ impl Folder {
             && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
         {
             let [before, after] = [&pair[0], &pair[1]].map(|(number, _)| frame_file_name(*number));
-            let told = format!(
-                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render those that \
-                 are missing, or choose frames with --frames"
+            let message = format!(
+                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render the \
+                 missing frames, or choose frames with --frames"
             );
-            return Err(Failure::usage(told));
+            return Err(Failure::usage(message));
         }
         let mut folder: Option<(Self, Vec<String>)> = None;
         for (number, file) in files {
             let Some((size, tags)) = read_frame(&file)? else {
-                let told = format!(
-                    "{} is damaged, or no frame of `localshape render`: it does not say what it shows",
+                let message = format!(
+                    "{} is damaged, or is not a frame of `localshape render`: it does not name its scene",
                     file.display()
                 );
-                return Err(Failure::usage(told));
+                return Err(Failure::usage(message));
             };
             let runs: Vec<String> = tags.states.iter().map(|(_, run)| run.clone()).collect();
             let (all, first) = folder
@@ -481,14 +478,14 @@ impl Folder {
                 .map(|(_, _, path)| path.file_name().unwrap_or_default().to_string_lossy().into_owned())
                 .unwrap_or_default();
             if tags.frame != number {
-                return Err(unlike(format!("shows frame {}; a file was renamed", tags.frame)));
+                return Err(unlike(format!("shows frame {}; was it renamed?", tags.frame)));
             }
             if size != all.size {
                 let [[w, h], [w2, h2]] = [size, all.size];
                 return Err(unlike(format!("has {w}×{h} pixels, {before} has {w2}×{h2}; render them in one size")));
             }
             if tags.scene != all.scene {
-                return Err(unlike(format!("shows another scene than {before}; render all of one scene")));
+                return Err(unlike(format!("shows a different scene than {before}; expected frames of one scene")));
             }
             if runs != *first {
                 return Err(unlike(format!("shows the runs {}, {before} {}", quoted(&runs), quoted(first))));
@@ -512,15 +509,11 @@ fn number(typed: &str) -> Result<f64, String> {
 
 fn positive(typed: &str) -> Result<f64, String> {
     let times = number(typed)?;
-    if (0.001..=1000.0).contains(&times) {
-        Ok(times)
-    } else {
-        Err("expected a number from 0.001 to 1000; at 0 it would stand still".to_owned())
-    }
+    if (0.001..=1000.0).contains(&times) { Ok(times) } else { Err("expected a number from 0.001 to 1000".to_owned()) }
 }
 
 fn plays(typed: &str) -> Result<u16, String> {
-    typed.trim().parse().map_err(|_| format!("expected a whole number from 1 to {}, or 0 for ever", u16::MAX))
+    typed.trim().parse().map_err(|_| format!("expected a whole number from 1 to {}, or 0 for endless", u16::MAX))
 }
 
 fn rate(typed: &str) -> Result<f64, String> {

@@ -1,4 +1,4 @@
-//! `check`: what scenes hold, or every mistake in them.
+//! `check`: what scenes contain, or every mistake in them.
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, warn, with_causes};
@@ -12,18 +12,18 @@ Examples:
   localshape check scenes/fig4b.toml
   localshape check scenes/*.toml --quiet && echo all right";
 
-/// Read scenes and print what they hold, or every mistake found
+/// Check scenes and print what they contain, or every mistake in them
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Check {
     #[command(flatten)]
     scenes: SceneOptions,
 
-    /// Only mistakes, no warnings
+    /// Print mistakes only, neither summaries nor warnings
     #[arg(short, long)]
     quiet: bool,
 
-    /// Print what was found as one JSON document
+    /// Print the result as one JSON document
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
 }

@@ -1,4 +1,4 @@
-//! `compare`: what differs between pictures, and whether physics or drawing moved.
+//! `compare`: whether pictures differ, and whether the simulation or the drawing changed.
 
 use super::console;
 use super::failure::{Failure, Status, with_causes};
@@ -27,40 +27,40 @@ Examples:
   localshape compare expected.png actual.png
   localshape compare before/ after/ --report what-moved.html
   localshape compare golden/fig4b scenes/fig4b.toml          draws the golden's frames and compares them
-  localshape compare --bless golden/fig4b scenes/fig4b.toml  makes that golden, or renews its pictures
+  localshape compare --bless golden/fig4b scenes/fig4b.toml  makes that golden, or updates its pictures
 
-A golden is a folder with a few small pictures of a scene and golden.toml, which records the states of all its frames: \
-then it is told which state moved first, which node, and by how far. Of two folders of frames that is told if both hold \
-states.npz (render --states).
+A golden is a folder with a few small pictures of a scene and golden.toml, which records the states of all frames. The \
+result then names the first state that moved, the node, and its distance. For two folders of frames it does so if both \
+have states.npz (render --states).
 
-Frames know which states they show: so a difference is either of the state (`state moved`) or of the drawing (`same \
-state, drawn differently`). Pictures drawn by one adapter must be equal in every byte; those of one kind of adapter may \
-differ by more than 2 of 255 in at most 0.01 % of their pixels, or in 8; those of another kind also along silhouettes, \
-but hardly between them or in what stands in one picture only. Pictures that do not say which state they show, as those of \
-other programs, are compared by their pixels alone.";
+Frames record a digest of the state that they show, so a difference is either one of the state (`state moved`) or one of \
+the drawing (`same state, drawn differently`). Pictures drawn by the same adapter must be equal in every byte. Those of \
+two adapters of one kind may differ by more than 2 of 255 in at most 0.01 % of their pixels, or in 8. Those of different \
+kinds may also differ along silhouettes, but hardly between them or in objects that are in one picture only. Pictures \
+without a recorded state, such as those of other programs, are compared by their pixels alone.";
 
 /// Compare pictures, folders of frames, or a scene with its golden
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Compare {
-    /// A picture, a folder of pictures, or a golden: what was expected
+    /// Expected: a picture, a folder of pictures, or a golden
     #[arg(value_name = "EXPECTED", value_hint = ValueHint::AnyPath)]
     expected: PathBuf,
 
-    /// A picture or a folder of pictures, or for a golden its scene or figure file: what there is
+    /// Actual: a picture or a folder of pictures, or for a golden its scene or figure file
     #[arg(value_name = "ACTUAL", value_hint = ValueHint::AnyPath)]
     actual: PathBuf,
 
-    /// Accept what there is: replace the expected pictures that failed, or make a golden that is missing. Refused if the
-    /// state moved
+    /// Accept the actual pictures: replace expected pictures that failed, or make a golden that does not exist. Refused if
+    /// the state moved
     #[arg(long)]
     bless: bool,
 
-    /// Accept what there is, also if the state moved
+    /// Accept the actual pictures, also if the state moved
     #[arg(long)]
     bless_state: bool,
 
-    /// Write a page to look at in a browser: both pictures of each pair, their difference, the error over time
+    /// Write an HTML page with both pictures of each pair, their difference, and the error over time
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     report: Option<PathBuf>,
 
@@ -68,7 +68,7 @@ pub(super) struct Compare {
     #[command(flatten)]
     drawing: Drawing,
 
-    /// Only the exit status
+    /// Print nothing; only set the exit status
     #[arg(short, long)]
     quiet: bool,
 
@@ -82,7 +82,7 @@ pub(super) struct Compare {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Options for scenes and figures")]
 struct Drawing {
-    /// The frames that the golden has pictures of: 0-119x30, or 5,9,40-60 [default: those it has; three of a new one]
+    /// Frames of which the golden has pictures: 0-119x30, or 5,9,40-60 [default: those it has; three for a new one]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     frames: Option<FrameRanges>,
 
@@ -94,8 +94,8 @@ struct Drawing {
     #[arg(long, value_name = "N", value_parser = samples())]
     samples: Option<u32>,
 
-    /// Graphics adapter: auto, cpu, gpu, or a part of its name [default: one of the kind that drew the golden, else cpu:
-    /// every machine can draw in software]
+    /// Graphics adapter: auto, cpu, gpu, or part of its name [default: the kind that drew the golden, else cpu, a software
+    /// driver]
     #[arg(long, value_name = "ADAPTER")]
     adapter: Option<AdapterChoice>,
 }
@@ -106,7 +106,7 @@ impl Compare {
             replaceable(path)?;
         }
         let Some(comparison) = self.comparison()? else { return Ok(Status::Interrupted) };
-        // The verdict is told also if the page cannot be written.
+        // The verdict is printed even if the page cannot be written.
         let reported = match &self.report {
             Some(path) => {
                 let page = comparison.report().page();
@@ -138,7 +138,7 @@ impl Compare {
         match blessed {
             Ok(_) => Ok(if comparison.passes() || accepted { Status::Done } else { Status::Difference }),
             Err(BlessError::Write { blessed, source }) => {
-                // What was done before is told.
+                // Files written before are listed.
                 let done = if blessed.written.is_empty() { String::new() } else { format!("\n{blessed}") };
                 Err(Failure::files(format!("{}{}", with_causes(&source), done.trim_end())))
             }
@@ -162,8 +162,9 @@ impl Compare {
                     (_, true) => "--bless ",
                     _ => "",
                 };
-                let message =
-                    format!("{scene} is a scene or figure and comes last: localshape compare {option}{other} {scene}");
+                let message = format!(
+                    "{scene} is a scene or figure and must come last: localshape compare {option}{other} {scene}"
+                );
                 return Err(Failure::usage(message));
             }
             self.no_drawing()?;
@@ -173,8 +174,8 @@ impl Compare {
         if !expected.is_golden() {
             let (expected, actual) = (self.expected.display(), self.actual.display());
             let message = format!(
-                "{expected} is no golden (a folder with golden.toml), and {actual} is a scene or figure, which is compared \
-                 with its golden; to make one, name a folder that is not there"
+                "{expected} is not a golden (a folder with golden.toml), but {actual} is a scene or figure, which is \
+                 compared with its golden; to make one, name a folder that does not exist"
             );
             return Err(Failure::usage(message));
         }
@@ -182,7 +183,7 @@ impl Compare {
         Comparison::between(expected, actual).map(Some).map_err(failed)
     }
 
-    /// Refuses options that only scenes have.
+    /// Rejects options that only scenes have.
     #[cfg(feature = "render")]
     fn no_drawing(&self) -> Result<(), Failure> {
         let Drawing { frames, size, samples, adapter } = &self.drawing;
@@ -223,8 +224,8 @@ impl Compare {
         let frames = match (frames, &subject) {
             (None, _) => None,
             (Some(frames), Subject::Scene(scene)) => {
-                let told = |what: String| Failure::usage(format!("--frames of “{}”: {what}", scene.title));
-                Some(frames.select(scene.last_frame()).map_err(told)?)
+                let message = |what: String| Failure::usage(format!("--frames of “{}”: {what}", scene.title));
+                Some(frames.select(scene.last_frame()).map_err(message)?)
             }
             (Some(_), Subject::Figure(_)) => {
                 return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
@@ -240,7 +241,7 @@ impl Compare {
             DrawError::Disk(_) => Failure::files(error.to_string()),
             DrawError::Wish(message) => Failure::usage(message),
         })?;
-        // Whoever stopped it while the last picture was drawn does not want it accepted.
+        // If interrupted while the last picture was drawn, nothing is accepted.
         Ok(drawn.filter(|_| !interrupt::requested()))
     }
 
@@ -248,14 +249,14 @@ impl Compare {
     fn draw(&self, _expected: &Side) -> Result<Option<Side>, Failure> {
         let path: &Path = &self.actual;
         Err(Failure::usage(format!(
-            "{} would have to be drawn, and this program was built without the feature `render`; give a picture or a folder \
+            "{} must be drawn, but this program was built without the feature `render`; give a picture or a folder \
              of pictures",
             path.display()
         )))
     }
 }
 
-/// That the page may have this name: one that nothing has, or an earlier page.
+/// Checks that the page does not replace another kind of file.
 fn replaceable(path: &Path) -> Result<(), Failure> {
     is_folder(folder_of(path)).map_err(|error| match error {
         OutputError::NoFolder { path, what } => {
@@ -273,15 +274,14 @@ fn replaceable(path: &Path) -> Result<(), Failure> {
     if path.symlink_metadata().is_err() || is_file && is_page().is_some() {
         return Ok(());
     }
-    let message =
-        format!("--report: {} is there already and is no page of a comparison; name another file", path.display());
+    let message = format!("--report: {} exists and is not a page of a comparison; name another file", path.display());
     Err(Failure::usage(message))
 }
 
 /// How pages begin.
 const PAGE: &[u8] = b"<!doctype html>";
 
-/// All that is known, for machines.
+/// The whole result as JSON.
 fn document(comparison: &Comparison, blessed: &Value) -> Value {
     let head = json!({
         "passes": comparison.passes(),

@@ -1,4 +1,4 @@
-//! `completions`: for the shell.
+//! `completions`: shell completions.
 
 use super::Cli;
 use super::console::print;
@@ -16,7 +16,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Completions {
-    /// For which shell
+    /// The shell
     #[arg(value_name = "SHELL")]
     shell: Shell,
 }

@@ -5,7 +5,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// Prints results. A reader that has seen enough and closed its end is no failure: the work goes on without it.
+/// Prints results. A closed pipe is not an error: the work goes on without its reader.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -21,8 +21,7 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&(text + "\n"))
 }
 
-/// A bar that counts steps, estimates the time left, and shows frames in its message. Invisible when `quiet` or when
-/// nobody sits at a terminal.
+/// A progress bar with the estimated time left and frames in its message. Invisible when `quiet` or without a terminal.
 pub(super) fn progress(title: &str, steps: u64, quiet: bool) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {msg}, {eta} left");
@@ -32,7 +31,7 @@ pub(super) fn progress(title: &str, steps: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// A number for people: three significant digits.
+/// A number with three significant digits.
 pub(super) fn significant(number: f64) -> String {
     let size = number.abs();
     if number == 0.0 {
@@ -45,7 +44,7 @@ pub(super) fn significant(number: f64) -> String {
     }
 }
 
-/// Rows with their columns below each other; the first column to the left, the others too unless `right` says so.
+/// Rows with aligned columns: to the left, or to the right where `right` says so.
 pub(super) fn columns<const N: usize>(rows: &[[String; N]], right: [bool; N]) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(width);

@@ -1,4 +1,4 @@
-//! Exit statuses, and how a failure is told.
+//! Exit statuses and error messages.
 
 use crate::output::OutputError;
 #[cfg(feature = "render")]
@@ -32,22 +32,22 @@ impl From<Status> for ExitCode {
 #[derive(Debug)]
 pub(super) struct Failure {
     status: Status,
-    /// What to tell; `None` if all is told already.
+    /// The message; `None` if it was printed already.
     message: Option<String>,
 }
 
 impl Failure {
-    /// Wrong usage, or a wrong scene.
+    /// Wrong usage, or mistakes in a scene.
     pub(super) fn usage(message: impl Into<String>) -> Self {
         Self { status: Status::Usage, message: Some(message.into()) }
     }
 
-    /// A check found what it was not to find.
+    /// A check found a difference.
     pub(super) fn difference(message: impl Into<String>) -> Self {
         Self { status: Status::Difference, message: Some(message.into()) }
     }
 
-    /// Nothing to draw with.
+    /// No usable graphics adapter.
     #[cfg(feature = "render")]
     pub(super) fn adapter(error: &dyn Error) -> Self {
         Self { status: Status::Adapter, message: Some(with_causes(error)) }
@@ -58,12 +58,12 @@ impl Failure {
         Self { status: Status::Files, message: Some(message.into()) }
     }
 
-    /// An end without a word.
+    /// An end without a message.
     pub(super) fn silent(status: Status) -> Self {
         Self { status, message: None }
     }
 
-    /// Tells the user, and returns the status to end with.
+    /// Prints the message and returns the exit status.
     pub(super) fn report(self) -> Status {
         if let Some(message) = &self.message {
             complain(message);
@@ -75,7 +75,7 @@ impl Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         let status = match &error {
-            // Another folder is to be chosen, and nothing was touched.
+            // Another folder must be chosen; nothing was written.
             OutputError::Occupied { .. } | OutputError::NoFile { .. } | OutputError::InUse { .. } => Status::Usage,
             OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
@@ -88,13 +88,13 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {
-        write!(text, ": {error}").expect("a string takes all");
+        write!(text, ": {error}").expect("writing to a string");
         cause = error.source();
     }
     text
 }
 
-/// Tells of what is probably not meant in the scene of a file.
+/// Prints the warnings of a scene.
 pub(super) fn warn(file: &Path, scene: &Scene) {
     if !scene.warnings.is_empty() {
         let (found, total) = (scene.warnings.clone(), scene.warnings.len());
@@ -102,7 +102,7 @@ pub(super) fn warn(file: &Path, scene: &Scene) {
     }
 }
 
-/// Tells of what is probably not meant in the scenes of a figure.
+/// Prints the warnings of the scenes of a figure.
 #[cfg(feature = "render")]
 pub(super) fn warn_of_figure(figure: &Figure) {
     for scene in figure.scenes() {
@@ -110,7 +110,7 @@ pub(super) fn warn_of_figure(figure: &Figure) {
     }
 }
 
-/// Tells of an error on standard error. Nobody is left to be told if that fails.
+/// Prints an error on standard error. If that fails there is nowhere to report it.
 pub(super) fn complain(message: &str) {
     let _ = writeln!(std::io::stderr(), "error: {message}");
 }

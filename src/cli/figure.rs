@@ -1,4 +1,4 @@
-//! `figure`: the paper's figures, and figures of a user's own.
+//! `figure`: the paper's figures, and figures of the user.
 
 use super::console;
 use super::failure::{Failure, Status, warn_of_figure, with_causes};
@@ -27,15 +27,15 @@ Examples:
   localshape figure fig1 fig4 -o paper --theme dark
   localshape figure my-sheet.toml                a figure of your own
 
-A figure file names scenes and says which runs and moments of them stand where; those of the paper are in figures/ and \
-are a good start for your own.";
+A figure file arranges runs and moments of scenes on a sheet. The files of the paper's figures are in figures/; copy one \
+to make your own.";
 
 /// Where figures go if nothing else is said.
 const FOLDER: &str = "output/figures";
 /// The shortest side of a figure (px).
 const LEAST_SIDE: u32 = 64;
 
-/// Draw the paper's figures, or figures of your own, as single pictures
+/// Draw the paper's figures, or your own
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct FigureCommand {
@@ -44,11 +44,11 @@ pub(super) struct FigureCommand {
     #[arg(value_name = "FIGURE", value_hint = ValueHint::FilePath)]
     figures: Vec<String>,
 
-    /// Output folder, for one file NAME.png for each figure
+    /// Output folder, with a file NAME.png for each figure
     #[arg(short, long, value_name = "DIR", default_value = FOLDER, value_hint = ValueHint::DirPath)]
     out: PathBuf,
 
-    /// Replace pictures of that name that are no figures of this program
+    /// Also replace pictures of the same name that this program did not make
     #[arg(long)]
     overwrite: bool,
 
@@ -56,7 +56,7 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// How many times as large as usual figures are drawn, from 0.1 to 4: 0.5 for web pages
+    /// Scale of the figures, from 0.1 to 4: 0.5 for web pages
     #[arg(long, value_name = "TIMES", value_parser = times, conflicts_with = "size")]
     scale: Option<f64>,
 
@@ -68,19 +68,19 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
     samples: u32,
 
-    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
+    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or part of its name
     #[arg(long, value_name = "ADAPTER", default_value = "auto")]
     adapter: AdapterChoice,
 
-    /// Threads to work with [default: one for each processor]; the results are the same for any number
+    /// Number of threads, which does not change the results [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Neither progress nor summary nor warnings; only errors
+    /// Print errors only, neither progress, summary nor warnings
     #[arg(short, long)]
     quiet: bool,
 
-    /// Print what was made as one JSON document
+    /// Print the result as one JSON document
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
 }
@@ -132,8 +132,8 @@ impl FigureCommand {
                 break;
             }
         }
-        // What was finished is told before the failure.
-        self.tell(&made)?;
+        // Finished figures are listed before the failure.
+        self.report(&made)?;
         result
     }
 
@@ -145,10 +145,8 @@ impl FigureCommand {
         }
         let [width, height] = figure.size;
         if width.min(height) < LEAST_SIDE {
-            let message = format!(
-                "{}: {width}×{height} is too small; a figure has at least {LEAST_SIDE} pixels a side",
-                figure.name
-            );
+            let message =
+                format!("{}: {width}×{height} is too small; expected at least {LEAST_SIDE} pixels a side", figure.name);
             return Err(Failure::usage(message));
         }
         if let Some(theme) = self.theme {
@@ -208,8 +206,10 @@ impl FigureCommand {
                     Some((_, known)) if *known == path => {}
                     Some(_) => {
                         let file = self.out.join(format!("{}.png", figure.name));
-                        let message =
-                            format!("two figures would both go to {}; draw them one at a time with -o", file.display());
+                        let message = format!(
+                            "two figures would both be written to {}; draw them one at a time with -o",
+                            file.display()
+                        );
                         return Err(Failure::usage(message));
                     }
                 }
@@ -225,7 +225,7 @@ impl FigureCommand {
             let name = format!("{}.png", figure.name);
             let path = self.out.join(&name);
             if path.is_dir() || !self.overwrite && path.exists() && !output::is_figure(&path)? {
-                let what = format!("{name}, which is no figure of this program");
+                let what = format!("{name}, which is not a figure of this program");
                 return Err(Failure::from(OutputError::Occupied { path: self.out.clone(), what }));
             }
             Ok(path)
@@ -247,8 +247,8 @@ impl FigureCommand {
         (is_there && !interrupt::requested()).then(|| taking.finish())
     }
 
-    /// Tells what was made.
-    fn tell(&self, made: &[(&Figure, &PathBuf, Value)]) -> Result<(), Failure> {
+    /// Lists the figures that were made.
+    fn report(&self, made: &[(&Figure, &PathBuf, Value)]) -> Result<(), Failure> {
         if self.json {
             let entry = |(figure, path, numbers): &(&Figure, &PathBuf, Value)| {
                 let file = path.to_string_lossy();
@@ -315,7 +315,7 @@ fn times(typed: &str) -> Result<f64, String> {
     if (0.1..=4.0).contains(&times) { Ok(times) } else { Err("expected a number from 0.1 to 4".to_owned()) }
 }
 
-/// What is said of a name that no figure has.
+/// The message for an unknown name.
 fn unknown(asked: &str) -> String {
     let names: Vec<_> = NAMES.iter().copied().chain(["fig4", "all"]).collect();
     let hint = nearest(asked, &names).map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));

@@ -14,7 +14,7 @@ struct Span {
     stride: u64,
 }
 
-/// The most frames of one command: more come from a slip of the keyboard, and their list alone would take a while.
+/// The most frames of one command: more are a typing error, and their list alone would take a while.
 const MOST_FRAMES: u64 = 10_000_000;
 
 impl FrameRanges {
@@ -26,12 +26,12 @@ impl FrameRanges {
     /// The frames in rising order, each once, of a scene that ends with frame `last`.
     pub(super) fn select(&self, last: u64) -> Result<Vec<u64>, String> {
         if let Some(beyond) = self.0.iter().map(|span| span.last).find(|&frame| frame > last) {
-            return Err(format!("there is no frame {beyond}, the last one is {last}"));
+            return Err(format!("there is no frame {beyond}; the last one is {last}"));
         }
         let count = |span: &Span| (span.last - span.first) / span.stride;
         let count = self.0.iter().map(count).fold(self.0.len() as u64, u64::saturating_add);
         if count > MOST_FRAMES {
-            return Err(format!("{count} frames are too many; one command makes {MOST_FRAMES} at most"));
+            return Err(format!("{count} frames are too many; expected at most {MOST_FRAMES} in one command"));
         }
         let numbers =
             |span: &Span| (span.first..=span.last).step_by(usize::try_from(span.stride).unwrap_or(usize::MAX));
@@ -52,10 +52,9 @@ impl FromStr for FrameRanges {
 
 fn span(part: &str) -> Result<Span, String> {
     let number = |digits: &str| -> Result<u64, String> {
-        digits
-            .trim()
-            .parse()
-            .map_err(|_| format!("`{part}` is no frame and no range such as 0-119, 0-119x3 or 5,9,40-60"))
+        digits.trim().parse().map_err(|_| {
+            format!("`{part}` is not a frame; expected a number or a range, such as 0-119, 0-119x3 or 5,9,40-60")
+        })
     };
     let Some((first, rest)) = part.split_once('-') else {
         let frame = number(part)?;
@@ -67,7 +66,7 @@ fn span(part: &str) -> Result<Span, String> {
     };
     let span = Span { first: number(first)?, last: number(last)?, stride };
     if span.stride == 0 {
-        return Err(format!("`{part}` would take every 0th frame; the number after x is 1 or more"));
+        return Err(format!("`{part}` has a stride of 0; expected at least 1 after x"));
     }
     if span.first > span.last {
         return Err(format!("`{part}` runs backwards; did you mean {}-{}?", span.last, span.first));
@@ -93,24 +92,24 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told() {
-        for (typed, told) in [
-            ("", "`` is no frame"),
-            ("a", "`a` is no frame"),
-            ("1,,2", "`` is no frame"),
-            ("-3", "`-3` is no frame"),
-            ("3-", "`3-` is no frame"),
-            ("0-9x", "`0-9x` is no frame"),
-            ("1.5", "`1.5` is no frame"),
-            ("99999999999999999999", "is no frame"),
+    fn mistakes_are_reported() {
+        for (typed, message) in [
+            ("", "`` is not a frame"),
+            ("a", "`a` is not a frame"),
+            ("1,,2", "`` is not a frame"),
+            ("-3", "`-3` is not a frame"),
+            ("3-", "`3-` is not a frame"),
+            ("0-9x", "`0-9x` is not a frame"),
+            ("1.5", "`1.5` is not a frame"),
+            ("99999999999999999999", "is not a frame"),
             ("9-0", "did you mean 0-9?"),
-            ("0-9x0", "every 0th frame"),
+            ("0-9x0", "a stride of 0"),
         ] {
             let error = typed.parse::<FrameRanges>().unwrap_err();
-            assert!(error.contains(told), "{typed}: {error}");
+            assert!(error.contains(message), "{typed}: {error}");
         }
         let select = |typed: &str, last| typed.parse::<FrameRanges>().unwrap().select(last).unwrap_err();
-        assert_eq!(select("0-9,170-181", 180), "there is no frame 181, the last one is 180");
+        assert_eq!(select("0-9,170-181", 180), "there is no frame 181; the last one is 180");
         assert!(select("0-18446744073709551615", u64::MAX).contains("too many"));
     }
 }

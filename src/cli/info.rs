@@ -1,4 +1,4 @@
-//! `info`: what this program and this machine can do.
+//! `info`: version, processor features and graphics adapters.
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status};
@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 const NOTE: &str = "\
-Works on every machine. Where there is no graphics adapter it says what to install; `simulate` needs none.";
+If there is no graphics adapter, it says what to install; `simulate` needs none.";
 
-/// Print version, processor features, and the graphics adapters of this machine
+/// Print the version, and the processor features and graphics adapters of this machine
 #[derive(Args, Debug)]
 #[command(after_help = NOTE)]
 pub(super) struct Info {
@@ -39,7 +39,7 @@ impl Info {
         }
         let list = |features: &[&str]| if features.is_empty() { "none".to_owned() } else { features.join(", ") };
         let mut text = format!("localshape {version}\n");
-        let mut line = |head: &str, what: &str| writeln!(text, "  {head:<12}{what}").expect("a string takes all");
+        let mut line = |head: &str, what: &str| writeln!(text, "  {head:<12}{what}").expect("writing to a string");
         line("machine", &format!("{machine}, {threads} thread{}", if threads == 1 { "" } else { "s" }));
         line("features", &format!("{} in use; the processor has {}", list(&used), list(&present)));
         for (number, adapter) in graphics.lines().iter().enumerate() {
@@ -114,7 +114,7 @@ impl Graphics {
     }
 
     fn lines(&self) -> Vec<String> {
-        vec!["not looked for: this program was built without pictures".to_owned()]
+        vec!["not searched: this program was built without the feature `render`".to_owned()]
     }
 
     fn json(&self) -> Value {

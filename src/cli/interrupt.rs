@@ -1,5 +1,5 @@
-//! Ctrl-C and requests to terminate: a frame on its way is given up, what was made before is finished, and the command
-//! ends.
+//! Ctrl-C and requests to terminate: the frame in progress is abandoned, the files of earlier frames are finished, and the
+//! command ends.
 
 use super::failure::Status;
 use std::sync::Once;
@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on.
+/// Installs the handlers.
 ///
-/// Ctrl-C a second or more after the first request, whatever that was, ends the program at once, with nothing half-written
-/// under its own name. What follows within that second is the same request twice, as `timeout` sends it. Other signals
-/// only ever ask, for they come from programs, which have SIGKILL when they are in a hurry.
+/// Ctrl-C a second or more after the first request ends the program at once; no file is then left half-written under its
+/// final name. Signals within that second count as one request, since `timeout` sends its signal twice. Other signals
+/// only request the end: they come from programs, which have SIGKILL.
 pub(super) fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -28,19 +28,19 @@ pub(super) fn listen() {
 /// Requests within this time from the first are one.
 const MOMENT: Duration = Duration::from_secs(1);
 
-/// What Ctrl-C ends the program with at once.
+/// Exit status of an immediate end by Ctrl-C.
 const ENDED: i32 = Status::Interrupted as i32;
 
-/// Calls `request` for each signal that asks to end the program, saying whether it is Ctrl-C, until it says that the
-/// program is to end at once.
+/// Calls `request` for each signal that asks to end the program, with whether it is Ctrl-C, until it returns that the
+/// program shall end at once.
 ///
-/// Each signal is for itself, and only those are listened for that would end the program now: what is ignored, as by
-/// `nohup`, stays ignored, and a program that has its own handler keeps it.
+/// Only signals whose default action is in place get a handler: ignored ones, as with `nohup`, stay ignored, and a program
+/// keeps handlers of its own.
 #[cfg(unix)]
 fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     let ending = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| is_default(signal));
-    // Where nothing can be listened for, signals end the program as they would any other.
+    // Without handlers, signals have their default action.
     let Ok(mut signals) = signal_hook::iterator::Signals::new(ending) else { return };
     std::thread::spawn(move || {
         for signal in signals.forever() {

@@ -40,32 +40,32 @@ const STATUSES: &str = "\
 Exit status:
     0  done (a run that diverges is a result and recorded as one)
     1  a check found a difference
-    2  wrong usage, or a wrong scene file
+    2  wrong usage, or mistakes in a scene file
     3  no usable graphics adapter
     4  reading or writing failed
-  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was made until then is whole
-       (Ctrl-C again, a second later, ends at once)";
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; files made until then are complete
+       (a second Ctrl-C, a second later, ends the program at once)";
 
 #[cfg(not(feature = "render"))]
 const EXAMPLES: &str = "\
 Examples:
   localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
-  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape check scenes/*.toml               what scenes contain, or every mistake in them
   localshape table                             the paper's numbers beside ours
 
-This program was built without the feature `render`: it draws no pictures.";
+This program was built without the feature `render`: it cannot draw pictures.";
 
 #[cfg(feature = "render")]
 const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
   localshape simulate scenes/fig4b.toml        the same without pictures
-  localshape check scenes/*.toml               what scenes hold, or every mistake in them
+  localshape check scenes/*.toml               what scenes contain, or every mistake in them
   localshape animate output/fig4b -o fig4b.gif frames as an animation
   localshape figure all                        the paper's figures in output/figures/
   localshape table                             the paper's numbers beside ours";
 
-/// Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models
+/// Simulate deformable bodies that keep their local shapes, and draw them beside mass-spring models
 #[derive(Debug, Parser)]
 #[command(name = "localshape", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 struct Cli {
@@ -90,15 +90,14 @@ enum Command {
     Completions(completions::Completions),
 }
 
-/// Runs the program with the words of a command line, the program's name first, and returns what to exit with.
+/// Runs the program with the arguments of a command line, the program's name first, and returns its exit status.
 ///
-/// Results go to standard output, progress and errors to standard error. Interrupts are listened for from the first
-/// scene that is run.
+/// Results go to standard output, progress and errors to standard error. Signals are handled from the first scene that is run.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<_> = words.into_iter().collect();
     let status = match Cli::try_parse_from(&words) {
         Ok(cli) => cli.command.run(&words).unwrap_or_else(Failure::report),
-        // Also how help and version are asked for. Nobody is left to be told if printing fails.
+        // Help and version come here, too. If printing fails there is nowhere to report it.
         Err(error) => {
             let _ = error.print();
             if error.use_stderr() { Status::Usage } else { Status::Done }

@@ -11,8 +11,8 @@ pub(super) struct SceneOptions {
     #[arg(value_name = "SCENE", required = true, value_hint = ValueHint::FilePath)]
     pub(super) scenes: Vec<PathBuf>,
 
-    /// Accept scenes beyond the limits that guard against slips of the keyboard, as far as the memory goes and at most
-    /// 4294967295 nodes or elements
+    /// Accept scenes beyond the limits that guard against typing errors, as far as memory permits and up to 4294967295 nodes
+    /// or elements
     #[arg(long)]
     pub(super) allow_large: bool,
 }
@@ -25,29 +25,29 @@ pub(super) struct RunOptions {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(super) out: Option<PathBuf>,
 
-    /// Replace what the output folder holds of another scene, of another size or choice of runs, or, if it was named
-    /// with -o, of an earlier version of the scene file
+    /// Replace files in the output folder that belong to another scene, size or choice of runs, or, in a folder given with
+    /// -o, to an earlier version of the scene file
     #[arg(long)]
     pub(super) overwrite: bool,
 
-    /// Frames to make, ends included: 0-119, every third as 0-119x3, or 5,9,40-60 [default: all]
+    /// Frames to make, inclusive: 0-119, every third as 0-119x3, or 5,9,40-60 [default: all]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     pub(super) frames: Option<FrameRanges>,
 
-    /// Only this run of the scene; may be given several times [default: all]
+    /// Only this run of the scene; can be repeated [default: all]
     #[arg(long, value_name = "RUN")]
     pub(super) only: Vec<String>,
 
     /// Also write positions and velocities of every frame to states.npz, for numpy.load: `time`, `RUN.position` and
-    /// `RUN.velocity` for each run, and `RUN.time` for a run with a time step of its own
+    /// `RUN.velocity` for each run, and `RUN.time` for a run with its own time step
     #[arg(long)]
     pub(super) states: bool,
 
-    /// Threads to work with [default: one for each processor]; the results are the same for any number
+    /// Number of threads, which does not change the results [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
-    /// Neither progress nor summary; only errors
+    /// Print errors only, neither progress nor summary
     #[arg(short, long)]
     pub(super) quiet: bool,
 

@@ -81,7 +81,7 @@ pub(super) fn run_all(
         }
         interrupted = summary.outcome == Outcome::Interrupted;
     }
-    // What was finished is told before the failure.
+    // Finished scenes are reported before the failure.
     let printed = if options.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
     result.and(printed)?;
     Ok(if interrupted { Status::Interrupted } else { Status::Done })

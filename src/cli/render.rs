@@ -30,14 +30,14 @@ Examples:
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
 
-The folder then holds frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, \
-for each run and frame) and run.json (what was run, how it went, and which files it wrote). Frames of another scene \
-are never mixed with them, nor frames of another --size or --only; other frames of the same sequence stay.
+The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
+each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
+(--size) or choices of runs (--only); other frames of the same sequence stay.
 
-output/NAME follows its scene file: what an earlier version of that file made there is replaced. A folder named with -o, \
-and one with results of another scene, is left as it is unless --overwrite is given.
+Results in output/NAME of an earlier version of the scene file are replaced. Results in a folder given with -o, and results \
+of another scene, are replaced only with --overwrite.
 
-Without a GPU, pictures are drawn on the processor; `localshape info` tells with what.";
+Without a GPU, pictures are drawn by a software driver; `localshape info` names it.";
 
 /// Threads that write frames, at most: a few keep up with any device.
 const MOST_WRITERS: usize = 4;
@@ -59,20 +59,20 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
     samples: u32,
 
-    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or a part of its name
+    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or part of its name
     #[arg(long, value_name = "ADAPTER", default_value = "auto")]
     adapter: AdapterChoice,
 
-    /// Also make an animation of the frames, or a sheet of them; the ending of FILE chooses the format, as with `localshape
-    /// animate`, which knows more options. May be given several times
+    /// Also make an animation or a contact sheet of the frames. The extension of FILE chooses the format, as with
+    /// `localshape animate`, which has more options. Can be repeated
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     animate: Vec<PathBuf>,
 
-    /// Do not keep the frames that the animation is made of
+    /// Do not keep the frames of the animation
     #[arg(long, requires = "animate")]
     no_frames: bool,
 
-    /// Also tell how long each stage took
+    /// Also print how long each stage took
     #[arg(long)]
     timings: bool,
 }
@@ -117,7 +117,7 @@ impl Render {
     /// The animations that are asked for, if they can be made.
     fn films(&self, scenes: usize) -> Result<Vec<(Format, PathBuf)>, Failure> {
         if scenes > 1 && !self.animate.is_empty() {
-            return Err(Failure::usage("--animate makes a file of one scene; render the scenes one at a time"));
+            return Err(Failure::usage("--animate writes one scene to a file; render the scenes one at a time"));
         }
         let film = |path: &PathBuf| {
             let format = Format::of(path).map_err(Failure::usage)?;
@@ -137,7 +137,7 @@ impl Render {
         let places: Vec<_> = self.animate.iter().map(|path| place(path)).collect();
         if let Some(at) = (1..places.len()).find(|&at| places[..at].contains(&places[at])) {
             let name = self.animate[at].display();
-            return Err(Failure::usage(format!("--animate names {name} twice; expected a file of its own each time")));
+            return Err(Failure::usage(format!("--animate is given {name} twice; expected different files")));
         }
         Ok(films)
     }
@@ -152,7 +152,7 @@ struct Device {
     keep: bool,
     /// What animations are made of, if any are.
     shared: Option<Shared>,
-    /// What is told of animations in the end.
+    /// Lines to print about animations at the end.
     made: Mutex<Vec<String>>,
 }
 
@@ -220,7 +220,7 @@ impl<'a> Films<'a> {
         Self { spool, frames: frames.len(), kept, threads, made }
     }
 
-    /// Waits for all. If not all frames were made, no animation is there, and how to make it of those that are is told.
+    /// Waits for all. If frames are missing there is no animation; the message then says how to make one of the others.
     fn finish(mut self) -> Result<(), Failure> {
         self.spool.end();
         let mut result = Ok(());
@@ -230,16 +230,16 @@ impl<'a> Films<'a> {
                     let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
                     made.push(summary(&path, self.frames, &written));
                 }
-                // Why, is told by what has stopped it.
+                // Whatever stopped it reports the reason.
                 Err(AnimationError::Stopped) => {
                     let kept =
                         self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
                     let path = path.display();
                     let how = kept.map_or(String::new(), |folder| {
-                        format!("; of the frames that are: localshape animate {} -o {path}", folder.display())
+                        format!("; to make it from the others: localshape animate {} -o {path}", folder.display())
                     });
                     let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(format!("{path}  not made, for not all frames are there{how}\n"));
+                    made.push(format!("{path}  not made, because frames are missing{how}\n"));
                 }
                 Err(error) => result = result.and(Err(error.into())),
             }

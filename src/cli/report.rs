@@ -1,4 +1,4 @@
-//! What is said after a scene was run.
+//! The summary after a scene was run.
 
 use super::console::{columns, significant};
 use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
@@ -31,7 +31,7 @@ fn made(summary: &Summary, folder: &Path) -> String {
         Some([width, height]) => write!(text, " of {width}×{height}"),
         None => write!(text, " simulated"),
     }
-    .expect("a string takes all");
+    .expect("writing to a string");
     text + &format!(" in {}", folder.display())
 }
 

@@ -17,7 +17,7 @@ impl SceneOptions {
         Scene::load(path, &limits)
     }
 
-    /// Reads all scenes. The mistakes in all of them are told before this fails; warnings unless `quiet`.
+    /// Reads all scenes. The mistakes in all of them are reported before this fails; warnings unless `quiet`.
     pub(super) fn load_all(&self, quiet: bool) -> Result<Vec<Scene>, Failure> {
         let mut scenes = Vec::new();
         let mut failed = None;
@@ -42,7 +42,7 @@ impl SceneOptions {
     }
 }
 
-/// A wrong scene, unless the system kept us from reading it.
+/// Mistakes in a scene, unless it could not be read.
 pub(super) fn status_of(error: &SceneError) -> Status {
     if error.is_unreadable() { Status::Files } else { Status::Usage }
 }
@@ -78,7 +78,7 @@ impl RunOptions {
             if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
                 let (second, path) = (&scene.title, path.display());
                 let message =
-                    format!("“{first}” and “{second}” would both go to {path}; run them one at a time with -o");
+                    format!("“{first}” and “{second}” would both be written to {path}; run them one at a time with -o");
                 return Err(Failure::usage(message));
             }
             let runs = self.runs(&scene)?;
@@ -94,8 +94,8 @@ impl RunOptions {
         Ok(jobs)
     }
 
-    /// A folder that has its name from the scene follows its file. One that was named by the user keeps what it has, for
-    /// it may be what later versions are to be compared with.
+    /// A folder named after the scene follows its file. A folder named by the user keeps its contents, which may be
+    /// wanted for comparison.
     fn replace(&self) -> Replace {
         match (self.overwrite, &self.out) {
             (true, _) => Replace::All,
@@ -116,7 +116,7 @@ impl RunOptions {
     fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
         let last = scene.last_frame();
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
-        ranges.select(last).map_err(|told| Failure::usage(format!("frames of “{}”: {told}", scene.title)))
+        ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))
     }
 }
 
@@ -127,7 +127,7 @@ fn overwriting(words: &[OsString]) -> String {
     [program, &["--overwrite".to_owned()], rest].concat().join(" ")
 }
 
-/// How close a name must come to be taken for a slip, of 1 for equal.
+/// How similar a name must be to be suggested, of 1 for equal.
 const SIMILAR: f64 = 0.7;
 
 fn unknown_run(scene: &Scene, unknown: &str, names: &[&str]) -> String {

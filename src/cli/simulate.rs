@@ -12,13 +12,13 @@ Examples:
   localshape simulate scenes/fig4b.toml --states -o results
   localshape simulate scenes/*.toml --json > results.json
 
-The folder then holds diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), \
-run.json (what was run, how it went, and which files it wrote) and, with --states, states.npz. A run that diverges is a result, not an error.
+The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \
+(command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.
 
-output/NAME follows its scene file: what an earlier version of that file made there is replaced. A folder named with -o, \
-and one with results of another scene, is left as it is unless --overwrite is given.";
+Results in output/NAME of an earlier version of the scene file are replaced. Results in a folder given with -o, and results \
+of another scene, are replaced only with --overwrite.";
 
-/// Simulate scenes without drawing them; touches no graphics device
+/// Simulate scenes without drawing them; needs no graphics adapter
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Simulate {

@@ -16,11 +16,10 @@ Examples:
   localshape table table1 --orientations 200   more starts, narrower medians
   localshape table ratio --threads 4 -o four   the ratio of computation times on four threads
 
-Each folder then holds the table as Markdown, which is printed, too, and as CSV with all digits. Table 1 is the same to \
-the byte on every machine and for any number of threads; the ratio is measured on this machine, and best while it does \
-nothing else.";
+Each folder then has the table as Markdown, which is also printed, and as CSV with all digits. Table 1 has the same bytes \
+on every machine and for any number of threads. The ratio is measured on this machine, which should be idle otherwise.";
 
-/// Measure the numbers that the paper tells, and put them beside its own
+/// Measure the tables of the paper, and print them beside its numbers
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Table {
@@ -32,20 +31,20 @@ pub(super) struct Table {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
 
-    /// Replace what the output folder holds of a table made in another way, or of others
+    /// Replace a table in the output folder that was made with other options, or other files
     #[arg(long)]
     overwrite: bool,
 
-    /// Starts of Table 1, turned at random; each is the same in any number of them
+    /// Number of random orientations in Table 1, of which the first are always the same
     #[arg(long, value_name = "N", default_value_t = table1::Protocol::default().orientations)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     orientations: u32,
 
-    /// Threads to work with [default: one for each processor, and one for the ratio]
+    /// Number of threads [default: one for each processor; for the ratio one]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Neither progress nor the tables; only errors
+    /// Print errors only, neither progress nor tables
     #[arg(short, long)]
     quiet: bool,
 

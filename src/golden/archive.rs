@@ -1,4 +1,4 @@
-//! The exact states that a folder of frames may hold: `states.npz`, whose frames `diagnostics.csv` beside it tells.
+//! The exact states in a folder of frames: `states.npz`, whose frames are listed in `diagnostics.csv`.
 
 use super::states::{Places, State, States};
 use crate::output::{DIAGNOSTICS_FILE, STATES_FILE, state_digest};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// The largest archive that is read (bytes): its states are held in memory.
 const LARGEST: u64 = 2 << 30;
 
-/// What is read of a row of the diagnostics.
+/// The columns of the diagnostics that are read.
 #[derive(Deserialize)]
 struct Row {
     run: String,
@@ -41,7 +41,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
     let names: Vec<String> =
         archive.names().iter().filter_map(|name| name.strip_suffix(".position").map(str::to_owned)).collect();
     if names.is_empty() {
-        return Err(format!("{STATES_FILE} holds no positions"));
+        return Err(format!("{STATES_FILE} has no positions"));
     }
     for run in names {
         let frames =
@@ -53,9 +53,9 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
             let told = |what: String| format!("{STATES_FILE}: `{name}` {what}");
             if array.shape.len() != 3 || array.shape[0] != frames.len() as u64 || array.shape[2] != 3 {
                 let (shape, count) = (array.shape_in_words(), frames.len());
-                return Err(told(format!("has the shape {shape}; {DIAGNOSTICS_FILE} tells of {count} frames")));
+                return Err(told(format!("has the shape {shape}; {DIAGNOSTICS_FILE} has {count} frames")));
             }
-            // What is packed may be far larger than its file.
+            // Unpacked, arrays can be far larger than the file.
             if array.bytes().is_none_or(|bytes| bytes > LARGEST) {
                 return Err(told("is too large to be read".to_owned()));
             }
@@ -81,10 +81,10 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
     Ok(Some(states))
 }
 
-/// The rows of each run, with what describes the states.
+/// The rows of each run, with the diagnostics.
 fn rows(path: &Path) -> Result<HashMap<String, Vec<(Row, Chosen)>>, String> {
     let mut reader = csv::Reader::from_path(path).map_err(|error| {
-        format!("{DIAGNOSTICS_FILE}, which tells the frames of {STATES_FILE}, cannot be read: {error}")
+        format!("{DIAGNOSTICS_FILE}, which lists the frames of {STATES_FILE}, cannot be read: {error}")
     })?;
     let told = |error: csv::Error| format!("{DIAGNOSTICS_FILE}: {error}");
     let heads = reader.headers().map_err(told)?.clone();

@@ -1,4 +1,4 @@
-//! Accepting what is there as what is expected from now on.
+//! Accepting the actual side as the expected one.
 
 use super::picture::{PictureError, Pixels};
 use super::record::{Drawn, RECORD_FILE, Record};
@@ -28,13 +28,13 @@ pub(crate) struct Blessed {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum BlessError {
     /// The simulation gave other states, or ends earlier, and accepting that was not asked for.
-    #[error("the state moved, so nothing was accepted; if that is meant: {command}")]
+    #[error("the state moved, so nothing was accepted; to accept it anyway: {command}")]
     StateMoved {
         /// What would accept it.
         command: String,
     },
     /// What the golden expected cannot be read, so that nobody knows whether the state moved.
-    #[error("what was expected is damaged, so nothing was accepted; to replace it by what is there: {command}")]
+    #[error("the expected side is damaged, so nothing was accepted; to replace it: {command}")]
     Damaged {
         /// What would accept it.
         command: String,
@@ -85,7 +85,7 @@ impl Comparison {
             && let Some(other) = other_file(&expected.origin)
         {
             let folder = expected.origin.display();
-            return Some(format!("{folder} holds other files, such as {other}; name a folder that is not there"));
+            return Some(format!("{folder} has other files, such as {other}; name a folder that does not exist"));
         }
         if !self.unknown.is_empty() && actual.record.is_none() {
             return Some(format!("the states of {} are not known here", self.unknown.join(", ")));
@@ -101,7 +101,7 @@ impl Comparison {
             match self.actual_source(&picture.name)?.pixels() {
                 Err(error) => told(error.to_string()),
                 Ok(pixels) if is_golden && pixels.label.is_none() => {
-                    told("it does not say which state it shows, and cannot belong to a golden".to_owned())
+                    told("it has no recorded state and cannot belong to a golden".to_owned())
                 }
                 Ok(pixels) if is_golden && actual.record.is_none() => {
                     let size = expected.record.as_ref().map(|record| record.size);
@@ -186,7 +186,7 @@ impl Comparison {
                         file.append(&bytes)?;
                         staged.push(file);
                     }
-                    // The picture of a golden for which nothing stands any more.
+                    // A picture of the golden that does not exist any more on the actual side.
                     None if !belongs && expected.pictures.contains_key(&picture.name) => gone.push(target),
                     None if expected.kind == Kind::Golden && !belongs => {}
                     None => {
@@ -206,7 +206,9 @@ impl Comparison {
                     }
                     (Some(_), None) => {
                         let (target, actual) = (target.display(), actual.origin.display());
-                        blessed.left.push(format!("{target} is not of these pictures any more, but {actual} has none"));
+                        blessed.left.push(format!(
+                            "{target} does not belong to these pictures any more, but {actual} has none"
+                        ));
                     }
                     _ => {}
                 }
@@ -240,7 +242,7 @@ impl Comparison {
         Ok(blessed)
     }
 
-    /// The record that a golden has after blessing; `None` if it is no golden.
+    /// The record of a golden after accepting; `None` if the side is not a golden.
     fn record_to_write(&self) -> Result<Option<Record>, BlessError> {
         let [expected, actual] = &self.sides;
         let old = match (expected.kind, &expected.record) {
@@ -250,12 +252,12 @@ impl Comparison {
             _ => return Ok(None),
         };
         let mut record = match &actual.record {
-            // Only pictures are renewed, and with them who drew them.
+            // Only pictures and their adapters are updated.
             _ if !self.needs_state() => old.clone(),
             Some(record) => record.clone(),
             None => Record { states: self.states_for(old)?, ..old.clone() },
         };
-        // The adapters of pictures that stay are those that drew them.
+        // Pictures that are kept keep their adapters.
         let passes = |name: &str| self.pictures.iter().any(|picture| picture.name == name && picture.verdict.passes());
         let label = |name: &str| self.actual_source(name).and_then(|source| source.pixels().ok()?.label);
         let names = actual.record.as_ref().unwrap_or(old).pictures.iter().map(|drawn| drawn.file.as_str());
@@ -292,17 +294,17 @@ impl Comparison {
     }
 }
 
-/// Files that stand beside the frames of a folder and are of the same states.
+/// Files beside the frames of a folder that describe the same states.
 const BESIDE: [&str; 3] = [STATES_FILE, DIAGNOSTICS_FILE, SUMMARY_FILE];
 
-/// A file or folder in a folder, but for hidden ones.
+/// A file or folder in a folder, except hidden ones.
 fn other_file(folder: &Path) -> Option<String> {
     let names = std::fs::read_dir(folder).ok()?.flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.filter(|name| !name.starts_with('.')).min()
 }
 
-/// The bytes of a picture, for a golden as few as can be had.
+/// The bytes of a picture, with the strongest compression for a golden.
 fn bytes(source: &Source, is_golden: bool) -> io::Result<Cow<'_, [u8]>> {
     let bytes = source.bytes().map_err(|error| match error {
         PictureError::Read(error) => error,

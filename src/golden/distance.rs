@@ -1,8 +1,8 @@
-//! How far two pictures are apart, and how far they may be.
+//! The distance of two pictures, and the tolerances.
 //!
-//! One machine draws the same bytes. Machines of one kind round in their own ways, and now and then take another sample
-//! where a silhouette passes through a corner of a pixel. Another kind of adapter has sample places of its own: all along
-//! the silhouettes pixels differ by a little, but what lies between them must be the same.
+//! One machine draws the same bytes every time. Machines of one kind round differently, and in rare cases take another sample
+//! where a silhouette passes through the corner of a pixel. Another kind of adapter has other sample positions: pixels
+//! differ a little along all silhouettes, but those between them must be the same.
 
 #[cfg(test)]
 use super::picture::Pixels;
@@ -12,19 +12,19 @@ use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
 
-/// Pixels differ visibly if a channel differs by more than this: drivers round in their own ways.
+/// Pixels differ visibly if a channel differs by more than this: drivers round differently.
 pub(super) const CHANNEL: u8 = 2;
-/// Pictures of machines of one kind may differ visibly in this part of their pixels, and in so many in any case.
+/// Pictures of machines of one kind may differ visibly in this part of their pixels, or in this number if that is more.
 const PART: f64 = 1e-4;
 const AT_LEAST: u64 = 8;
 
-/// Of the silhouettes' pixels this part may differ visibly between kinds of adapters. Measured between two software
+/// Part of the pixels along silhouettes that may differ visibly between kinds of adapters. Measured between two software
 /// drivers of different makers (llvmpipe and SwiftShader, 154 pictures of 180 to 1280 px, and all goldens of this project):
-/// median .008, at most .16 where a picture is hardly anything but lines. GPUs were not measured.
+/// median 0.008, at most 0.16 in pictures that consist mostly of lines. GPUs were not measured.
 const PART_OF_SILHOUETTES: f64 = 0.25;
-/// Of all others this part, measured as at most .05 %; and far from silhouettes never by more than the contrast that makes
-/// one, measured as 7. But what stands in one picture only, as a line or a mark that is drawn new, differs by more in
-/// [`AT_LEAST`] pixels at most, measured as 2.
+/// Part of all other pixels that may differ, measured as at most 0.05 %; away from silhouettes never by more than the contrast
+/// that defines one, measured as 7. Objects in one picture only, such as a new line or mark, may differ by more in
+/// [`AT_LEAST`] pixels, measured as 2.
 const PART_OF_INTERIORS: f64 = 1e-3;
 
 /// What is known of the machines that drew two pictures.
@@ -119,7 +119,7 @@ impl Distance {
 
     fn limits(&self) -> impl Iterator<Item = Limit> {
         let first = match self.machines {
-            // Not a byte may differ.
+            // No byte may differ.
             Machines::Same | Machines::Unknown => Count { visible: self.unequal, ..self.counted },
             _ => self.counted,
         };
@@ -128,7 +128,7 @@ impl Distance {
     }
 }
 
-/// How many pixels may differ, and by how much if not by anything.
+/// How many pixels may differ, and by how much if that is limited.
 struct Limit {
     count: Count,
     largest: Option<u8>,
@@ -210,7 +210,7 @@ impl Tally {
         let Self { machines, size, of_silhouettes, counts, .. } = self;
         let Counts { unequal, mut counted, mut interiors, mut one_sided } = counts;
         let all = u64::from(size[0]) * u64::from(size[1]);
-        // Of a few pixels none can be spared.
+        // In very small pictures the tolerance is smaller.
         let part = |part: f64, of: u64| AT_LEAST.min(of / 100).max((part * of as f64) as u64);
         if machines == Machines::OtherKind && unequal > 0 {
             counted.allowed = part(PART_OF_SILHOUETTES, of_silhouettes);
@@ -290,12 +290,12 @@ impl fmt::Display for Distance {
         let Count { visible, largest, .. } = self.counted;
         let strict = match self.machines {
             Machines::Same => Some("one machine drew both"),
-            Machines::Unknown => Some("neither says who drew it"),
+            Machines::Unknown => Some("neither names its adapter"),
             Machines::OneKind | Machines::OtherKind => None,
         };
         if let Some(why) = strict {
             let pixels = differ(self.unequal);
-            return write!(f, "{pixels}, by up to {largest} of 255; none may, for {why}");
+            return write!(f, "{pixels}, by up to {largest} of 255; none may, because {why}");
         }
         let by = if largest > 0 { format!(", by up to {largest}") } else { String::new() };
         let pixels = format!("{} by more than {CHANNEL} of 255 ({}){by}", differ(visible), may(self.counted));
@@ -310,9 +310,9 @@ impl fmt::Display for Distance {
                 may(inner),
                 inner.largest
             ),
-            format!("of what stands in one picture only, {} ({})", differ(alone.visible), may(alone)),
+            format!("in objects of one picture only, {} ({})", differ(alone.visible), may(alone)),
         ];
-        // What is wrong comes first.
+        // Exceeded tolerances come first.
         let kept: Vec<bool> = self.limits().map(|limit| limit.is_kept()).collect();
         if let Some(wrong) = kept.iter().position(|&kept| !kept) {
             told[..=wrong].rotate_right(1);

@@ -16,14 +16,14 @@ use crate::sim::snapshot::{Divergence, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Width of new goldens (px), unless their scene is drawn smaller: small pictures say as much and keep stores small.
+/// Width of new goldens (px), unless their scene is smaller: small pictures detect as much and keep repositories small.
 const WIDTH: u32 = 320;
-/// New goldens have so many pictures, if there are so many frames.
+/// Number of pictures in new goldens, if there are so many frames.
 const PICTURES: u64 = 3;
-/// Steps of each run after which the user is listened to.
+/// Steps of each run between checks for interruption.
 const SLICE: u64 = 100;
 
-/// What a golden is of.
+/// The subject of a golden.
 #[derive(Clone, Debug)]
 pub(crate) enum Subject {
     /// A scene: some of its frames are drawn, and the states of many more recorded.
@@ -45,7 +45,7 @@ impl Subject {
     }
 }
 
-/// How a golden is to be drawn. What is not said is as the golden has it, or as new ones are.
+/// How a golden is to be drawn. `None` means as the golden is, or as new ones are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wish {
     /// The frames to draw, rising.
@@ -78,14 +78,14 @@ impl Wish {
     }
 }
 
-/// Why it cannot be drawn.
+/// Why it could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum DrawError {
     /// The device stopped working or refused.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// States that wait to be drawn could not be kept.
-    #[error("states that wait to be drawn cannot be kept in the folder for temporary files: {0}")]
+    #[error("states cannot be stored in the folder for temporary files: {0}")]
     Disk(#[from] std::io::Error),
     /// What was asked for is not there.
     #[error("{0}")]
@@ -201,7 +201,8 @@ fn draw_scene(
             let name = &scene.runs[run.run].name;
             states.add(name, index, state);
             if let Status::Diverged(Divergence { time, step, .. }) = run.snapshot.status {
-                let told = || format!("{name} diverged at {time:.3e} s (step {step}) and stands still from there on");
+                let told =
+                    || format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on");
                 stopped.entry(run.run).or_insert_with(told);
             }
         }

@@ -1,7 +1,7 @@
-//! Comparing pictures so that a difference says what moved: the simulation, or the drawing of it.
+//! Compares pictures, and says whether the simulation or its drawing changed.
 //!
-//! Frames carry digests of the states that they show, and a golden, a folder with a few small pictures and a record of all
-//! its scene's states, also knows roughly where the nodes were. So the verdict is about physics first and about pixels then.
+//! Frames have digests of the states that they show. A golden, a folder with a few small pictures and a record of all states
+//! of its scene, also has rounded positions of nodes. So states are compared first, and then pixels.
 //!
 //! Two pictures, or two folders of them:
 //!
@@ -13,7 +13,7 @@
 //! # Ok::<(), localshape::golden::ComparisonError>(())
 //! ```
 //!
-//! To test scenes of one's own against goldens, in `cargo test`, there is `Suite` (with the feature `render`).
+//! `Suite` tests scenes against goldens in `cargo test` (with the feature `render`).
 
 mod archive;
 mod bless;
@@ -75,7 +75,7 @@ pub(crate) enum ComparisonError {
         file: PathBuf,
     },
     /// There is nothing to compare.
-    #[error("neither {} nor {} holds a PNG picture", expected.display(), actual.display())]
+    #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
     Empty {
         /// The folder with what was expected.
         expected: PathBuf,
@@ -84,7 +84,7 @@ pub(crate) enum ComparisonError {
     },
     /// The record of a golden makes no sense.
     #[error(
-        "{}: this is no record of a golden that can be read: {what}; if nothing else helps, delete the folder and make the \
+        "{}: this record of a golden cannot be read: {what}; if nothing else helps, delete the folder and make the \
          golden again",
         path.join(RECORD_FILE).display()
     )]
@@ -133,7 +133,7 @@ pub(crate) struct Compared {
     pub verdict: Verdict,
 }
 
-/// So many pictures are told one by one.
+/// Number of pictures that are listed one by one.
 const MOST_TOLD: usize = 12;
 
 impl Comparison {
@@ -176,7 +176,7 @@ impl Comparison {
         notes.extend(other_moments(&read));
         if actual.kind == Kind::Folder && actual.pictures.is_empty() {
             let folder = actual.origin.display();
-            notes.push(format!("{folder} holds no PNG picture; to compare with a scene, name its file"));
+            notes.push(format!("{folder} has no PNG picture; to compare with a scene, name its file"));
         }
         notes.extend(actual.notes.iter().cloned());
         match ends(&expected, &actual) {
@@ -214,7 +214,7 @@ impl Comparison {
             .collect();
         pictures.sort_by(|one, other| one.name.cmp(&other.name));
         if actual.is_undrawn {
-            // What is wrong with the golden itself is wrong without pictures, too.
+            // Mistakes in the golden itself are reported even without pictures.
             pictures.retain(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
             notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
         }
@@ -233,7 +233,7 @@ impl Comparison {
             if let Some(record) = &sides[at].record {
                 return record.states.clone();
             }
-            // Archives may be large: they are read only to tell how far states are apart, or where pictures do not tell.
+            // Archives can be large: they are read only for distances, or for states that pictures do not record.
             if has_record || differs {
                 match sides[at].archive(&labels[at]) {
                     // It says the same of every frame that has a picture, and more of it.
@@ -263,7 +263,7 @@ impl Comparison {
 
     /// The verdict on the whole, in the words of the gravest on a picture.
     pub(crate) fn verdict(&self) -> &'static str {
-        // From the gravest on.
+        // From the most severe.
         const ORDER: [&str; 8] = [
             "unreadable",
             "state moved",
@@ -373,7 +373,7 @@ fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Label>, 
     more.map(|(name, source)| (name.clone(), label(source))).collect()
 }
 
-/// What is wrong with a frame that has no picture in the golden; `None` if nothing is.
+/// The mistake in a frame that has no picture in the golden, if any.
 fn judge(name: &str, label: &Result<Option<Label>, PictureError>, expected: &Side) -> Option<Compared> {
     let verdict = match label {
         Err(error) => Verdict::Unreadable { message: format!("{name}: {error}") },
@@ -397,7 +397,7 @@ fn judge(name: &str, label: &Result<Option<Label>, PictureError>, expected: &Sid
     Some(Compared { name: name.to_owned(), frame, verdict })
 }
 
-/// Adds what is known besides the two pictures: by how much a state moved, and whether a golden contradicts itself.
+/// Adds what is known besides the two pictures: how far a state moved, and whether a golden is contradictory.
 fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, courses: &[Course]) {
     if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
         for here in runs {
@@ -414,7 +414,7 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
     let drawn = record.pictures.iter().find(|drawn| drawn.file == picture.name);
     let contradiction = match (drawn, label) {
         (None, _) => Some("does not know this picture"),
-        (Some(_), None) => Some("knows its state, this picture has lost what it said of itself"),
+        (Some(_), None) => Some("knows its state, but this picture has lost its text chunks"),
         (Some(drawn), Some(label)) => {
             let is_other = label.states().iter().any(|(digest, run)| {
                 let state = record.states.run(run).and_then(|run| run.states.get(&drawn.frame));
@@ -436,7 +436,7 @@ fn complete(picture: &mut Compared, label: Option<&Label>, expected: &Side, cour
     }
 }
 
-/// That pictures of one name show different frames or times, in words.
+/// A message if pictures of one name show different frames or times.
 fn other_moments(pairs: &[Pair]) -> Option<String> {
     let told = |pair: &Pair| {
         let [Some(Label::Frame(expected)), Some(Label::Frame(actual))] = &pair.labels else { return None };
@@ -444,7 +444,7 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
         if actual.frame != expected.frame {
             return Some(format!("{name} shows frame {} instead of frame {}", actual.frame, expected.frame));
         }
-        // Scenes whose steps are not alike have frames at slightly different times.
+        // With different steps, frames have slightly different times.
         let is_other = (actual.time - expected.time).abs() > 0.01 * actual.time.abs().max(expected.time.abs());
         is_other.then(|| {
             let [was, is] = [expected.time, actual.time].map(|time| rounded(time, 4));
@@ -490,7 +490,7 @@ impl Comparison {
     /// All of it in words, with the command that accepts what is there if that is asked for.
     pub(crate) fn told(&self, with_command: bool) -> String {
         let mut text = String::new();
-        self.tell(&mut text).expect("a string takes all");
+        self.tell(&mut text).expect("writing to a string");
         if let Some(command) = self.command_to_accept().filter(|_| with_command) {
             let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
             text += &format!("{what}: {command}\n");
@@ -510,7 +510,7 @@ impl Comparison {
             writeln!(f, "the {what} {} is missing", self.sides[0].origin.display())?;
             return self.tell_end(f);
         }
-        // Of two single pictures nobody knows which frame was first.
+        // For two single pictures the first frame is unknown.
         let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
         for moved in self.moved.iter().filter(|_| !are_pictures) {
             writeln!(f, "state moved: {moved}")?;
@@ -528,7 +528,7 @@ impl Comparison {
             writeln!(f, "{run}: {step}")?;
         }
         if let ([only], true) = (&self.pictures[..], wrong.is_empty()) {
-            // A single picture that passes is told, too.
+            // A single picture that passes is listed, too.
             writeln!(f, "{}: {}", only.name, only.verdict)?;
         }
         if self.pictures.len() > 1 {

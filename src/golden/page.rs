@@ -1,4 +1,4 @@
-//! A comparison as the page that tells of it.
+//! The report page of a comparison.
 
 use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
@@ -9,7 +9,7 @@ use super::{Compared, Comparison, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Pictures of so many frames are put into a page, those that failed first.
+/// Number of frames whose pictures are in a page; failed ones come first.
 const MOST_FAILED: usize = 40;
 const MOST_PASSED: usize = 8;
 
@@ -88,7 +88,7 @@ impl Comparison {
                 _ => side.pictures.get(&picture.name),
             }
         };
-        // What is no picture is not shown as one.
+        // Files that are not pictures are not shown.
         let pixels = [0, 1].map(|at| source(at).filter(|_| is_shown).and_then(|source| source.pixels().ok()));
         let bytes = [0, 1].map(|at| pixels[at].as_ref().and_then(|_| Some(source(at)?.bytes().ok()?.into_owned())));
         let label = |at: usize| pixels[at].as_ref().and_then(|pixels| pixels.label.as_ref());
@@ -150,7 +150,7 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     }
     let faint = |pixel: &[u8]| {
         let [red, green, blue] = [0, 1, 2].map(|at| u32::from(pixel[at]));
-        // Opacities are shown on white; brightness as the eye weighs it, and a quarter of it.
+        // Transparent pixels on white; a quarter of the luminance.
         let grey = (red * 54 + green * 183 + blue * 19) / 256;
         let opacity = pixel.get(3).map_or(255, |&opacity| u32::from(opacity));
         let grey = 255 - (255 - grey) * opacity / 255;

@@ -1,5 +1,4 @@
-//! Two pictures of one name: decoded side by side and compared band by band, so that the pixels of neither are ever held as a
-//! whole.
+//! Two pictures of one name: decoded together and compared in bands of rows, so that neither is in memory as a whole.
 
 use super::Compared;
 use super::distance::{Distance, Tally};
@@ -10,8 +9,8 @@ use crate::output::Label;
 use std::error::Error;
 use std::ops::Range;
 
-/// Rows that are decoded before they are compared: few enough to stay in a processor's cache. Pictures of 1280×720 pixels as a
-/// whole cost 1400 page faults, which takes about as long as decoding both.
+/// Rows that are decoded before they are compared: few enough to stay in a processor's cache. Whole pictures of 1280×720 pixels
+/// cause 1400 page faults, which take about as long as decoding both.
 const BAND: usize = 16;
 
 /// A pair of pictures as it was read.
@@ -32,7 +31,7 @@ impl Pair {
                 let (read, distance) = both([&expected, &actual]);
                 (read.map(Some), distance)
             }
-            // What is damaged is told, also if it is alone.
+            // Damage is reported even if there is only one picture.
             files => (files.map(|file| file.map(|file| whole(&file?))), None),
         };
         let told = |at: usize| {
@@ -83,7 +82,7 @@ type Outcome = Result<Header, PictureError>;
 /// What two pictures are, and how far they are apart; nothing of that if their sizes or channels are not alike.
 fn both(files: [&[u8]; 2]) -> ([Outcome; 2], Option<Distance>) {
     if files[0] == files[1] {
-        // The same file twice, as most that pass are: read once. If it is damaged, so are both.
+        // Most pairs that pass are equal files, which are read once. If one is damaged, so are both.
         return match whole(files[0]) {
             Ok(header) => {
                 let distance = tally([&header, &header]).map(Tally::distance);

@@ -1,4 +1,4 @@
-//! Pictures as they are read to be compared: 8-bit red, green and blue, with or without opacities, and nothing else.
+//! Reads pictures for comparison: 8-bit red, green and blue, with or without alpha, and nothing else.
 
 use crate::output::Label;
 use std::fs::File;
@@ -10,10 +10,10 @@ const LONGEST_SIDE: u32 = 16_384;
 const MOST_PIXELS: u64 = 100_000_000;
 /// The largest file (bytes): more than those pixels take. Both files of a pair are held in memory.
 const MOST_BYTES: u64 = 1 << 29;
-/// The most that a picture carries beside its pixels (bytes); what it says of itself is far less.
+/// The most data beside the pixels (bytes); the text chunks are far smaller.
 const MOST_BESIDE: usize = 4 << 20;
 
-/// How every PNG file begins.
+/// The signature of PNG files.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Why a file is no picture that can be compared.
@@ -23,7 +23,7 @@ pub enum PictureError {
     #[error("cannot be read")]
     Read(#[from] io::Error),
     /// It is no PNG file.
-    #[error("this is no PNG picture")]
+    #[error("this is not a PNG picture")]
     Foreign,
     /// It is larger than any picture that is compared.
     #[error("this file has {0} bytes; a picture that can be compared has at most {MOST_BYTES}")]
@@ -50,7 +50,7 @@ pub enum PictureError {
     )]
     Label(&'static str),
     /// It says behind its pixels what belongs before them.
-    #[error("the picture says behind its pixels what it shows; expected that before them, as this program writes it")]
+    #[error("the picture has its text chunks after its pixels; expected them before, as this program writes them")]
     Late,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
     if length > MOST_BYTES {
         return Err(PictureError::Large(length));
     }
-    // One more than there should be, so that the end is seen at once.
+    // One byte more than the file should have, so that the end is detected at once.
     let mut bytes = Vec::with_capacity(length as usize + 1);
     // Whatever else lies there under such a name may be large.
     file.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut bytes)?;
@@ -122,14 +122,14 @@ fn open(path: &Path) -> Result<File, PictureError> {
     if found.is_dir() {
         return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
     }
-    // A pipe is no picture, and would keep everybody waiting.
+    // Opening a pipe would block.
     if !found.is_file() {
         return Err(PictureError::Foreign);
     }
     Ok(File::open(path)?)
 }
 
-/// A decoder that looks at every checksum: a text that is damaged must not be one that was never there.
+/// A decoder that verifies every checksum: a damaged text chunk must not count as a missing one.
 fn decoder<R: BufRead + Seek>(file: R) -> png::Decoder<R> {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_adler32(false);

@@ -1,9 +1,8 @@
-//! The text file of a golden: what its scene did, frame by frame.
+//! The text file of a golden: a record of its scene, frame by frame.
 //!
-//! A digest for each run and frame tells whether a state is the same, bit for bit. Some frames also have numbers and
-//! rounded positions, from which a distance can be told when the digests differ. All of it fits into some tens of
-//! kilobytes, however large the scene is: of long scenes every second frame is recorded or fewer, of large bodies every
-//! second node or fewer.
+//! A digest for each run and frame says whether a state is the same, bit for bit. Some frames also have diagnostics and
+//! rounded positions, from which the distance is known when digests differ. The file has some tens of kilobytes for any
+//! scene: for long scenes at most every second frame is recorded, for large bodies at most every second node.
 
 use super::side::frame_of;
 use super::states::{Places, Run, State, States, Step};
@@ -25,17 +24,17 @@ const LARGEST_FILE: u64 = 4 << 20;
 /// The version of its format.
 const FORMAT: u32 = 1;
 
-/// So many digits of each digest are kept: 48 bits.
+/// Number of digits of each digest: 48 bits.
 const DIGITS: usize = 12;
 
-/// About as large may the digests and the positions of a golden get (bytes).
+/// Approximate maximum size of the digests and of the positions of a golden (bytes).
 const ROOM_FOR_DIGESTS: usize = 24 * 1024;
 const ROOM_FOR_PLACES: usize = 8 * 1024;
-/// A coordinate takes about so much (bytes).
+/// Approximate size of a coordinate (bytes).
 const COORDINATE: usize = 5;
-/// Numbers that describe the state are recorded at about so many frames.
+/// Approximate number of frames with diagnostics.
 const FRAMES_WITH_NUMBERS: u64 = 10;
-/// Positions are rounded to about this part of the room that the nodes take.
+/// Positions are rounded to about this part of the extent of all nodes.
 const FINENESS: f64 = 1e-5;
 
 /// What a golden knows.
@@ -94,7 +93,7 @@ impl Plan {
         let ends = [0, last];
         let digests = (0..=last).step_by(stride).chain(pictures.iter().copied()).chain(ends).collect();
         let most = (ROOM_FOR_PLACES / (runs * nodes * 3 * COORDINATE).max(1)).max(1);
-        // The last frame first: whatever went astray is farthest away there. Then those that can be seen.
+        // The last frame first, where errors are largest; then those with pictures.
         let evenly = (1..=FRAMES_WITH_NUMBERS).map(|at| last * at / FRAMES_WITH_NUMBERS);
         let mut places = BTreeSet::new();
         for frame in [last].into_iter().chain(pictures.iter().rev().copied()).chain(evenly).chain([0]) {
@@ -164,7 +163,7 @@ impl FileRun {
 }
 
 impl File {
-    /// Refuses what no record says.
+    /// Validates the values of a record.
     fn check(&self) -> Result<(), String> {
         let twice = |names: Vec<&str>| names.iter().collect::<BTreeSet<_>>().len() < names.len();
         if self.format != FORMAT {
@@ -177,7 +176,7 @@ impl File {
         for FileRun { name, nodes, every, quantum, step, cycle } in &self.runs {
             let is_time = |time: &f64| time.is_finite() && *time > 0.0;
             if ![step, cycle].into_iter().flatten().all(is_time) {
-                return Err(format!("run “{}” has a step or cycle that is no positive number", short(name)));
+                return Err(format!("run “{}” has a step or cycle that is not a positive number", short(name)));
             }
             let is_sound = count.contains(every) && *nodes <= *count.end();
             if !is_sound || !quantum.is_finite() || *quantum <= 0.0 {
@@ -190,7 +189,7 @@ impl File {
         let is_plain =
             |file: &str| file.ends_with(".png") && !file.starts_with('.') && !file.contains(['/', '\\', ':']);
         if let Some(drawn) = self.pictures.iter().find(|drawn| !is_plain(&drawn.file)) {
-            return Err(format!("“{}” is no plain name of a PNG picture", short(&drawn.file)));
+            return Err(format!("“{}” is not a plain name of a PNG picture", short(&drawn.file)));
         }
         if self.pictures.is_empty() || twice(self.pictures.iter().map(|drawn| drawn.file.as_str()).collect()) {
             return Err("it has no `[[picture]]`, or two of one name".to_owned());
@@ -260,7 +259,7 @@ impl Record {
             let (run, state) = state_of(&mut runs, &words).ok_or_else(wrong)?;
             let FileRun { nodes, every, quantum, .. } = file.runs[run];
             let counts: Option<Vec<i64>> = words[2..].iter().map(|word| word.parse().ok()).collect();
-            // The bounds that were checked keep this from overflowing.
+            // The validated bounds prevent overflow.
             let coordinates = 3 * nodes.div_ceil(every);
             let counts = counts.filter(|counts| counts.len() == coordinates).ok_or_else(wrong)?;
             let vector = |at: &[i64]| DVec3::new(at[0] as f64, at[1] as f64, at[2] as f64) * quantum;
@@ -278,10 +277,10 @@ impl Record {
         let path = folder.join(RECORD_FILE);
         let found = path.metadata()?;
         if !found.is_file() || found.len() > LARGEST_FILE {
-            return Ok(Err("it is no file, or far too large for one; a record has some tens of kilobytes".to_owned()));
+            return Ok(Err("it is not a file, or is far too large: a record has some tens of kilobytes".to_owned()));
         }
         Ok(String::from_utf8(std::fs::read(&path)?)
-            .map_err(|_| "it is no text".to_owned())
+            .map_err(|_| "it is not text".to_owned())
             .and_then(|text| Self::parse(&text)))
     }
 
@@ -294,10 +293,10 @@ impl Record {
             // Only what is known of all runs is recorded.
             let states: Option<Vec<&State>> = self.states.runs.iter().map(|run| run.states.get(frame)).collect();
             let Some(states) = states else { continue };
-            write!(digests, "\n{frame}").expect("a string takes all");
+            write!(digests, "\n{frame}").expect("writing to a string");
             for state in states {
                 let digest: String = state.digest.chars().take(DIGITS).collect();
-                write!(digests, " {digest}").expect("a string takes all");
+                write!(digests, " {digest}").expect("writing to a string");
             }
         }
         let bytes = |run: &Run| {
@@ -310,7 +309,7 @@ impl Record {
             let known = || run.states.values().filter_map(|state| state.places.as_ref());
             let quantum = known().map(|places| places.quantum).fold(quantum(known()), f64::max);
             let nodes = known().map(|places| places.nodes).max().unwrap_or(0);
-            // What is rounded already is not rounded again.
+            // Values read from a record are rounded already.
             let every = if known().any(|places| places.every > 1) { 1 } else { every };
             let kept = known().map(|places| places.every).max().unwrap_or(1) * every;
             let [step, cycle] = [run.step.map(|step| step.step), run.step.map(|step| step.cycle)];
@@ -319,25 +318,25 @@ impl Record {
                 let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
                 let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
                 if let Some(all) = &state.numbers {
-                    write!(numbers, "\n{frame} {number}").expect("a string takes all");
+                    write!(numbers, "\n{frame} {number}").expect("writing to a string");
                     for (_, value) in all.iter() {
                         match value {
                             Value::Count(count) => write!(numbers, " {count}"),
                             value => write!(numbers, " {:.5e}", value.size()),
                         }
-                        .expect("a string takes all");
+                        .expect("writing to a string");
                     }
                 }
-                write!(positions, "\n{frame} {number}").expect("a string takes all");
+                write!(positions, "\n{frame} {number}").expect("writing to a string");
                 for coordinate in places.at.iter().step_by(every).flat_map(DVec3::to_array) {
-                    write!(positions, " {}", (coordinate / quantum).round() as i64).expect("a string takes all");
+                    write!(positions, " {}", (coordinate / quantum).round() as i64).expect("writing to a string");
                 }
             }
         }
         self.file(&runs, [&digests, &numbers, &positions])
     }
 
-    /// The file around its tables. Written by hand, for a table is read line by line.
+    /// The file around its tables, formatted by hand for readability.
     fn file(&self, runs: &[FileRun], [digests, numbers, positions]: [&str; 3]) -> String {
         let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
         let scenes: Vec<_> = self.scenes.iter().map(|scene| quoted(scene)).collect();
@@ -363,15 +362,15 @@ impl Record {
                 "\n[[run]]\nname = {}\nnodes = {nodes}\nevery = {every}\nquantum = {quantum:e}\n",
                 quoted(name)
             )
-            .expect("a string takes all");
+            .expect("writing to a string");
             if let Some(Step { step, cycle }) = run.step() {
-                write!(text, "step = {step:e}\ncycle = {cycle:e}\n").expect("a string takes all");
+                write!(text, "step = {step:e}\ncycle = {cycle:e}\n").expect("writing to a string");
             }
         }
         for Drawn { file, frame, adapter, version } in &self.pictures {
             let [file, adapter, version] = [file, adapter, version].map(|text| quoted(text));
             write!(text, "\n[[picture]]\nfile = {file}\nframe = {frame}\nadapter = {adapter}\nversion = {version}\n")
-                .expect("a string takes all");
+                .expect("writing to a string");
         }
         text
     }
@@ -406,7 +405,7 @@ fn quantum<'a>(places: impl Iterator<Item = &'a Places>) -> f64 {
         return 1e-6;
     }
     let power = (extent * FINENESS).log10().floor().clamp(-12.0, 12.0) as i32;
-    // Written out, so that it reads as it was meant.
+    // Parsed from text, to be the nearest double.
     format!("1e{power}").parse().expect("a power of ten")
 }
 
@@ -486,8 +485,8 @@ mod tests {
             ("every = 1", "every = 0", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = nan", "expected positive numbers"),
             ("quantum = 1e-6", "quantum = -1e-6", "expected positive numbers"),
-            ("cycle = 1e-1", "cycle = inf", "no positive number"),
-            ("frame_00010.png", "../frame_00010.png", "is no plain name"),
+            ("cycle = 1e-1", "cycle = inf", "not a positive number"),
+            ("frame_00010.png", "../frame_00010.png", "is not a plain name"),
             ("\n6 ", "\n5 ", "frame 5 twice"),
             ("size = [320", "size = [0", "cannot be drawn"),
             ("[[picture]]", "[picture_gone]", "picture_gone"),

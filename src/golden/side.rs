@@ -1,4 +1,4 @@
-//! One side of a comparison: pictures by name, and what is known of the states behind them.
+//! One side of a comparison: pictures by name, and what is known about their states.
 
 use super::ComparisonError;
 use super::archive;
@@ -102,7 +102,7 @@ impl Side {
         if path.symlink_metadata().is_err() {
             return Ok(absent());
         }
-        // A folder with nothing of ours in it is as good as none.
+        // A folder without pictures and record counts as missing.
         let side = Self::read(path)?;
         Ok(if side.kind == Kind::Folder && side.pictures.is_empty() { absent() } else { side })
     }
@@ -145,13 +145,13 @@ impl Side {
                 if state.is_some_and(|state| state.digest != *digest) {
                     let frame = tags.frame;
                     return Err(told(format!(
-                        "states.npz is not of these pictures; frame {frame} shows another state"
+                        "states.npz does not belong to these pictures; frame {frame} shows another state"
                     )));
                 }
             }
         }
         if self.kind == Kind::Picture {
-            // The picture alone is asked about, not what else its folder holds.
+            // Only this picture is compared, not the rest of its folder.
             let frames: BTreeSet<u64> = labels.iter().filter_map(|label| frame_of(label)).collect();
             states.runs.iter_mut().for_each(|run| run.states.retain(|frame, _| frames.contains(frame)));
         }
@@ -178,7 +178,7 @@ impl Side {
             };
             summary["runs"].as_array()?.iter().map(step).collect()
         };
-        // It is told only if it is known, as in folders of earlier versions of this program it is not.
+        // Folders of earlier versions of this program do not have it.
         read().unwrap_or_default()
     }
 
@@ -190,14 +190,14 @@ impl Side {
     /// The command line's word for it.
     pub(super) fn typed(&self) -> String {
         let path = self.origin.to_string_lossy();
-        // A name that begins like an option is none behind this.
+        // Prefixed so that a name which begins with - is not taken for an option.
         let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
         shell::word(&path)
     }
 }
 
-/// What pictures tell of states. Unless they stand `beside_golden`, nothing if they are not of one scene: then frames of one
-/// number have nothing in common.
+/// The states recorded in pictures. Unless they are `beside_golden`, none if they are not of one scene, for which frames of the
+/// same number are unrelated.
 pub(super) fn states_of(labels: &[&Label], beside_golden: bool) -> States {
     let mut states = States::default();
     let scenes: BTreeSet<_> = labels.iter().flat_map(|label| label.scenes()).collect();

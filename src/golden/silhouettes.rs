@@ -1,12 +1,12 @@
-//! Where two pictures have silhouettes: there adapters of different kinds differ, and nowhere else.
+//! Finds the silhouettes of two pictures: only there may adapters of different kinds differ.
 
 use super::picture::Pixels;
 
-/// A pixel belongs to a silhouette if a channel changes by more than this within the pixels around it, in both pictures:
-/// what is drawn new, or not any more, is none.
+/// A pixel belongs to a silhouette if a channel changes by more than this among the pixels around it in both pictures; objects
+/// in one picture only have none.
 pub(super) const CONTRAST: u8 = 8;
 
-/// Where a pixel lies.
+/// The location of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// Along a silhouette, a line or a letter of both pictures.
@@ -17,7 +17,7 @@ pub(super) enum Place {
     Interior,
 }
 
-/// For each pixel of two pictures of one size where it lies.
+/// The location of each pixel of two pictures of one size.
 pub(super) fn silhouettes(pictures: [&Pixels; 2]) -> Vec<Place> {
     let [width, height] = pictures[0].size.map(|side| side as usize);
     let mut finder = Finder::new(width, pictures[0].channels);
@@ -52,8 +52,8 @@ impl Finder {
         Self { channels, low: row(), high: row(), marks: row(), lines }
     }
 
-    /// Goes on by a line, given some rows of both pictures: those above and below it, or none if it is the first or last one.
-    /// What can be asked about then is the line before it. Returns how many of its pixels lie along silhouettes.
+    /// Adds a line, given its rows of both pictures and those above and below, if any. Afterwards locations are known for the
+    /// line before it. Returns how many pixels of that line are along silhouettes.
     pub(super) fn advance(&mut self, rows: [&[u8]; 2], line: usize) -> u64 {
         self.marks.fill(0);
         for (rows, bit) in rows.into_iter().zip([1, 2]) {
@@ -70,7 +70,7 @@ impl Finder {
         count.into()
     }
 
-    /// Goes on behind the last line.
+    /// Ends after the last line.
     pub(super) fn end(&mut self) {
         self.lines.rotate_left(1);
         self.lines[2].fill(Place::Interior);
@@ -79,7 +79,7 @@ impl Finder {
     /// Where a pixel of the line before that which was given last lies.
     pub(super) fn place(&self, at: usize) -> Place {
         match self.lines[1][at] {
-            // Where drivers disagree whether there is a silhouette, it is one that others go on from.
+            // Where drivers disagree about a silhouette, it continues one nearby.
             Place::OneSided if self.touches(at) => Place::Silhouette,
             place => place,
         }
@@ -91,7 +91,7 @@ impl Finder {
     }
 }
 
-/// Puts the channels of pixels together.
+/// Combines the channels of pixels.
 fn gather<const CHANNELS: usize>(marks: &[u8], places: &mut [Place]) {
     for (place, marks) in places.iter_mut().zip(marks.as_chunks::<CHANNELS>().0) {
         *place = match marks.iter().fold(0, |all, mark| all | mark) {
@@ -102,7 +102,7 @@ fn gather<const CHANNELS: usize>(marks: &[u8], places: &mut [Place]) {
     }
 }
 
-/// The least and the greatest of each byte of a row, the one above and the one below.
+/// Minimum and maximum of each byte over a row, the one above and the one below.
 fn extremes(rows: &[u8], line: usize, low: &mut [u8], high: &mut [u8]) {
     let row = low.len();
     let last = rows.len() / row - 1;
@@ -114,7 +114,7 @@ fn extremes(rows: &[u8], line: usize, low: &mut [u8], high: &mut [u8]) {
     }
 }
 
-/// Marks bytes where the greatest of three pixels side by side lies far above the least.
+/// Marks bytes where the maximum of three adjacent pixels is far above the minimum.
 fn mark(low: &[u8], high: &[u8], channels: usize, bit: u8, marks: &mut [u8]) {
     let row = low.len();
     if row < 2 * channels {

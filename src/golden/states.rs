@@ -1,4 +1,4 @@
-//! What is known of the states behind pictures, exactly or coarsely, and what moved between two sides.
+//! What is known about states, exactly or rounded, and what moved between two sides.
 
 use crate::output::state_digest;
 use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
@@ -163,7 +163,7 @@ impl fmt::Display for StepChange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { before, after, parts } = self;
         write!(f, "its step changed from {} s to {} s", rounded(*before, 4), rounded(*after, 4))?;
-        // Whoever made one run stiffer has given all of them a shorter step.
+        // A stiffer run makes the step of all runs shorter.
         parts.map_or(Ok(()), |parts| write!(f, " (T/{parts} of the stiffest run)"))
     }
 }
@@ -236,7 +236,7 @@ pub(super) fn courses(expected: &States, actual: &States) -> Vec<Course> {
 /// The runs that moved, by their courses; and those on one side only.
 pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> Vec<Moved> {
     if expected.is_empty() || actual.is_empty() {
-        // Where nothing is known, nothing came and nothing went.
+        // Without recorded states no runs are gone or new.
         return Vec::new();
     }
     let lone = |run: &Run, change| Moved {
@@ -278,7 +278,7 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[Course]) -> V
             step: StepChange::between(runs[0].step, runs[1].step),
             nodes,
             displacement: displaced().next(),
-            // The first of equal ones.
+            // The first of equal maxima.
             largest: displaced().reduce(|one, other| if other.distance > one.distance { other } else { one }),
             numbers,
         })
@@ -308,7 +308,7 @@ impl Displacement {
         if *precision == 0.0 && *distance == 0.0 {
             format!("no node{place}, but velocities differ")
         } else if distance <= precision {
-            // Both errors may have gone the same way.
+            // Both rounding errors can have the same direction.
             format!("no node by more than {:.0e} m{place} (positions are recorded no finer)", 2.0 * precision)
         } else {
             format!("node {node} by {distance:.2e} m{place}")

@@ -135,7 +135,7 @@ impl Suite {
                 return Ok(());
             }
             Some(Err(BlessError::StateMoved { .. })) => {
-                format!("\nthe state moved, so nothing was accepted; if that is meant: {UPDATE}=state cargo test")
+                format!("\nthe state moved, so nothing was accepted; to accept it anyway: {UPDATE}=state cargo test")
             }
             Some(Err(BlessError::Damaged { .. })) => {
                 format!("\nwhat was expected is damaged; to replace it by what is there: {UPDATE}=state cargo test")
@@ -185,7 +185,7 @@ impl Suite {
         }
         let mut text = String::new();
         for complaint in &complaints {
-            write!(text, "\n\n{complaint}").expect("a string takes all");
+            write!(text, "\n\n{complaint}").expect("writing to a string");
         }
         panic!("{} of the goldens in {} are not as they were:{text}\n", complaints.len(), self.goldens.display());
     }

@@ -205,7 +205,7 @@ mod tests {
             (alone.passes(), alone.to_string().as_str()),
             (
                 false,
-                "same state, drawn differently: 1 pixel differs, by up to 1 of 255; none may, for one machine drew both"
+                "same state, drawn differently: 1 pixel differs, by up to 1 of 255; none may, because one machine drew both"
             )
         );
         let other = of(&pixels("soft (2)", "1", hardly));
@@ -251,7 +251,7 @@ mod tests {
         assert!(foreign(&untold).passes());
         let hardly = |bytes: &mut [u8]| bytes[0] += 1;
         let by_one = Pixels { label: None, ..pixels("", "1", hardly) };
-        let told = "no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither says who drew it";
+        let told = "no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, because neither names its adapter";
         assert_eq!((foreign(&by_one).to_string().as_str(), foreign(&by_one).passes()), (told, false));
         assert!(!foreign(&Pixels { size: [30, 40], ..untold.clone() }).passes());
     }
@@ -377,8 +377,7 @@ mod tests {
         // Hardly anything may be there that the other picture does not have, be it so small that no other limit sees it.
         let line = |count: usize| move |bytes: &mut [u8]| (0..count).for_each(|at| bytes[3 * (81 + at)] = 120);
         assert!(hard(&line(8)).passes() && !hard(&line(9)).passes(), "{}", hard(&line(9)));
-        let told =
-            "another kind of adapter drew it; of what stands in one picture only, 9 pixels differ (8 may); along";
+        let told = "another kind of adapter drew it; in objects of one picture only, 9 pixels differ (8 may); along";
         assert!(hard(&line(9)).to_string().contains(told), "{}", hard(&line(9)));
         // Where silhouettes of both go on, a driver may see one more.
         let beside = hard(&|bytes| (0..9).for_each(|at| bytes[3 * (8 * 40 + 11 + at)] = 120));

@@ -43,7 +43,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
         let found = texts.map(|text| contrast(text, floor)).into_iter().fold(f64::INFINITY, f64::min);
         if found < LEAST_CONTRAST {
             let message = format!(
-                "words on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
+                "text on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
                 rounded_down(found)
             );
             report.at(&way("floor"), message, "bring the floor nearer to the background".to_owned());
@@ -58,11 +58,7 @@ fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, rep
             written(palette.background)
         );
         let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
-        report.at(
-            &way("text"),
-            message,
-            format!("make the text {towards}, or leave it out: it follows the background"),
-        );
+        report.at(&way("text"), message, format!("make it {towards}, or remove it: it follows the background"));
     }
 }
 
@@ -89,18 +85,20 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
             let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
             let help = match like_alarm(other) {
                 None => format!("make it {towards}, such as \"{}\"", written(other)),
-                Some(_) => format!("choose another hue; this one, made {towards}, would be like turned-over elements"),
+                Some(_) => {
+                    format!("choose another hue; this one, made {towards}, would be similar to turned-over elements")
+                }
             };
             report.at(&path, message, help);
         } else if let Some((found, sight)) = like_alarm(colour) {
             let message = format!(
-                "`run[{at}].colour` is too like that of turned-over elements, {}: to {} they differ by {} (CIEDE2000); \
+                "`run[{at}].colour` is too similar to that of turned-over elements, {}: to {} they differ by {} (CIEDE2000); \
                  expected at least {LEAST_DIFFERENCE}",
                 written(palette.alarm),
                 sight.name(),
                 rounded_down(found)
             );
-            report.at(&path, message, "choose another hue, or leave it out".to_owned());
+            report.at(&path, message, "choose another hue, or remove it".to_owned());
         }
     }
 }
@@ -119,7 +117,7 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
     let Some((found, sound, place, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
     let opposite: Colour = if key == "body" { palette.alarm } else { sound };
     let message = format!(
-        "`view.colours.{key}` is too like {other} {} {place}: to {} they differ by {} (CIEDE2000); expected at least \
+        "`view.colours.{key}` is too similar to {other} {} {place}: to {} they differ by {} (CIEDE2000); expected at least \
          {LEAST_DIFFERENCE}",
         written(opposite),
         sight.name(),
@@ -138,14 +136,14 @@ fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut R
     let nearest = measured.min_by(|one, other| one.0.total_cmp(&other.0));
     let Some((found, shade, sight)) = nearest.filter(|(found, ..)| *found < LEAST_DIFFERENCE) else { return };
     let message = format!(
-        "without a hatch, turned-over elements are told from the field by their colour alone, and {} is too like {} on \
-         its scale: to {} they differ by {} (CIEDE2000); expected at least {LEAST_DIFFERENCE}",
+        "without hatching, only their colour distinguishes turned-over elements from the field, and {} is too similar to \
+         {} on its scale: to {} they differ by {} (CIEDE2000); expected at least {LEAST_DIFFERENCE}",
         written(palette.alarm),
         written(shade),
         sight.name(),
         rounded_down(found)
     );
-    let help = "leave `hatch` out, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
+    let help = "remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
     report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 

@@ -18,95 +18,91 @@ pub(crate) struct ViewFile {
     pub(crate) size: [u32; 2],
     /// The colours.
     pub(crate) theme: Theme,
-    /// What is behind everything: a colour, or `"transparent"`. A colour on which the theme's text could not be read
-    /// makes the other theme take its place. Transparent pictures are PNG files with opacities, to be laid on any page;
-    /// they are drawn twice and have no floor but its lines and shadows. Default: the theme's.
+    /// The background: a colour, or `"transparent"`. If the theme's text cannot be read on the colour, the other theme is
+    /// used. Transparent pictures are PNG files with an alpha channel; they take twice the time to draw, and of the floor they
+    /// show only grid and shadows. Default: the theme's.
     pub(crate) background: Option<BackgroundFile>,
-    /// Colours that take the place of the theme's, each with what belongs to it. Default: the theme's.
+    /// Colours that replace those of the theme, and shades derived from them, such as `{ body = "steelblue" }`. Default: the
+    /// theme's.
     pub(crate) colours: ColoursFile,
-    /// The files of the font. Default: the font that is built in, which has Latin and Greek letters.
+    /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek letters.
     pub(crate) font: Option<FontFile>,
-    /// How many times larger than usual all type is, with the rows it stands in. What has no room, or would be too small to
-    /// be read, is left out.
+    /// Scale of all text. Text for which there is no room, or that would be too small to read, is left out.
     #[schemars(range(min = 0.5, max = 3.0))]
     pub(crate) text_scale: f64,
-    /// How many times thicker than usual all lines are, and how many times larger nodes, the signs on elements in the
-    /// plane and the marks of what moves or is held. Arrows of displacements become thicker, not longer; type stays as it
-    /// is.
+    /// Scale of the width of all lines and of the size of nodes, of signs on elements in the plane and of marks on moved and
+    /// held nodes. Arrows of displacements become thicker, not longer; text keeps its size.
     #[schemars(range(min = 0.25, max = 4.0))]
     pub(crate) line_scale: f64,
-    /// How many times as wide as usual the margins of the picture and of each panel are: 40 pixels in a picture 720 high.
-    /// The body has what they leave. They are never narrower than a quarter of that times `text_scale`, whether anything is
-    /// written or not: words must not touch.
+    /// Scale of the margins of the picture and of each panel, which are 40 pixels wide in a picture 720 high. They are never
+    /// narrower than a quarter of that times `text_scale`, so that texts do not touch.
     #[schemars(range(min = 0.0, max = 2.0))]
     pub(crate) margin: f64,
-    /// What the clock counts from, in the words shown under the time.
+    /// The words below the time, which say since when it counts.
     #[schemars(length(max = 80))]
     pub(crate) clock: String,
-    /// How many panels stand beside each other. Default: all of them, up to 3; never more than there are runs. Not
-    /// together with `panels`.
+    /// Number of panels in a row. Default: all runs, up to 3. Not together with `panels`.
     #[schemars(range(min = 1, max = 64))]
     pub(crate) columns: Option<u32>,
-    /// How the panels stand: beside each other, below each other, or in as many rows as leave them most room. Not
-    /// together with `columns`.
+    /// Arrangement of the panels. Not together with `columns`.
     pub(crate) panels: Option<ArrangementFile>,
-    /// What is drawn of the body. Without `surfaces`, lines take their place: the springs if they are shown and the model
-    /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: its
-    /// surfaces, and in the plane its nodes, too, unless there are more than 150.
+    /// What is drawn of the body. Without `surfaces`, lines are drawn instead: springs if they are shown and the model
+    /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: surfaces,
+    /// and in the plane nodes, too, unless there are more than 150.
     #[schemars(length(min = 1))]
     pub(crate) show: Option<Vec<ShowFile>>,
-    /// A scalar field that colours the body: its surfaces, or its lines and nodes if surfaces are not shown. All panels
-    /// share one scale, drawn below them. Default: none.
+    /// A scalar field that colours the body, such as `{ by = "strain" }`: its surfaces, or its lines and nodes if surfaces are
+    /// not shown. All panels share one colour bar, drawn below them. Default: none.
     pub(crate) colour: Option<ColourFile>,
-    /// How many times longer than the displacements their arrows are drawn. Each begins where the rigid placement has
-    /// its node; at 1 it ends at the node.
+    /// Scale of the arrows of displacements. Each begins where the best-fitting rigid placement has its node; at 1 it ends
+    /// at the node.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) arrow_scale: f64,
     /// A title above all panels. Default: none.
     #[schemars(length(max = 200))]
     pub(crate) title: String,
-    /// A caption below all panels, set in lines as wide as the picture; `\n` begins a new line. Panels keep half of the
-    /// picture: what has no room is cut off and ends in an ellipsis. Default: none.
+    /// A caption below all panels, wrapped at the width of the picture; `\n` begins a new line. Panels keep at least half of
+    /// the picture: a longer caption is cut off with an ellipsis. Default: none.
     #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub(crate) caption: String,
-    /// Whether each panel bears a letter before its name, a, b, c and so on, to speak of it in a text.
+    /// Whether each panel has a letter before its name: a, b, c and so on.
     pub(crate) letters: bool,
     /// What is written in each panel.
     pub(crate) labels: Vec<LabelFile>,
-    /// Whether a bar says how long a round length is (m): in space, at the distance of the point looked at.
+    /// Whether there is a scale bar (m); in space it holds at the distance of the camera's target.
     pub(crate) scale_bar: bool,
-    /// Whether keys say what colours and arrows mean, where there are any and room for them.
+    /// Whether a legend says what colours and arrows mean, if there are any and room for it.
     pub(crate) legend: bool,
-    /// A diagnostic drawn over time below each panel, with the present moment marked. The scene is then simulated once
-    /// before the first frame is drawn, so that every frame shows the whole course. Up to 8 other runs are drawn
-    /// faintly behind. Default: none.
+    /// A diagnostic plotted over the whole time of the scene below each panel, with the current time marked. The whole scene
+    /// is simulated before the first frame is drawn. In scenes of up to 16 runs the curves of the others are drawn faintly
+    /// behind, and names are written at the ends of curves as far as there is room. Default: none.
     pub(crate) strip: Option<Diagnostic>,
-    /// Opacity of sound elements: below 1, what lies behind and within the body is seen through them.
+    /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
     pub(crate) opacity: f64,
-    /// How far elements are drawn apart, in parts of their distance from the body's middle, to show what is inside. Not
-    /// together with springs and displacements.
+    /// Exploded view: how far elements are drawn apart, in parts of their distance from the body's centre. Not together with
+    /// springs and displacements.
     #[schemars(range(min = 0.0, max = 3.0))]
     pub(crate) explode: f64,
-    /// Colours springs by their strain, the change of their length over their length at rest, instead of drawing them
-    /// all alike. Default: no. Needs `"springs"` in `show`.
+    /// Colours springs by their strain, the change of length over the length at rest: `{}` for shortened springs in violet and
+    /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
     pub(crate) spring_colour: Option<SpringColourFile>,
-    /// From where the light falls, in space.
+    /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: LightFile,
-    /// Whether bodies and obstacles throw shadows on the floor.
+    /// Whether bodies and obstacles cast shadows on the floor.
     pub(crate) shadow: bool,
-    /// How floors are drawn: with a grid in space, without one, or not at all. In the plane none has a grid.
+    /// How floors are drawn. In the plane they never have a grid.
     pub(crate) floor: FloorStyle,
     /// Which lines are drawn on surfaces.
     pub(crate) edges: EdgesFile,
-    /// Whether silhouettes are drawn: the outlines of sound elements and of solid obstacles, and where folds of these end
-    /// before what is farther away. Without them `edges = "outline"` leaves sound elements no line at all. Those of
-    /// turned-over elements are drawn in any case, unless elements drawn apart are too small for lines.
+    /// Whether silhouettes are drawn: outlines and occluding contours of solid obstacles and of elements that are not turned
+    /// over. With `outline = false` and `edges = "outline"` such elements have no lines at all. Outlines of turned-over
+    /// elements are always drawn, unless elements in an exploded view are too small for lines.
     pub(crate) outline: bool,
-    /// Whether turned-over elements are hatched. Without it their colour tells of them; where a field colours surfaces
-    /// they have it instead of the field's, which must then have a map that all eyes tell from it.
+    /// Whether turned-over elements are hatched. Without hatching only their colour marks them, also where a field colours
+    /// surfaces; the field then needs a colour map that differs from it, also with colour blindness.
     pub(crate) hatch: bool,
-    /// From where the scene is seen.
+    /// The camera. Default: one that shows the body and what comes near it.
     pub(crate) camera: CameraFile,
 }
 
@@ -148,7 +144,7 @@ impl Default for ViewFile {
     }
 }
 
-/// Something that is written in a panel.
+/// A text in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum LabelFile {
@@ -156,11 +152,11 @@ pub(crate) enum LabelFile {
     Name,
     /// The model and its parameters.
     Model,
-    /// The time, in one panel for all.
+    /// The time, in one panel only.
     Clock,
-    /// How many elements have turned over.
+    /// The number of turned-over elements.
     Count,
-    /// The shape error; in the plane, the smallest area ratio. That a run diverged is written in any case.
+    /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
     Number,
 }
 
@@ -172,10 +168,9 @@ impl LabelFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SpringColourFile {
-    /// The strains at the ends of the scale. Default: −0.3 and 0.3.
+    /// The strains at the ends of the colour bar. Default: −0.3 and 0.3.
     pub(crate) range: Option<[f64; 2]>,
-    /// The colours of the scale. Default: `"violet-green"`, violet where springs are shortened, green where they are
-    /// lengthened.
+    /// The colour map.
     pub(crate) map: ColourMap,
 }
 
@@ -185,15 +180,15 @@ impl Default for SpringColourFile {
     }
 }
 
-/// Where the light comes from, seen from the camera.
+/// Direction of the light, relative to the camera.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct LightFile {
-    /// Turn to the left around the vertical, from straight behind the viewer (rad); negative to the right. Default: 62°.
+    /// Azimuth from straight behind the viewer to the left (rad); negative to the right. Default: 62°.
     #[schemars(range(min = -3.15, max = 3.15))]
     pub(crate) azimuth: f64,
-    /// Height above the horizon (rad). Default: 50°. It falls more steeply on bodies that fly high, or their shadows would
-    /// leave the picture.
+    /// Elevation above the horizon (rad). Default: 50°. The light is steeper for bodies that fly high, whose shadows would
+    /// otherwise leave the picture.
     #[schemars(range(min = 0.2, max = 1.57))]
     pub(crate) elevation: f64,
 }
@@ -202,25 +197,25 @@ pub(crate) struct LightFile {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum EdgesFile {
-    /// The outline, unless `outline = false`, and all edges, those behind the body faintly.
+    /// The outline, unless `outline = false`, and all edges; hidden ones faintly.
     #[default]
     All,
-    /// The outline, unless `outline = false`, and the edges in front.
+    /// The outline, unless `outline = false`, and visible edges.
     Visible,
-    /// The outline alone, unless `outline = false`. Edges of turned-over elements are drawn in any case, unless elements
-    /// drawn apart are too small for lines.
+    /// Only the outline, unless `outline = false`. Edges of turned-over elements are always drawn, unless elements in an
+    /// exploded view are too small for lines.
     Outline,
 }
 
-/// How panels stand.
+/// Arrangement of panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ArrangementFile {
-    /// Beside each other.
+    /// Side by side.
     Row,
-    /// Below each other.
+    /// One below the other.
     Column,
-    /// In as many rows as leave them most room.
+    /// In the number of rows that leaves them most room.
     Grid,
 }
 
@@ -232,10 +227,10 @@ pub(crate) enum ShowFile {
     Surfaces,
     /// The nodes, as discs.
     Nodes,
-    /// The springs of models that have them, as lines; faint where surfaces hide them.
+    /// The springs of mass-spring models, as lines; faint where surfaces hide them.
     Springs,
-    /// An arrow to each node from where the rigid placement of the rest shape nearest to the body has it. Only nodes on
-    /// the surface get one, in space those that face the viewer, and at most 500.
+    /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on the
+    /// surface, in space only for those that face the viewer, and for at most 500.
     Displacements,
 }
 
@@ -246,50 +241,49 @@ impl Default for LightFile {
     }
 }
 
-/// A scalar field and its scale of colours.
+/// A scalar field and its colour map.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ColourFile {
     /// The field.
     pub(crate) by: Field,
-    /// The values at both ends of the scale, in the field's unit. Values beyond it have the colours of its ends, and the
-    /// bar then ends in a point. Default: from zero to what the scene lets expect: a
+    /// The values at both ends of the colour bar, in the field's unit. Values beyond have the colours of the ends, and the
+    /// bar then ends in a point. Default: from zero to an estimate for the scene: a
     /// strain of 0.5, a displacement of half an element's edge, the speed of a fall through the scene or at the start,
-    /// the energy of an element strained by 0.5.
+    /// the energy of an element with a strain of 0.5.
     pub(crate) range: Option<[f64; 2]>,
-    /// The colours of the scale.
+    /// The colour map.
     #[serde(default)]
     pub(crate) map: ColourMap,
 }
 
-/// A perspective camera that looks at a point. A body in the plane is looked at straight from the front without
-/// perspective; `distance` and `field_of_view` then say together how large it is.
+/// A perspective camera that looks at a point. A body in the plane is seen from the front without perspective; `distance` and
+/// `field_of_view` together then give the scale.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CameraFile {
-    /// Turn to the right around the vertical, from looking along −z (rad). Default: 0.541, which is 31°. Not in the
-    /// plane.
+    /// Azimuth to the right, from looking along −z (rad). Default: 0.541, which is 31°. Not in the plane.
     pub(crate) azimuth: Option<f64>,
-    /// Height above the horizon (rad), less than a quarter turn (1.57) either way, or the camera would look along its
-    /// up-axis. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not in the plane.
+    /// Elevation above the horizon (rad), less than a quarter turn (1.57) either way, so that the camera does not look along
+    /// its up-axis. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not in the plane.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(crate) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
     #[schemars(range(min = 0.001, max = 3.0))]
     pub(crate) field_of_view: Option<f64>,
-    /// The point looked at (m). Default: the middle of the body as it would stand on the first floor below it, or
-    /// where it starts if there is none. If `distance` is not given either, it moves aside for plates, spheres,
-    /// capsules, boxes and grips that come near, so that they are in the picture, too.
+    /// The point looked at (m). Default: the centre of the body as it would stand on the first floor below it, or where it
+    /// starts if there is none. If `distance` is not given either, the target is chosen so that plates, spheres, capsules,
+    /// boxes and moved nodes near the body are in the picture, too.
     pub(crate) target: Option<Coordinates>,
-    /// Distance from that point (m). Default: 8.5 times the largest side of the box around the body at the start, and
-    /// more if the body starts higher than that shows. If `target` is not given either, it is also so large that the
-    /// picture shows whatever of plates, spheres, capsules, boxes and grips is at any time within 1.25 body sizes of
-    /// where the body starts and stands; what is farther away moves nothing.
+    /// Distance from the target (m). Default: 8.5 times the longest side of the bounding box at the start, and more if the
+    /// body starts higher than that shows. If `target` is not given either, the picture also shows all parts of plates,
+    /// spheres, capsules, boxes and moved nodes that are at any time within 1.25 body sizes of where the body starts and
+    /// stands.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
-    /// Whether the camera goes along with the bodies shown, alike in all panels. With `true` or `"height"` it rises and
-    /// draws back with the highest body; where there is no floor to stand on, it sinks with the lowest. With `"body"` it
-    /// does that and also goes along level with the common middle of the bodies.
+    /// Whether the camera follows the bodies shown, in the same way in all panels. With `true` or `"height"` it rises and
+    /// draws back with the highest body; without a floor it sinks with the lowest. With `"body"` it also follows their
+    /// common centre horizontally.
     pub(crate) follow: FollowFile,
 }
 
@@ -309,7 +303,7 @@ pub(crate) enum FollowFile {
 pub(crate) enum FollowedFile {
     /// The height of the bodies.
     Height,
-    /// Their height, and level their common middle.
+    /// Their height and, horizontally, their common centre.
     Body,
 }
 

@@ -47,7 +47,7 @@ fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
     }
     // A pipe would keep everybody waiting.
     if !path.is_file() {
-        return Err(plain(format!("is no regular file; {EXPECTED}")));
+        return Err(plain(format!("is not a regular file; {EXPECTED}")));
     }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
@@ -65,7 +65,7 @@ fn check(bytes: &[u8]) -> Result<(), String> {
         Some([0, 1, 0, 0] | b"true" | b"OTTO" | b"ttcf") => letters(bytes),
         Some(b"wOFF" | b"wOF2") => Err(format!("is a font packed for web pages (WOFF); {EXPECTED}")),
         _ if bytes.is_empty() => Err(format!("is empty; {EXPECTED}")),
-        _ => Err(format!("is no font; {EXPECTED}")),
+        _ => Err(format!("is not a font; {EXPECTED}")),
     }
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn resolve(
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
     for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
-        let message = format!("`view.camera.{key}` is given, but a body in the plane is looked at from the front");
+        let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
         report.at_key(&camera(key), message, format!("take `{key}` out"));
     }
     let target = match &typed.camera.target {
@@ -39,7 +39,7 @@ pub(crate) fn resolve(
     let chosen = framing::camera(&typed.camera, target, typed.explode, scene);
     if dimension == Dimension::Space && is_inside(eye(&chosen), body, &scene.initial.position) {
         let [x, y, z] = eye(&chosen).to_array().map(|length| rounded(length, 3));
-        let message = format!("the camera stands at [{x}, {y}, {z}], inside the body at its start");
+        let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
     }
@@ -68,8 +68,8 @@ pub(crate) fn resolve(
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
-        let message = format!("`view.explode` draws elements apart, where {what} have no place");
-        report.at_key(&at("explode"), message, format!("take `explode` or `\"{what}\"` out"));
+        let message = format!("`view.explode` draws elements apart, so {what} cannot be shown");
+        report.at_key(&at("explode"), message, format!("remove `explode` or `\"{what}\"`"));
     }
     let spring_strain = match &typed.spring_colour {
         Some(_) if !visible.springs => {
@@ -79,7 +79,7 @@ pub(crate) fn resolve(
         }
         Some(_) if scene.models.iter().all(|model| model.springs().is_empty()) => {
             let message = "`view.spring_colour` is given, but no run has springs".to_owned();
-            report.at_key(&at("spring_colour"), message, "take it out, or add a run with springs".to_owned());
+            report.at_key(&at("spring_colour"), message, "remove it, or add a run with springs".to_owned());
             None
         }
         Some(springs) => {

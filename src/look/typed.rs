@@ -120,54 +120,57 @@ impl JsonSchema for BackgroundFile {
     }
 }
 
-/// Colours that take the place of the theme's. Each is digits, `"#rgb"` or `"#rrggbb"`, or a name of CSS such as
+/// Colours that replace those of the theme. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as
 /// `"steelblue"`; all are opaque.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ColoursFile {
-    /// A sound element, before light falls on it. The fill of elements in the plane and the squares of the tally follow,
-    /// and edges that would not be seen on it become lighter. At least 20 (CIEDE2000) from `turned_over`, also to
-    /// colour-blind eyes.
+    /// Elements that are not turned over, before shading. The fill of elements in the plane and the squares of the tally
+    /// follow, and edges that would be invisible on it become lighter. Its difference from `turned_over` must be at least 20
+    /// (CIEDE2000), also with colour blindness.
     pub(crate) body: Option<TypedColour>,
-    /// An element that has turned over, before light falls on it, and its edges among bare lines. Its hatch, its signs
-    /// and the words about it follow.
+    /// Turned-over elements, before shading, and their edges where no surfaces are shown. Their hatching, signs and text
+    /// follow.
     pub(crate) turned_over: Option<TypedColour>,
-    /// Edges of sound elements, rims of nodes, and the sides of lines that a field colours.
+    /// Edges of elements that are not turned over, rims of nodes, and the borders of lines that a field colours.
     pub(crate) edge: Option<TypedColour>,
     /// The outline of a body and of solid obstacles.
     pub(crate) outline: Option<TypedColour>,
-    /// A node, where no field colours it.
+    /// Nodes that no field colours.
     pub(crate) node: Option<TypedColour>,
-    /// Springs, and edges that take their place where surfaces are not shown.
+    /// Springs, and edges where no surfaces are shown.
     pub(crate) spring: Option<TypedColour>,
-    /// Arrows and curves of all runs that have no `colour` of their own; their dashes tell them apart.
+    /// Arrows and curves of all runs without a `colour` of their own; their dashes differ.
     pub(crate) arrow: Option<TypedColour>,
-    /// Arrows of what moves, and marks of what is held.
+    /// Arrows of moving obstacles and nodes, and marks on held nodes.
     pub(crate) pointer: Option<TypedColour>,
-    /// A solid obstacle, before light falls on it. Its fill and outline in the plane follow.
+    /// Solid obstacles, before shading. Their fill and outline in the plane follow.
     pub(crate) obstacle: Option<TypedColour>,
-    /// A transparent plate. Its sides and edges, walls and slopes follow.
+    /// Transparent plates. Their sides and edges, walls and slopes follow.
     pub(crate) plate: Option<TypedColour>,
-    /// Names and numbers. Smaller words, ticks, the line of the floor in the plane and lines between panels follow: they
-    /// stand between it and the background. With the background it has a contrast of at least 4.5.
+    /// Names and numbers. Smaller text, ticks, the line of the floor in the plane and lines between panels follow, with
+    /// shades between it and the background. Its contrast with the background must be at least 4.5.
     pub(crate) text: Option<TypedColour>,
-    /// The floor in space. Words have a contrast of at least 4.5 with it. It is not drawn on a transparent background.
+    /// The floor in space. Its contrast with text must be at least 4.5. It is not drawn on a transparent background.
     pub(crate) floor: Option<TypedColour>,
     /// The lines on floors and walls in space.
     pub(crate) grid: Option<TypedColour>,
-    /// What a floor's colour goes to in the shadow.
+    /// The floor in full shadow.
     pub(crate) shadow: Option<TypedColour>,
 }
 
-/// The files of fonts, TrueType or OpenType (.ttf, .otf, .ttc), looked for beside the scene file.
+/// Font files, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FontFile {
-    /// The font of all words, such as one with the letters of another script. Letters it does not have come from the
-    /// font that is built in; digits and Latin letters it must have.
+    /// The font of all text, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file. It must have digits and Latin
+    /// letters; letters that it lacks come from the built-in font. Text is drawn left to right with one glyph for each
+    /// character, without shaping or kerning: right for Latin, Greek, Cyrillic, Chinese, Japanese and Korean. Scripts that
+    /// need shaping or run from right to left, such as Arabic, Hebrew and Devanagari, are not supported, nor are letters
+    /// followed by combining marks.
     #[schemars(length(min = 1))]
     pub(crate) regular: String,
-    /// The font of names and counts. Default: the same.
+    /// The font of names and counts. Default: that of `regular`.
     #[schemars(length(min = 1))]
     pub(crate) semi_bold: Option<String>,
 }

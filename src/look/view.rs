@@ -143,12 +143,12 @@ impl Default for Light {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FloorStyle {
-    /// In space with a grid of one cell for each cell of a lattice, or of few cells beside other bodies.
+    /// In space with a grid, which has the cells of a lattice, or few cells for other bodies.
     #[default]
     Grid,
     /// Without a grid.
     Plain,
-    /// Not at all, but for the shadows on it.
+    /// Not drawn, except for the shadows on it.
     None,
 }
 
@@ -189,22 +189,22 @@ pub struct ColourScale {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourMap {
-    /// From pale mint through teal to indigo, made for these pictures: never near to vermilion, and edges show on all of
+    /// From pale mint through teal to indigo: far from the vermilion of turned-over elements, and edges are visible on all of
     /// it. Large values are dark in the light theme and light in the dark one.
     #[default]
     MintIndigo,
     /// From dark violet through teal to yellow (matplotlib), in either theme.
     Viridis,
-    /// From dark blue to yellow, alike to all eyes (Nuñez, Anderton, Renslow 2018), in either theme.
+    /// From dark blue to yellow, the same with colour blindness (Nuñez, Anderton, Renslow 2018), in either theme.
     Cividis,
-    /// From black through crimson to pale yellow (matplotlib), in either theme. On the way it is orange, near to the
-    /// colour of turned-over elements: give these another one, `colours.turned_over`, if both matter.
+    /// From black through crimson to pale yellow (matplotlib), in either theme. Its orange is similar to the colour of
+    /// turned-over elements; `colours.turned_over` can change that.
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.
     Greys,
-    /// From violet through grey to green, made for lines: values near the middle recede, yet are seen on any ground.
+    /// From violet through grey to green, for lines: values near the middle recede, but are visible on any background.
     VioletGreen,
-    /// From purple through white to green (ColorBrewer PRGn), in either theme: for values on both sides of a middle.
+    /// From purple through white to green (ColorBrewer PRGn), in either theme: diverging, for values of both signs.
     PurpleGreen,
 }
 
@@ -274,10 +274,10 @@ pub struct StrainScale {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Theme {
-    /// Near-white ground, for papers.
+    /// Near-white background, for papers.
     #[default]
     Light,
-    /// Near-black ground, for talks.
+    /// Near-black background, for talks.
     Dark,
 }
 

@@ -1,9 +1,9 @@
-//! Files that lie beside a scene and belong to it.
+//! Files in the folder of a scene that belong to it.
 
 use super::words::nearest;
 use std::path::Path;
 
-/// What is said of a file that is not there.
+/// The message for a missing file.
 pub(crate) fn missing(path: &Path) -> String {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     format!("is not there (looked for {})", full.display())

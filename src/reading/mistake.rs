@@ -1,4 +1,4 @@
-//! Mistakes in a file, and how they are shown.
+//! Mistakes in a file, and how they are printed.
 
 use serde::Serialize;
 use std::fmt;
@@ -58,7 +58,7 @@ impl Mistake {
     }
 }
 
-/// How many mistakes are printed: what fits on a screen or two. More follow from the same cause, as a rule.
+/// How many mistakes are printed: what fits on a screen or two. More usually have the same cause.
 const SHOWN: usize = 20;
 
 impl fmt::Display for Mistakes {

@@ -1,4 +1,4 @@
-//! What reading a file needs, whatever it is about: mistakes at their places, words, files that lie beside it.
+//! Reading files of any kind: mistakes with line and column, words for messages, files in the same folder.
 
 pub(crate) mod beside;
 pub(crate) mod coordinates;

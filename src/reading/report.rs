@@ -1,11 +1,11 @@
-//! Collects mistakes, each at its place in the file.
+//! Collects mistakes with their positions in the file.
 
 use super::source::Source;
 use super::{Mistake, Mistakes};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// One step on the way from the top of a file to a value.
+/// One step of the path from the root of a file to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way<'a> {
     /// Into a table.
@@ -14,7 +14,7 @@ pub(crate) enum Way<'a> {
     Index(usize),
 }
 
-/// The way to a value as a reader writes it: `run[1].model.stiffness`.
+/// The path of a value, as written in messages: `run[1].model.stiffness`.
 pub(crate) fn written(path: &[Way<'_>]) -> String {
     let mut text = String::new();
     for way in path {
@@ -50,14 +50,14 @@ impl<'t> Report<'t> {
         self.total
     }
 
-    /// Counts a mistake of which no more than that would be kept, if so many are known; else its words are needed.
+    /// If the limit of kept mistakes is reached, counts one more and returns true; otherwise its message is needed.
     pub(crate) fn only_counted(&mut self) -> bool {
         let is_full = self.found.len() >= KEPT;
         self.total += usize::from(is_full);
         is_full
     }
 
-    /// Whether the key at the end of `path` is typed; a default is not.
+    /// Whether the key at the end of `path` is in the file, and not a default.
     pub(crate) fn is_typed(&self, path: &[Way<'_>]) -> bool {
         match path {
             [before @ .., Way::Key(key)] => table_at(self.root, before).is_some_and(|table| table.contains_key(*key)),
@@ -73,7 +73,7 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// A mistake in the value at `path`, or in the nearest table or array that is there.
+    /// A mistake in the value at `path`, or in the nearest table or array that exists.
     pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
         self.at_span(span_of(self.root, path), path, message.into(), help.into());
     }
@@ -88,7 +88,7 @@ impl<'t> Report<'t> {
         self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.into());
     }
 
-    /// What is allowed and probably not meant, in the value at `path` or in the nearest one that is there.
+    /// A warning about the value at `path`, or about the nearest one that exists: it is allowed and probably not meant.
     pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
         self.warned.push(mistake(self.source, span_of(self.root, path), path, message, Some(help)));
     }
@@ -100,7 +100,7 @@ impl<'t> Report<'t> {
         found
     }
 
-    /// All that was found, in the order of the text.
+    /// All mistakes, in the order of the text.
     pub(crate) fn finish(mut self, file: &str) -> Mistakes {
         self.found.sort_by_key(|mistake| (mistake.line, mistake.column));
         Mistakes { file: file.into(), found: self.found, total: self.total }
@@ -120,7 +120,7 @@ pub(crate) fn mistake(
     Mistake { line, column, place: written(path), message, help, excerpt, marked }
 }
 
-/// The span of the value at `path`, or of the last thing on the way to it that is there.
+/// The span of the value at `path`, or of its innermost ancestor that exists.
 fn span_of(root: &DeTable<'_>, path: &[Way<'_>]) -> Range<usize> {
     let (first, rest) = match path {
         [Way::Key(first), rest @ ..] => (*first, rest),

@@ -1,8 +1,8 @@
-//! The text of a scene file, and where in it something stands.
+//! The text of a scene file, with lines and columns.
 
 use std::ops::Range;
 
-/// A text with the means to turn byte offsets into lines and columns.
+/// A text that converts byte offsets to lines and columns.
 #[derive(Debug)]
 pub(crate) struct Source<'t> {
     text: &'t str,
@@ -36,8 +36,8 @@ impl<'t> Source<'t> {
         (line, self.text[self.lines[line - 1]..byte].chars().count() + 1)
     }
 
-    /// The line in which a span begins, cut to a readable width, and where in it the span's part of it stands
-    /// (characters). Tabs and other control characters become spaces, so that the mark stands right.
+    /// The line in which a span begins, cut to a readable width, and the columns of the span within it (characters). Tabs
+    /// and other control characters become spaces, so that the mark is aligned.
     pub(crate) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
         let (line, column) = self.position(span.start);
         let start = self.lines[line - 1];
@@ -48,7 +48,7 @@ impl<'t> Source<'t> {
             .count()
             .max(1);
         let shown = self.text[start..end].trim_end();
-        // Long lines, as of listed nodes, are cut so that the place stands a little right of the left end.
+        // Long lines, such as lists of nodes, are cut so that the position is near the left end.
         let long = shown.chars().nth(WIDEST_EXCERPT).is_some();
         let first = if long && column > WIDEST_EXCERPT / 2 { column - 1 - WIDEST_EXCERPT / 4 } else { 0 };
         let clean = |c: char| if c.is_control() { ' ' } else { c };

@@ -31,7 +31,7 @@ pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str)
     }
 }
 
-/// The known name nearest to what was typed, if it is near enough to have been meant: one slip in three letters.
+/// The known name most similar to the one typed, if they differ by at most one letter in three.
 pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     // A quadratic comparison, so nothing long is compared.
     if typed.len() > 100 {
@@ -75,7 +75,7 @@ pub(crate) fn to_json(integer: &DeInteger<'_>) -> Option<Json> {
     u64::try_from(exact).map(Json::from).or_else(|_| i64::try_from(exact).map(Json::from)).ok()
 }
 
-/// A count with its thousands set apart: `1 030 301`.
+/// A count with separated thousands: `1 030 301`.
 pub(crate) fn count(number: u128) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -93,13 +93,13 @@ pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
 }
 
-/// A number with up to twelve significant digits: as a bound of a region it takes what lies there.
+/// A number with up to twelve significant digits: precise enough to be the bound of a region.
 pub(crate) fn fine(number: f64) -> String {
     significant(number, 12)
 }
 
 fn significant(number: f64, digits: usize) -> String {
-    // Adding zero takes the sign off a negative one.
+    // Adding zero turns −0 into 0.
     let rounded = rounded(number, digits) + 0.0;
     if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_name_is_one_that_may_have_been_meant() {
+    fn the_nearest_name_is_a_similar_one() {
         let known = ["stiffness", "damping", "damping_ratio", "springs"];
         assert_eq!(nearest("stifness", &known), Some("stiffness"));
         assert_eq!(nearest("Stiffness", &known), Some("stiffness"));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_have_their_thousands_apart() {
+    fn counts_have_separated_thousands() {
         assert_eq!(count(0), "0");
         assert_eq!(count(999), "999");
         assert_eq!(count(1_030_301), "1 030 301");

@@ -5,27 +5,27 @@ use super::schema::{SCHEMA, variants, without_nulls};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-/// Digests of what the files hold that a scene names.
+/// Digests of the files that a scene names.
 #[derive(Debug, Default)]
 pub(super) struct FileDigests {
-    /// The body's.
+    /// The body file.
     pub(super) body: Option<String>,
-    /// The font's.
+    /// The font file.
     pub(super) regular: Option<String>,
-    /// That of the font of names and counts.
+    /// The font file for names and counts.
     pub(super) semi_bold: Option<String>,
 }
 
 /// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits.
 ///
 /// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
-/// whose value is its default. So neither comments, layout and order count, nor whether a number was written as
-/// `1e4` or `10000.0`, nor a default that the schema names. A default that only words describe, such as `passes = 2`,
-/// counts when it is typed. A key added to the format later changes no digest.
+/// whose value is its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and
+/// explicit defaults do not change the digest, nor do keys that are added to the format later. Defaults that the schema
+/// describes only in words, such as `passes = 2`, do count when they are typed.
 ///
-/// Where the scene names a file, the digest of what is in it stands for the name.
+/// The name of a file is replaced by the digest of its content.
 pub(super) fn digest(parts: &Parts) -> String {
-    // The types hold nothing that JSON cannot: finite numbers, text keys.
+    // The types have only finite numbers and text keys, which JSON can represent.
     let mut value = serde_json::to_value(parts).unwrap_or_default();
     let files = parts.digests_of_files();
     if let Some(body) = files.body {

@@ -19,7 +19,7 @@ pub enum SceneError {
         nearest: Option<PathBuf>,
     },
     /// Its name has nothing before the ending that a folder of results could be called.
-    #[error("{}: a scene has the name of its file without the ending, and this leaves none; rename the file", path.display())]
+    #[error("{}: the name of the file without its extension is empty; rename the file", path.display())]
     Nameless {
         /// The path asked for.
         path: PathBuf,
@@ -96,7 +96,9 @@ fn similar(nearest: Option<&std::path::Path>) -> String {
 fn inside(scenes: &[PathBuf]) -> String {
     match scenes {
         [] => String::new(),
-        [only] => format!("; it holds {}", only.display()),
-        [first, .., last] => format!("; it holds {} scenes, {} to {}", scenes.len(), first.display(), last.display()),
+        [only] => format!("; it contains {}", only.display()),
+        [first, .., last] => {
+            format!("; it contains {} scenes, {} to {}", scenes.len(), first.display(), last.display())
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! How large a scene may be, asked before anything is allocated.
+//! Untrusted sizes are validated here before anything is allocated.
 
 use crate::reading::words::{count, size};
 use crate::sim::census::Census;
@@ -19,9 +19,9 @@ pub struct Limits {
 const GIB: u64 = 1 << 30;
 
 impl Default for Limits {
-    /// Eight million nodes, a block of 200 × 200 × 200: it takes some 15 GiB with a run of each model, which a
-    /// workstation has, and its steps take seconds, which somebody may still want to wait for. A slip of one digit in
-    /// each of three counts is beyond it. A scene file may have 256 MiB, some four million listed nodes.
+    /// Eight million nodes, a lattice of 200 × 200 × 200: some 15 GiB with a run of each model, which a workstation
+    /// has, and steps of some seconds. One digit too many in each of three counts exceeds it. A scene file can have
+    /// 256 MiB, some four million listed nodes.
     fn default() -> Self {
         Self { nodes: 8_200_000, memory: 16 * GIB, file: GIB / 4 }
     }
@@ -39,7 +39,7 @@ pub(super) struct Demand {
     pub(super) body: Census,
     /// What the model of each run needs.
     pub(super) runs: Vec<Needs>,
-    /// What makes the body smaller.
+    /// How to make the body smaller.
     pub(super) less: &'static str,
 }
 
@@ -50,12 +50,12 @@ pub(super) struct Excess {
     pub(super) message: String,
     /// What to do.
     pub(super) help: String,
-    /// The run that has the most springs, if without springs all would be well.
+    /// The run with the most springs, if without springs the limits would be kept.
     pub(super) run: Option<usize>,
 }
 
 impl Demand {
-    /// What models ask for on a body.
+    /// The demand of models on a body.
     pub(super) fn new<'m>(body: Census, less: &'static str, models: impl Iterator<Item = &'m ModelParameters>) -> Self {
         Self { runs: models.map(|model| model.needs(&body)).collect(), body, less }
     }
@@ -89,16 +89,16 @@ impl Demand {
         self.body.nodes.saturating_mul(48).saturating_mul(self.runs.len() as u128)
     }
 
-    /// Why this machine cannot hold it, if it cannot: that much memory is asked for, and given back without being
-    /// touched. An allocation that failed later would end the program without a word.
+    /// Why this machine has not enough memory, if so: the memory is allocated and freed without being touched. An allocation
+    /// that fails later would abort the program without a message.
     pub(super) fn denied(&self) -> Option<Excess> {
         let bytes = usize::try_from(self.bytes()).unwrap_or(usize::MAX);
         Vec::<u8>::new().try_reserve_exact(bytes).err()?;
-        let message = format!("this takes about {} of memory, which this machine does not give", size(self.bytes()));
-        Some(Excess { message, help: "make the body smaller, or take a larger machine".to_owned(), run: None })
+        let message = format!("this takes about {} of memory, which this machine does not have", size(self.bytes()));
+        Some(Excess { message, help: "make the body smaller, or use a larger machine".to_owned(), run: None })
     }
 
-    /// Why this is too much, if it is, and what to do.
+    /// Why this is too much, if it is, and what to do about it.
     pub(super) fn beyond(&self, limits: &Limits) -> Option<Excess> {
         let springs = self.runs.iter().fold(0, |sum: u128, run| sum.saturating_add(run.springs));
         let several =
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn what_no_machine_gives_is_said_beforehand() {
         let demand = listed(Dimension::Space, 8, 1 << 60, model("'shape-based'"));
-        assert!(demand.denied().unwrap().message.contains("which this machine does not give"));
+        assert!(demand.denied().unwrap().message.contains("which this machine does not have"));
         assert_eq!(block(&[1, 1, 1], &[model("'shape-based'")]).denied(), None);
     }
 

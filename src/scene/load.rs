@@ -29,7 +29,7 @@ impl Scene {
     }
 
     /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's
-    /// own file and fonts are looked for from the current directory on, for a text lies in no folder.
+    /// own file and fonts are searched in the current directory.
     ///
     /// # Errors
     /// A text that is empty, no TOML, or no scene, with all mistakes in it.
@@ -55,7 +55,7 @@ impl Scene {
         Self::read(text, name, Path::new(""), limits, Unwritten::default())
     }
 
-    /// Reads a scene from a text; a body's own file and fonts are looked for in `folder`.
+    /// Reads a scene from a text; a body's own file and fonts are searched in `folder`.
     pub(super) fn read(
         text: &str,
         name: &str,
@@ -75,20 +75,20 @@ impl Scene {
     }
 }
 
-/// A file of another kind, known by keys that it has, of which each is enough.
+/// A file of another kind, recognised by any of these keys.
 #[derive(Clone, Copy)]
 pub(super) struct Other {
     pub(super) keys: &'static [&'static str],
     pub(super) message: &'static str,
 }
 
-/// What a scene may be taken for, and the other way round.
+/// Figure files passed as scenes, and the other way round.
 const FIGURE: Other =
     Other { keys: &["sheet", "forces"], message: "this is a figure, not a scene; `localshape figure` draws it" };
 pub(super) const SCENE: Other =
     Other { keys: &["body", "run"], message: "this is a scene, not a figure; `localshape render` draws it" };
 
-/// Whether a file is a figure and not a scene, as far as that can be told.
+/// Whether a file looks like a figure and not like a scene.
 #[cfg(feature = "render")]
 pub(crate) fn is_figure_file(path: &Path, limits: &Limits) -> bool {
     let is_figure = |text: String| {
@@ -98,8 +98,7 @@ pub(crate) fn is_figure_file(path: &Path, limits: &Limits) -> bool {
     text_of(path, limits).is_ok_and(is_figure)
 }
 
-/// Reads a text of TOML, checks it against a schema and gives it its meaning; all mistakes that anyone reports on the way
-/// are told together.
+/// Parses TOML, checks it against a schema and resolves it; all mistakes are reported together.
 pub(super) fn checked<T>(
     text: &str,
     name: &str,
@@ -144,11 +143,10 @@ pub(super) fn stem(file: &Path) -> Option<String> {
     (!["", ".", ".."].contains(&stem.trim())).then_some(stem)
 }
 
-/// What may help with a value where an array's comma or end was expected.
+/// Help where the comma or end of an array was expected.
 const UNCLOSED: &str = "is an array before this not closed with `]`?";
 
-/// What the TOML reader said, the first of each line and up to the first array that does not end: the rest follows
-/// from it.
+/// The TOML parser's errors: the first of each line, up to the first array that does not end; the rest follows from it.
 fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistakes {
     let mut found: Vec<_> = errors
         .iter()
@@ -160,7 +158,7 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
             };
             let help = match (error.message(), source.text().get(span.clone())) {
                 (message, _) if message.contains("array") => Some(UNCLOSED.to_owned()),
-                // What is neither a number nor in quotation marks is taken for a truth value.
+                // The parser takes unquoted text for a truth value.
                 (message, Some(text)) if message.starts_with("invalid boolean") => {
                     Some(format!("a text needs quotation marks: {}", quoted(text)))
                 }
@@ -185,7 +183,7 @@ fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
         return Err(SceneError::Folder { path: path.into(), scenes: scenes_in(path) });
     }
     let mut bytes = Vec::new();
-    // One byte more than allowed tells a file that is too long from one that just fits, whatever its kind.
+    // One byte more than allowed is read, to detect files that are too long.
     let outcome = File::open(path).and_then(|file| file.take(limits.file.saturating_add(1)).read_to_end(&mut bytes));
     match outcome {
         Ok(_) if bytes.len() as u64 > limits.file => Err(SceneError::TooLong { path: path.into(), limit: limits.file }),
@@ -211,7 +209,7 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
         return not_text(0, what);
     }
     match (std::str::from_utf8(bytes), bytes.iter().position(|&byte| byte == 0)) {
-        (Ok(_), Some(offset)) => not_text(offset, "this is not text: it holds a zero byte"),
+        (Ok(_), Some(offset)) => not_text(offset, "this is not text: it contains a zero byte"),
         (Ok(text), None) => Ok(text),
         (Err(error), zero) => {
             let offset = error.valid_up_to().min(zero.unwrap_or(usize::MAX));
@@ -223,14 +221,14 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
 
 /// The scene files in a folder, in order.
 fn scenes_in(folder: &Path) -> Vec<PathBuf> {
-    // Folders of results may hold very many files; a scene lies among few.
+    // Folders of results can have very many files; those of scenes have few.
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().take(10_000).map(|entry| entry.path());
     let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();
     scenes
 }
 
-/// The scene file in the same folder whose name is most like that of a missing one, not counting the endings.
+/// The scene file in the same folder whose name, without extension, is most similar to a missing one.
 fn similar(path: &Path) -> Option<PathBuf> {
     let wanted = stem(Path::new(path.file_name()?))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -18,6 +18,7 @@ mod generate;
 mod limits;
 mod load;
 pub(crate) mod npz;
+pub(crate) mod reference;
 mod resolve;
 mod schema;
 mod step;

@@ -1,7 +1,6 @@
 //! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them.
 //!
-//! What an archive says of itself is not believed: sizes are compared before anything is allocated, and memory grows
-//! only with what is really there.
+//! Archives are untrusted: sizes are validated before allocation, and memory grows only with the data that is read.
 
 use crate::reading::words::size;
 use crate::reading::words::{count, quoted};
@@ -11,11 +10,11 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 use zip::{CompressionMethod, ZipArchive};
 
-/// The longest head of an array that is read (bytes); one of numbers has some hundred.
+/// The longest header of an array that is read (bytes); one of numbers has some hundred.
 const LONGEST_HEAD: usize = 4096;
 
-/// How much room an array gets before it is read (bytes): large bodies are rarely larger, and no machine lacks it.
-const MOST_BELIEVED: u64 = 1 << 26;
+/// The largest allocation for an array before it is read (bytes), larger than most arrays and available on every machine.
+const MOST_RESERVED: u64 = 1 << 26;
 
 /// An archive that is open for reading.
 #[derive(Debug)]
@@ -23,17 +22,17 @@ pub(crate) struct Npz {
     zip: ZipArchive<BufReader<File>>,
 }
 
-/// One array of an archive: what its head says.
+/// The header of an array in an archive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Array {
-    /// Where it stands in the archive.
+    /// Its index in the archive.
     index: usize,
     number: Number,
-    /// Whether columns, not rows, lie in one piece.
+    /// Whether columns, not rows, are contiguous (Fortran order).
     by_columns: bool,
-    /// How long it is in each direction.
+    /// Its length along each axis.
     pub(crate) shape: Vec<u64>,
-    /// Length of the head (bytes).
+    /// Length of the header (bytes).
     head: u64,
 }
 
@@ -69,7 +68,7 @@ impl Number {
             }
             ("O", _) => {
                 return Err(format!(
-                    "holds Python objects, as lists of different lengths make them; {EXPECTED}, with -1 in the places that a short list does not use"
+                    "contains Python objects, as made from lists of different lengths; {EXPECTED}, with -1 at the end of short lists"
                 ));
             }
             _ => return Err(format!("has numbers of the type {}; {EXPECTED}", quoted(name))),
@@ -81,7 +80,7 @@ impl Number {
     }
 }
 
-/// The numbers of an array with one to three directions, row by row.
+/// The numbers of an array with one to three axes, row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Numbers {
     bytes: Vec<u8>,
@@ -106,7 +105,7 @@ impl Numbers {
         &self.bytes[at * width..(at + 1) * width]
     }
 
-    /// One number, as a whole one; those beyond 64 bits with a sign are at their end. Zero for a fraction.
+    /// One number as an integer, saturated to signed 64 bits. Zero for a fraction.
     pub(crate) fn whole(&self, row: usize, column: usize) -> i64 {
         let raw = self.raw(row, column);
         match self.number {
@@ -145,9 +144,9 @@ impl Npz {
         if path.is_dir() {
             return Err("is a folder; expected a NumPy archive (.npz)".to_owned());
         }
-        // A pipe would keep everybody waiting.
+        // Opening a pipe would block.
         if path.exists() && !path.is_file() {
-            return Err("is no regular file; expected a NumPy archive (.npz)".to_owned());
+            return Err("is not a regular file; expected a NumPy archive (.npz)".to_owned());
         }
         let mut file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
         let mut start = [0; 6];
@@ -160,7 +159,7 @@ impl Npz {
                 );
             }
             [b'P', b'K', ..] => {}
-            _ => return Err("is no NumPy archive (.npz), as numpy.savez writes them".to_owned()),
+            _ => return Err("is not a NumPy archive (.npz); expected one written by numpy.savez".to_owned()),
         }
         let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
         Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)? })
@@ -172,7 +171,7 @@ impl Npz {
         self.zip.file_names().map(|known| name(known.unwrap_or_default())).collect()
     }
 
-    /// The head of an array, if the archive has it.
+    /// The header of an array, if the archive has it.
     pub(crate) fn array(&mut self, name: &str) -> Option<Result<Array, String>> {
         let index = self.zip.index_for_name(&format!("{name}.npy"))?;
         Some(self.head(index))
@@ -186,7 +185,7 @@ impl Npz {
             return Err(format!("is compressed by {packed}, which is not read; {expected}"));
         }
         let mut entry = self.zip.by_index(index).map_err(|error| format!("cannot be read: {error}"))?;
-        let short = || "has no whole head: the file is damaged, or no array of NumPy".to_owned();
+        let short = || "has no complete header: the file is damaged, or is not a NumPy array".to_owned();
         let mut fixed = [0; 12];
         entry.read_exact(&mut fixed[..10]).map_err(|_| short())?;
         if !fixed.starts_with(b"\x93NUMPY") {
@@ -226,15 +225,14 @@ impl Npz {
         Ok(array)
     }
 
-    /// The numbers of an array: of one with a single direction as one column, of one with three directions with the last
-    /// two in one row.
+    /// The numbers of an array: with one axis as one column, with three axes with the last two in one row.
     pub(crate) fn numbers(&mut self, array: &Array) -> Result<Numbers, String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
         std::io::copy(&mut (&mut entry).take(array.head), &mut std::io::sink()).map_err(broken)?;
-        let mut bytes = Vec::with_capacity(expected.min(MOST_BELIEVED) as usize);
-        // One more than is expected makes the reader compare its check sum.
+        let mut bytes = Vec::with_capacity(expected.min(MOST_RESERVED) as usize);
+        // Reading one byte more than expected makes the reader verify the checksum.
         entry.take(expected.saturating_add(1)).read_to_end(&mut bytes).map_err(broken)?;
         if bytes.len() as u64 != expected {
             return Err(format!(
@@ -270,7 +268,7 @@ impl Array {
         format!("{kind}{}", 8 * self.number.bytes())
     }
 
-    /// Length of the numbers (bytes), if 64 bits can say it.
+    /// Length of the numbers (bytes), if it fits in 64 bits.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.number.bytes() as u64, |all, &length| all.checked_mul(length))
     }
@@ -287,7 +285,7 @@ impl Array {
     }
 }
 
-/// Reads until a buffer is full or nothing more comes, and says how much came.
+/// Reads until a buffer is full or the file ends, and returns the number of bytes read.
 fn read_up_to(file: &mut File, buffer: &mut [u8]) -> std::io::Result<usize> {
     let mut length = 0;
     while length < buffer.len() {
@@ -300,7 +298,7 @@ fn read_up_to(file: &mut File, buffer: &mut [u8]) -> std::io::Result<usize> {
     Ok(length)
 }
 
-/// What follows a key in the head of an array, which is a dictionary in Python's spelling.
+/// The text after a key in the header of an array, which is a Python dictionary.
 fn value<'t>(text: &'t str, key: &str) -> Option<&'t str> {
     let after = ["'", "\""].iter().find_map(|quote| text.split_once(&format!("{quote}{key}{quote}")))?.1;
     Some(after.trim_start().strip_prefix(':')?.trim_start())
@@ -316,7 +314,7 @@ fn quoted_text(text: &str) -> Option<&str> {
 fn tuple(text: &str) -> Option<Vec<u64>> {
     let (inside, _) = text.strip_prefix('(')?.split_once(')')?;
     let parts = inside.split(',').map(str::trim).filter(|part| !part.is_empty());
-    // Python 2 wrote an L behind long numbers.
+    // Python 2 wrote an L after long numbers.
     parts.map(|part| part.trim_end_matches('L').parse().ok()).collect()
 }
 

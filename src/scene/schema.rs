@@ -27,8 +27,8 @@ pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     schema
 });
 
-/// Fits the generated schema to TOML: there is no null, a description is one line, an alternative of one is none,
-/// and every `kind` says what it is.
+/// Adapts the generated schema to TOML: no null, descriptions on one line, no alternatives of one, and every `kind` with a
+/// description.
 pub(super) fn tidy(schema: &mut Value) {
     match schema {
         Value::Array(items) => items.iter_mut().for_each(tidy),

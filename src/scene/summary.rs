@@ -1,4 +1,4 @@
-//! What a scene holds, in words and numbers, for whoever checks it.
+//! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::Scene;
 use crate::look::Follow;
@@ -189,7 +189,7 @@ fn grip(grip: &Grip, duration: f64) -> String {
         1 => format!("node {}", grip.nodes[0]),
         several => format!("{} nodes", count(several as u128)),
     };
-    let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "for good".into() };
+    let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "on".into() };
     let what = if grip.motion == Motion::Still { "held" } else { "dragged" };
     let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
     format!("{nodes} {what} from {} s {until}{note}", short(grip.from))

@@ -236,7 +236,7 @@ fn rendering_makes_animations_meanwhile() {
     place.write("other.toml", SMALL);
     place.run("render small.toml other.toml --animate d.gif").bad(2, &["--animate", "one at a time"]);
     place.run("render small.toml --animate d.avi").bad(2, &[".avi", ".gif"]);
-    place.run("render small.toml --animate d.gif --animate ./d.gif").bad(2, &["--animate names ./d.gif twice"]);
+    place.run("render small.toml --animate d.gif --animate ./d.gif").bad(2, &["--animate is given ./d.gif twice"]);
     place.run("render small.toml --animate absent/d.gif").bad(2, &["there is no folder absent"]);
     assert_eq!(place.run("render small.toml --no-frames").status, Some(2));
     assert!(place.names(".").iter().all(|name| !name.starts_with("d.")));
@@ -277,7 +277,7 @@ fn an_interrupted_rendering_makes_no_animation() {
     for name in ["a.gif", "b.apng"] {
         let command = format!("animate output/long -o {name}");
         let told =
-            format!("{name}  not made, for not all frames are there; of the frames that are: localshape {command}\n");
+            format!("{name}  not made, because frames are missing; to make it from the others: localshape {command}\n");
         assert!(ran.out.contains(&told), "{}", ran.out);
         assert!(!place.path(name).exists());
         place.run(&command).good();
@@ -285,7 +285,7 @@ fn an_interrupted_rendering_makes_no_animation() {
     let running = start(&place, &format!("{arguments} --overwrite --no-frames -o other"), "other/run.json");
     signal(&running, &["INT"]);
     let ran = running.wait();
-    assert!(ran.out.contains("a.gif  not made, for not all frames are there\n"), "{ran:?}");
+    assert!(ran.out.contains("a.gif  not made, because frames are missing\n"), "{ran:?}");
 }
 
 #[test]
@@ -606,7 +606,7 @@ fn frames_that_are_no_sequence_are_told() {
     place.write("empty/notes.txt", "");
     bad(&place, "empty -o out.gif", &["empty has no frames", "localshape render"]);
     bad(&place, "absent -o out.gif", &["absent", "expected a folder with frames"]);
-    bad(&place, "empty/notes.txt -o out.gif", &["is no folder"]);
+    bad(&place, "empty/notes.txt -o out.gif", &["is not a folder"]);
     copy("gap");
     std::fs::remove_file(place.path("gap/frame_00002.png")).unwrap();
     bad(&place, "gap -o out.gif", &["gap has a gap: frame_00003.png follows frame_00001.png", "--frames"]);
@@ -620,7 +620,7 @@ fn frames_that_are_no_sequence_are_told() {
     with("size", &encode([32, 48], &pixels(2, [32, 48]), &tags(2)));
     bad(&place, "size -o out.gif", &["size/frame_00002.png has 32×48 pixels, frame_00001.png has 64×48"]);
     with("scene", &encode(SIZE, &pixels(2, SIZE), &Tags { scene: "99".repeat(32), ..tags(2) }));
-    bad(&place, "scene -o out.gif", &["scene/frame_00002.png shows another scene than frame_00001.png"]);
+    bad(&place, "scene -o out.gif", &["scene/frame_00002.png shows a different scene than frame_00001.png"]);
     with(
         "runs",
         &encode(SIZE, &pixels(2, SIZE), &Tags { states: vec![("ab".repeat(32), "Springs".to_owned())], ..tags(2) }),
@@ -631,7 +631,7 @@ fn frames_that_are_no_sequence_are_told() {
     with("renamed", &encode(SIZE, &pixels(2, SIZE), &tags(3)));
     bad(&place, "renamed -o out.gif", &["renamed/frame_00002.png shows frame 3"]);
     with("foreign", b"GIF89a");
-    bad(&place, "foreign -o out.gif", &["foreign/frame_00002.png is damaged, or no frame"]);
+    bad(&place, "foreign -o out.gif", &["foreign/frame_00002.png is damaged, or is not a frame"]);
     let whole = encode(SIZE, &pixels(2, SIZE), &tags(2));
     with("cut", &whole[..whole.len() - 40]);
     for out in ["out.gif", "out.apng", "out.y4m"] {
@@ -639,7 +639,7 @@ fn frames_that_are_no_sequence_are_told() {
     }
     bad(&place, "in gap -o out.gif --frames 0-1,4", &["gap"]);
     bad(&place, "in gap -o out.gif", &["gap has a gap"]);
-    bad(&place, "in cut -o out.gif", &["frame 4 is only in one of in and cut"]);
+    bad(&place, "in cut -o out.gif", &["frame 4 is in only one of in and cut"]);
     let later = Tags { time: 0.3, ..tags(3) };
     put(&place, "later", 3, &encode(SIZE, &pixels(3, SIZE), &later));
     bad(&place, "in later -o out.gif --frames 3", &["frame 3 is at 0.1010 s in in and at 0.3000 s in later"]);
@@ -658,27 +658,27 @@ fn wrong_options_are_told() {
         ("in -o out.gif --size 100x100", ["--size is for sheets", "--width"]),
         ("in -o in", ["no ending", ".gif"]),
         ("in -o out.png --width 100", ["--width is for animations", "--size"]),
-        ("in -o out.png --speed 2", ["--speed is for animations", "stills"]),
-        ("in -o out.png --fps 2", ["--fps is for animations", "stills"]),
-        ("in -o out.png --hold-last 2", ["--hold-last is for animations", "stills"]),
-        ("in -o out.png --boomerang", ["--boomerang is for animations", "stills"]),
-        ("in -o out.png --loop 2", ["--loop is for .gif and .apng", "whoever plays"]),
-        ("in -o out.y4m --loop 2", ["--loop is for .gif and .apng", "whoever plays"]),
-        ("in -o out.mp4 --loop 0", ["--loop is for .gif and .apng", "whoever plays"]),
+        ("in -o out.png --speed 2", ["--speed is for animations", "--frames"]),
+        ("in -o out.png --fps 2", ["--fps is for animations", "--frames"]),
+        ("in -o out.png --hold-last 2", ["--hold-last is for animations", "--frames"]),
+        ("in -o out.png --boomerang", ["--boomerang is for animations", "--frames"]),
+        ("in -o out.png --loop 2", ["--loop is for .gif and .apng", "the player"]),
+        ("in -o out.y4m --loop 2", ["--loop is for .gif and .apng", "the player"]),
+        ("in -o out.mp4 --loop 0", ["--loop is for .gif and .apng", "the player"]),
         ("in -o out.gif --stack", ["--stack", "more than one"]),
         ("in -o - --json", ["--json", "standard output is for the pictures"]),
     ] {
         bad(&place, arguments, &words);
     }
     for (arguments, word) in [
-        ("--speed 0", "at 0 it would stand still"),
+        ("--speed 0", "0.001 to 1000"),
         ("--speed -1", "0.001 to 1000"),
         ("--speed nan", "0.001 to 1000"),
         ("--fps 0", "0.1 to 1000"),
         ("--hold-last -1", "0 to 3600"),
         ("--width 3", "16"),
-        ("--loop -1", "1 to 65535, or 0 for ever"),
-        ("--loop forever", "1 to 65535, or 0 for ever"),
+        ("--loop -1", "1 to 65535, or 0 for endless"),
+        ("--loop forever", "1 to 65535, or 0 for endless"),
         ("--frames 9-0", "did you mean 0-9?"),
     ] {
         let ran = place.run(&format!("animate in -o out.gif {arguments}"));
@@ -697,7 +697,7 @@ fn wrong_options_are_told() {
         // Each letter one byte.
         let bytes: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
         std::fs::write(place.path(name), &bytes).unwrap();
-        bad(&place, &format!("in -o {name}"), &[&format!("{name} is there already"), "--overwrite"]);
+        bad(&place, &format!("in -o {name}"), &[&format!("{name} exists and was not made"), "--overwrite"]);
         assert!(std::fs::read(place.path(name)).unwrap() == bytes);
     }
     for name in ["mine.gif", "mine.apng", "mine.y4m", "mine.png"] {
@@ -705,7 +705,7 @@ fn wrong_options_are_told() {
         place.run(&format!("animate in -o {name}")).good();
     }
     std::fs::create_dir(place.path("folder.gif")).unwrap();
-    bad(&place, "in -o folder.gif", &["folder.gif is no file"]);
+    bad(&place, "in -o folder.gif", &["folder.gif is not a file"]);
     place.run("animate in -o absent/out.gif").bad(4, &["cannot write absent/out.gif"]);
 }
 
@@ -716,7 +716,7 @@ fn a_reader_that_ends_early_is_told() {
     let program = env!("CARGO_BIN_EXE_localshape");
     let script = format!("{{ '{program}' animate in -o - --hold-last 60; echo $? > status; }} | head -c 100 > head");
     let ran = run(Command::new("bash").args(["-c", &script]).current_dir(place.path(".")));
-    assert!(ran.err.contains("error: cannot write to standard output: its reader has ended"), "{ran:?}");
+    assert!(ran.err.contains("error: cannot write to standard output: the reader ended"), "{ran:?}");
     assert_eq!(place.read("status"), "4\n");
 }
 

@@ -58,7 +58,7 @@ fn says_where_the_body_starts() {
 fn warns_of_what_is_probably_not_meant() {
     let place = Place::new();
     place.write("rare.toml", &SMALL.replace("frames_per_second = 60", "frames_per_second = 1e-300"));
-    let words = "warning: rare.toml:7:21: at 1e-300 frames per second, 0.1 s have a single frame, the start\n";
+    let words = "warning: rare.toml:7:21: at 1e-300 frames per second, 0.1 s have only one frame, the start\n";
     for command in ["check rare.toml", "simulate rare.toml", "simulate rare.toml --json --overwrite"] {
         let ran = place.run(command);
         assert_eq!((ran.status, ran.err.matches("warning: ").count()), (Some(0), 1), "{command}: {ran:?}");
@@ -69,7 +69,7 @@ fn warns_of_what_is_probably_not_meant() {
     }
     let document = place.run("check rare.toml --json").good().json();
     assert_eq!(document["scenes"][0]["warnings"][0]["line"], 7);
-    assert_eq!(document["scenes"][0]["warnings"][0]["help"], "at least 10 show its end");
+    assert_eq!(document["scenes"][0]["warnings"][0]["help"], "use at least 10 to show the end");
 }
 
 /// The example of `docs/bodies.md` makes the body that it says, by NumPy where there is one, and else as it once did.
@@ -88,7 +88,7 @@ fn a_mesh_written_with_numpy() {
         let scene = document["scenes"][0]["scene"].clone();
         assert_eq!((&scene["nodes"], &scene["elements"][0]), (&264.into(), &"120 hexahedra".into()));
         assert_eq!(scene["start"][0], serde_json::json!([-0.5, -0.25, -0.25]));
-        assert_eq!(scene["grips"][0], "24 nodes held from 0 s for good");
+        assert_eq!(scene["grips"][0], "24 nodes held from 0 s on");
     };
     check(include_bytes!("tube.npz"));
     if let Some(python) = numpy() {

@@ -44,7 +44,7 @@ fn two_pictures() {
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
-    let told = "b.png: same state, drawn differently: another kind of adapter drew it; of what stands in one picture only, \
+    let told = "b.png: same state, drawn differently: another kind of adapter drew it; in objects of one picture only, \
                 10 pixels differ (1 may); along silhouettes 0 pixels differ by more than 2 of 255 (none may); between them";
     assert!(drawn.out.starts_with(told), "{drawn:?}");
     assert!(drawn.out.contains("\naccept with: localshape compare --bless a.png b.png\n"), "{drawn:?}");
@@ -140,7 +140,7 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     assert_eq!(place.run("compare --bless was is").status, Some(1));
     std::fs::create_dir(place.path("empty")).unwrap();
     let empty = place.run("compare was empty");
-    assert!(empty.out.ends_with("\nempty holds no PNG picture; to compare with a scene, name its file\n"), "{empty:?}");
+    assert!(empty.out.ends_with("\nempty has no PNG picture; to compare with a scene, name its file\n"), "{empty:?}");
     std::fs::remove_file(place.path("was/gone.png")).unwrap();
     place.run("compare was is").good();
     let nothing = place.run("compare --bless was is").good();
@@ -178,7 +178,7 @@ fn no_damaged_picture_is_ever_accepted() {
     // But a damaged golden can be renewed, if it is known that its state is lost.
     place
         .run("compare --bless cut.png was.png")
-        .bad(1, &["what was expected is damaged", "--bless-state cut.png was.png"]);
+        .bad(1, &["the expected side is damaged", "--bless-state cut.png was.png"]);
     place.run("compare --bless-state cut.png was.png").good();
     assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
 }
@@ -270,7 +270,10 @@ fn exact_states_tell_node_distance_and_first_frame() {
     // States that are not those of the pictures beside them are not believed.
     std::fs::copy(place.path("stiffer/states.npz"), place.path("steady/states.npz")).unwrap();
     let told = place.run("compare steady stiffer").out;
-    assert!(told.contains("steady: states.npz is not of these pictures; frame 1 shows another state\n"), "{told}");
+    assert!(
+        told.contains("steady: states.npz does not belong to these pictures; frame 1 shows another state\n"),
+        "{told}"
+    );
     assert!(told.contains("by how much is not recorded"), "{told}");
     for (bytes, words) in [(&b"PK\x03\x04"[..], "damaged"), (b"", "is empty")] {
         std::fs::write(place.path("steady/states.npz"), bytes).unwrap();
@@ -306,7 +309,7 @@ fn foreign_pictures_pass_only_if_they_are_equal() {
         let same = place.run(&format!("compare was{end} same{end}")).good();
         assert_eq!(same.out, "a.png: no state recorded (the pixels are equal)\n");
         let differs = place.run(&format!("compare was{end} other{end}"));
-        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, for neither says who drew it\n";
+        let told = "a.png: no state recorded (pixels only): 1 pixel differs, by up to 1 of 255; none may, because neither names its adapter\n";
         assert!(differs.status == Some(1) && differs.out.starts_with(told), "{differs:?}");
     }
 }
@@ -351,7 +354,7 @@ fn a_report_is_one_file() {
     assert_eq!(place.run("compare a.png c.png --report page.html -q").status, Some(1));
     place.write("precious.toml", "body = 7");
     for name in ["precious.toml", "a.png", "."] {
-        place.run(&format!("compare a.png c.png --report {name} -q")).bad(2, &["no page of a comparison"]);
+        place.run(&format!("compare a.png c.png --report {name} -q")).bad(2, &["not a page of a comparison"]);
     }
     assert_eq!(place.read("precious.toml"), "body = 7");
 }
@@ -418,14 +421,14 @@ fn what_is_no_picture_never_passes() {
     let wrong: [(&str, Vec<u8>, &str); 23] = [
         ("damaged-text.png", damaged, "damaged or cut short (a checksum is wrong)"),
         ("twice.png", twice, "is missing, damaged or there twice"),
-        ("late.png", late.concat(), "says behind its pixels what it shows"),
+        ("late.png", late.concat(), "text chunks after its pixels"),
         ("sum.png", sum_lies, "damaged or cut short"),
         ("long.png", text("comment", long), "carries more than 4 MiB beside its pixels"),
         ("bell.png", states("3", &FULL.replace("run", "r\u{7}n")), "`localshape:state` is missing"),
         ("interlaced.png", interlaced, "is interlaced"),
-        ("text.png", b"no picture".to_vec(), "this is no PNG picture"),
-        ("empty.png", Vec::new(), "this is no PNG picture"),
-        ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is no PNG picture"),
+        ("text.png", b"no picture".to_vec(), "this is not a PNG picture"),
+        ("empty.png", Vec::new(), "this is not a PNG picture"),
+        ("jpeg.png", b"\xff\xd8\xff\xe0\0\x10JFIF".to_vec(), "this is not a PNG picture"),
         ("cut.png", whole[..whole.len() - 20].to_vec(), "damaged or cut short"),
         ("flipped.png", flipped, "damaged or cut short"),
         ("lies.png", header_lies, "damaged or cut short (a checksum is wrong)"),
@@ -471,7 +474,7 @@ fn what_is_no_file_of_a_picture_is_told_at_once() {
         vec![("large.png", "this file has 536870913 bytes; a picture that can be compared has at most 536870912")];
     if cfg!(unix) {
         run(std::process::Command::new("mkfifo").arg(place.path("pipe.png"))).good();
-        wrong.push(("pipe.png", "this is no PNG picture"));
+        wrong.push(("pipe.png", "this is not a PNG picture"));
     }
     for (name, words) in wrong {
         for order in [format!("{name} whole.png"), format!("whole.png {name}")] {
@@ -497,19 +500,19 @@ fn wrong_words() {
         place.run("compare a.png a.png --size 20x20").bad(2, &["--size is for scenes and figures"]);
     }
     place.write("small.toml", SMALL);
-    place.run("compare a.png small.toml").bad(2, &["a.png is no golden"]);
+    place.run("compare a.png small.toml").bad(2, &["a.png is not a golden"]);
     place
         .run("compare small.toml none")
-        .bad(2, &["small.toml is a scene or figure and comes last: localshape compare none"]);
+        .bad(2, &["small.toml is a scene or figure and must come last: localshape compare none"]);
     std::fs::create_dir(place.path("broken")).unwrap();
     place.write("broken/golden.toml", "format = 7");
-    place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "no record of a golden"]);
+    place.run("compare broken small.toml").bad(2, &["broken/golden.toml", "record of a golden cannot be read"]);
     place.write("wrong.toml", "body.lattice = { cells = [1, 1, 1], size = 0.1 }");
     let words = if cfg!(feature = "render") { "`size`" } else { "without the feature `render`" };
     place.run("compare none2 wrong.toml").bad(2, &["wrong.toml", words]);
     place.run("compare none a.png").bad(2, &["none is a folder and a.png is a file"]);
     put(&place, "full/a.png", &picture("one", "1", 0, &GREY));
     place.run("compare full a.png").bad(2, &["full is a folder and a.png is a file"]);
-    place.run("compare none none").bad(2, &["holds a PNG picture"]);
+    place.run("compare none none").bad(2, &["has a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
 }

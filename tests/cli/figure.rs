@@ -23,7 +23,7 @@ fn scenes_are_warned_of() {
     let place = place();
     place.write("small.toml", &SMALL.replace("frames_per_second = 60", "frames_per_second = 1e-300"));
     place.write("mine.toml", &SHEET.replace("[0.0, 0.1]", "[0.0]").replace("strips = [\"turned_over\"]", ""));
-    let words = "small.toml:7:21: at 1e-300 frames per second, 0.1 s have a single frame, the start\n";
+    let words = "small.toml:7:21: at 1e-300 frames per second, 0.1 s have only one frame, the start\n";
     for command in ["figure mine.toml", "compare golden/mine mine.toml", "compare golden/small small.toml"] {
         let ran = place.run(command);
         assert!(ran.err.starts_with("warning: ") && ran.err.contains(words), "{command}: {ran:?}");
@@ -91,7 +91,7 @@ fn wrong_names_and_files_are_told() {
     place.write("late.toml", &SHEET.replace("[0.0, 0.1]", "[0.0, 7.0]"));
     place.run("figure late.toml").bad(2, &["late.toml:6:17", "ends at 0.1 s"]);
     place.write("other/mine.toml", &SHEET.replace("small.toml", "../small.toml"));
-    place.run("figure mine.toml other/mine.toml").bad(2, &["two figures would both go to", "-o"]);
+    place.run("figure mine.toml other/mine.toml").bad(2, &["two figures would both be written to", "-o"]);
     place.run("figure fig1 --scale 9").bad(2, &["--scale", "0.1 to 4"]);
     place.run("figure fig1 --scale 2 --size 100x100").bad(2, &["--size"]);
     place.run("figure mine.toml --size 20x20").bad(2, &["mine: 20×20 is too small"]);
@@ -108,7 +108,7 @@ fn files_of_others_are_kept() {
     }
     let place = place();
     place.write("out/mine.png", "mine");
-    place.run("figure mine.toml -o out").bad(2, &["out", "mine.png, which is no figure of this program"]);
+    place.run("figure mine.toml -o out").bad(2, &["out", "mine.png, which is not a figure of this program"]);
     assert_eq!(place.read("out/mine.png"), "mine");
     place.run("figure mine.toml -o out --overwrite --size 80x64").good();
     place.write("file", "");

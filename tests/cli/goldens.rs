@@ -39,9 +39,9 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     place.write("other/notes.txt", "mine");
     let other = place.run("compare other small.toml");
     let told =
-        "the golden other is missing\nit cannot be made: other holds other files, such as notes.txt; name a folder";
+        "the golden other is missing\nit cannot be made: other has other files, such as notes.txt; name a folder";
     assert!(other.status == Some(1) && other.out.starts_with(told), "{other:?}");
-    place.run("compare --bless other small.toml").bad(1, &["nothing was accepted", "other holds other files"]);
+    place.run("compare --bless other small.toml").bad(1, &["nothing was accepted", "other has other files"]);
     assert_eq!(place.names("other"), ["notes.txt"]);
 
     // Another stiffness of one run: which run, since when, which node, how far.
@@ -139,7 +139,7 @@ fn only_what_failed_is_rewritten() {
     std::fs::write(place.path("golden/frame_00004.png"), broken).unwrap();
     let damaged = place.run("compare golden small.toml");
     assert!(damaged.out.contains("frame_00004.png: unreadable: golden/frame_00004.png: "), "{damaged:?}");
-    place.run("compare --bless golden small.toml").bad(1, &["what was expected is damaged", "--bless-state"]);
+    place.run("compare --bless golden small.toml").bad(1, &["the expected side is damaged", "--bless-state"]);
     place.run("compare --bless-state golden small.toml").good();
     assert_eq!(names.map(made), before);
     place.run("compare golden small.toml").good();
@@ -150,7 +150,7 @@ fn only_what_failed_is_rewritten() {
     place.write("precious.png", "precious");
     let record = place.read("golden/golden.toml").replace("\"frame_00002.png\"", "\"../precious.png\"");
     place.write("golden/golden.toml", &record);
-    place.run("compare --bless-state golden small.toml").bad(2, &["golden.toml", "no plain name of a PNG picture"]);
+    place.run("compare --bless-state golden small.toml").bad(2, &["golden.toml", "not a plain name of a PNG picture"]);
     assert_eq!(place.read("precious.png"), "precious");
 }
 
@@ -215,7 +215,7 @@ fn whatever_is_lost_is_no_pass() {
     assert!(ran.status == Some(1) && ran.out.contains("another adapter drew this picture"), "{ran:?}");
     // And one that lost its record.
     std::fs::remove_file(place.path("golden/golden.toml")).unwrap();
-    place.run("compare golden small.toml").bad(2, &["golden is no golden"]);
+    place.run("compare golden small.toml").bad(2, &["golden is not a golden"]);
 }
 
 #[test]
@@ -315,7 +315,7 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     let longer = place.run("compare golden small.toml").good();
     assert!(longer.out.contains("the golden ends with frame 3, the scene goes on to frame 6"), "{longer:?}");
     place.write("small.toml", &SMALL.replace("duration = 0.1", "duration = 0.05"));
-    place.run("compare golden small.toml --frames 9").bad(2, &["there is no frame 9, the last one is 3"]);
+    place.run("compare golden small.toml --frames 9").bad(2, &["there is no frame 9; the last one is 3"]);
     place.run("compare golden absent.toml").bad(2, &["absent.toml: there is no such file"]);
     place.run("compare golden small.toml --adapter nonsense").bad(3, &["nonsense"]);
 }

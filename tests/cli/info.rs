@@ -34,6 +34,25 @@ fn the_schema_is_one_document() {
 }
 
 #[test]
+fn the_references_in_docs_are_current() {
+    let place = Place::new();
+    for (options, page) in
+        [("", include_str!("../../docs/scenes.md")), (" --figure", include_str!("../../docs/figures.md"))]
+    {
+        let ran = place.run(&format!("schema --markdown{options}")).good();
+        let name = if options.is_empty() { "scenes" } else { "figures" };
+        assert!(ran.out == page, "run: localshape schema --markdown{options} > docs/{name}.md");
+        for section in page.split("](#").skip(1).map(|link| link.split(')').next().unwrap()) {
+            let anchor = |line: &str| line.replace(['#', ' ', '`', '[', ']', '.'], "");
+            assert!(page.lines().any(|line| line.starts_with("##") && anchor(line) == section), "#{section}");
+        }
+    }
+    let example = include_str!("../../docs/scenes.md").split("```toml").nth(1).unwrap().split("```").next().unwrap();
+    place.write("example.toml", example);
+    assert_eq!(place.run("check example.toml").good().err, "", "no warnings");
+}
+
+#[test]
 fn completions_for_each_shell() {
     let place = Place::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

@@ -220,7 +220,7 @@ fn the_digest_follows_what_is_in_the_file_and_not_its_name() {
 fn files_that_are_no_archives() {
     let whole = with(|_| ());
     wrong(b"", &["`body.npz` is empty; expected a NumPy archive"]);
-    wrong(b"v 0 0 0\nv 1 0 0\n", &["`body.npz` is no NumPy archive (.npz)"]);
+    wrong(b"v 0 0 0\nv 1 0 0\n", &["`body.npz` is not a NumPy archive (.npz)"]);
     wrong(&square()[0].file(), &["`body.npz` is a single array (.npy); expected several"]);
     wrong(&whole[..whole.len() - 30], &["`body.npz` is a damaged NumPy archive, or is cut short"]);
     wrong(&whole[..100], &["is a damaged NumPy archive, or is cut short"]);
@@ -290,13 +290,13 @@ fn heads_of_every_length_and_version() {
             wrong(&file(version, 118, told), &["`body.npz: nodes` has the shape (4, 2), which does not fit"]);
         }
         for (length, told) in [(118, 374), (118, 4097), (4097, 4097)] {
-            wrong(&file(version, length, told), &["`body.npz: nodes` has no whole head"]);
+            wrong(&file(version, length, told), &["`body.npz: nodes` has no complete header"]);
         }
     }
     for version in [2, 3] {
         // Longer than any file, by the third and the fourth byte alone.
         for told in [118 + (1 << 16), 118 + (1 << 24)] {
-            wrong(&file(version, 118, told), &["`body.npz: nodes` has no whole head"]);
+            wrong(&file(version, 118, told), &["`body.npz: nodes` has no complete header"]);
         }
     }
     wrong(&file(4, 118, 118), &["`body.npz: nodes` is written in version 4 of NumPy's format; expected 1, 2 or 3"]);
@@ -320,7 +320,7 @@ fn meshes_get_a_hint_to_what_is_read() {
     }
     wrong(
         b"solid mesh",
-        &["`body.npz` is no NumPy archive (.npz), as numpy.savez writes them write it with numpy.savez"],
+        &["`body.npz` is not a NumPy archive (.npz); expected one written by numpy.savez write it with numpy.savez"],
     );
 }
 
@@ -354,7 +354,7 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
         &row_of_cubes(|_| around),
         &[
             "all 12 elements of `body.npz: elements` list their corners around their sides, as VTK, Gmsh and Abaqus do; \
-           expected bit order: x fastest, then y, then z reorder those of each: [0, 1, 3, 2, 4, 5, 7, 6] of what they are \
+           expected x fastest, then y, then z reorder those of each: [0, 1, 3, 2, 4, 5, 7, 6] of what they are \
            now; or write convex = true in [body]",
         ],
     );
@@ -440,15 +440,15 @@ fn arrays_that_are_none() {
     wrong(
         &with(|arrays| arrays[1].name = "element"),
         &[
-            "`body.npz: element` is no array that a body has did you mean `elements`?",
+            "`body.npz: element` is not an array of a body did you mean `elements`?",
             "`body.npz` has no array `elements`",
         ],
     );
     wrong(
         &with(|arrays| (arrays[0].name, arrays[1].name) = ("points", "cells")),
         &[
-            "`body.npz: points` is no array that a body has did you mean `nodes`?",
-            "`body.npz: cells` is no array that a body has did you mean `elements`?",
+            "`body.npz: points` is not an array of a body did you mean `nodes`?",
+            "`body.npz: cells` is not an array of a body did you mean `elements`?",
             "`body.npz` has no array `nodes`",
             "`body.npz` has no array `elements`",
         ],
@@ -468,13 +468,13 @@ fn arrays_that_are_none() {
     wrong(&with(|arrays| arrays[0].descr = "'>f8'".into()), &["`body.npz: nodes` has big-endian numbers"]);
     wrong(&with(|arrays| arrays[0].descr = "'<c8'".into()), &["has numbers of the type \"<c8\"; expected float64"]);
     wrong(&with(|arrays| arrays[0].descr = "[('x', '<f8')]".into()), &["`body.npz: nodes` has rows of several fields"]);
-    wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` holds Python objects"]);
+    wrong(&with(|arrays| arrays[1].descr = "'|O'".into()), &["`body.npz: elements` contains Python objects"]);
     wrong(
         &with(|arrays| arrays[1].descr = "'<f8'".into()),
         &["`body.npz: elements` is float64; expected integers, as by"],
     );
-    wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no whole head"]);
-    wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no whole head"]);
+    wrong(&with(|arrays| arrays[1].descr = "junk".into()), &["`body.npz: elements` has no complete header"]);
+    wrong(&with(|arrays| arrays[0].shape = "(4, -2)".into()), &["`body.npz: nodes` has no complete header"]);
     wrong(
         &with(|arrays| arrays.push(indices("springs", "(2, 3)", &[0, 1, 2, 1, 2, 3]))),
         &["`body.npz: springs` has the shape (2, 3); expected one row for each spring with 2 nodes"],
@@ -537,7 +537,7 @@ fn numbers_that_cannot_be() {
     wrong(
         &with(|arrays| arrays[1] = indices("elements", "(3, 3)", &[0, 1, -1, 0, -1, 2, -2, 2, 3])),
         &[
-            "`body.npz: elements[1][1]` is -1, and a node follows it; unused places come last",
+            "`body.npz: elements[1][1]` is -1, but a node follows; expected -1 only at the end",
             "`body.npz: elements[2][0]` is -2; expected the number of a node",
         ],
     );
@@ -558,7 +558,7 @@ fn lists_of_a_file_are_checked_like_those_of_a_scene() {
         &elements(&[0, 1, 2, 0, 2, 4]),
         &["`body.npz: elements[1][2]`: there is no node 4; the body has nodes 0 to 3 nodes are counted from 0"],
     );
-    wrong(&elements(&[0, 1, 2, 0, 2, 2]), &["node 2 stands twice in `body.npz: elements[1]`"]);
+    wrong(&elements(&[0, 1, 2, 0, 2, 2]), &["node 2 occurs twice in `body.npz: elements[1]`"]);
     wrong(
         &elements(&[0, 1, 2, 2, 0, 1]),
         &[

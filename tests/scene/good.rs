@@ -66,11 +66,11 @@ fn times_that_are_probably_not_meant_are_told() {
     let told = |line, column, message: &str| vec![(line, column, message.to_owned())];
     assert_eq!(
         warnings("duration = 2\nframes_per_second = 1e-300"),
-        told(7, 21, "at 1e-300 frames per second, 2 s have a single frame, the start")
+        told(7, 21, "at 1e-300 frames per second, 2 s have only one frame, the start")
     );
     assert_eq!(
         warnings("duration = 0.005"),
-        told(5, 1, "at 60 frames per second, 0.005 s have a single frame, the start")
+        told(5, 1, "at 60 frames per second, 0.005 s have only one frame, the start")
     );
     assert_eq!(
         warnings("duration = 1e9\nstep = 0.01\nframes_per_second = 1e-6"),
@@ -83,6 +83,25 @@ fn times_that_are_probably_not_meant_are_told() {
     for time in ["duration = 0", "duration = 100", "duration = 1e4\nstep = 0.01", "duration = 1\nframes_per_second = 1"]
     {
         assert_eq!(warnings(time), [], "{time}");
+    }
+}
+
+/// Text is drawn from left to right, one glyph for each character.
+#[test]
+fn scripts_that_need_shaping_are_warned_of() {
+    let warnings = |name: &str| {
+        let text = "time.duration = 1\nbody.lattice = { cells = [1, 1, 1], side = 0.1 }\n[[run]]\n\
+                    model = { kind = 'shape-based', stiffness = 1e4 }\n";
+        good(&format!("{text}name = '{name}'")).warnings
+    };
+    for (name, wrong) in [("سرد", 'س'), ("שלום", 'ש'), ("नमस्ते", 'न'), ("e\u{301}", '\u{301}')]
+    {
+        let [told] = &warnings(name)[..] else { panic!("one warning of {name}") };
+        assert_eq!((told.line, told.column), (5, 8));
+        assert!(told.message.starts_with(&format!("`run[0].name` has {wrong:?}")), "{}", told.message);
+    }
+    for name in ["Élan ½", "Ζέφυρος", "Привет", "彈性體", "ゴム", "고무", "− × °"] {
+        assert_eq!(warnings(name), [], "{name}");
     }
 }
 

@@ -91,7 +91,7 @@ fn motions_that_a_step_cannot_follow() {
         &[(
             5,
             20,
-            "it would swing once in 0.001 s, but a time step takes 1.257e-3 s take a period of at least 4 steps",
+            "it would oscillate once in 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps",
         )],
     );
     case(
@@ -133,7 +133,7 @@ fn motions_that_the_longest_of_several_steps_cannot_follow() {
         case(&world, &path, &[(5, 37, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
         case(&world, hold, &[(4, 9, "lasts 5.000e-3 s, but a time step takes 1.000e-2 s")]);
         case(&world, grab, &[(3, 39, "is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s")]);
-        case(&world, &swing, &[(5, 20, "it would swing once in 0.03 s, but a time step takes 1.000e-2 s")]);
+        case(&world, &swing, &[(5, 20, "it would oscillate once in 0.03 s, but a time step takes 1.000e-2 s")]);
     }
     let short = world(["1e-3", "2e-3"]);
     [path.as_str(), hold, grab, &swing].iter().for_each(|added| drop(good(&format!("{short}{added}"))));
@@ -241,11 +241,11 @@ fn nodes_in_two_hands_at_once() {
         &[(
             4,
             9,
-            "node 2 is held by `hold[0]` and grabbed by `grab[0]` at once, from 0.2 s until 0.5 s leave each node",
+            "node 2 is held by `hold[0]` and grabbed by `grab[0]` at once, from 0.2 s until 0.5 s assign each node",
         )],
     );
     let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";
-    case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s for good")]);
+    case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s on")]);
     // One after the other is well.
     let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
     assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
@@ -254,7 +254,7 @@ fn nodes_in_two_hands_at_once() {
 #[test]
 fn nodes_that_are_none() {
     case(WORLD, "[[hold]]\nnodes = [1, 12]", &[(2, 13, "there is no node 12; the body has nodes 0 to 11")]);
-    case(WORLD, "[[hold]]\nnodes = [1, 1]", &[(2, 13, "node 1 stands twice in `hold[0].nodes`")]);
+    case(WORLD, "[[hold]]\nnodes = [1, 1]", &[(2, 13, "node 1 occurs twice in `hold[0].nodes`")]);
     case(WORLD, "[[hold]]\nnodes = []", &[(2, 9, "is empty")]);
     case(WORLD, "[[hold]]\nnodes = 'all'", &[(2, 9, "is the string \"all\"; expected an array or a table")]);
     case(
@@ -283,7 +283,7 @@ fn nodes_that_are_none() {
     case(
         WORLD,
         "[[grab]]\nnodes = [1]\npath = { repeat = true, keys = [{ time = 1 }, { time = 2 }] }",
-        &[(3, 10, "repeats, so the nodes would never be let go")],
+        &[(3, 10, "repeats, so the nodes would never be released")],
     );
     case(WORLD, "[[grab]]\nnodes = [1]", &[(1, 1, "`grab[0]` has no `path`")]);
 }
@@ -397,7 +397,7 @@ fn a_summary_tells_of_obstacles_and_grips() {
     for line in [
         "obstacle  sphere at (1, 1, 1) m, radius 0.1 m, e = 0, μ = 0, swinging once in 2 s",
         "obstacle  floor at 0 m along (0, 1, 0), e = 0, μ = 0",
-        "grip      node 0 held from 0 s for good",
+        "grip      node 0 held from 0 s on",
         "grip      2 nodes dragged from 0.5 s until 0.7 s",
     ] {
         assert!(text.contains(line), "{line}\n{text}");

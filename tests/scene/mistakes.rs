@@ -123,7 +123,7 @@ fn missing_keys() {
         )],
     );
     case(PLANE, "kind = 'mass-spring', ", "", &[(15, 9, "has no `kind`; expected \"shape-based\" or \"mass-spring\"")]);
-    case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edge (m)")]);
+    case(SPACE, ", side = 0.1", "", &[(5, 11, "`body.lattice` has no `side` `side`: Length of a cell's edges (m)")]);
     case(
         SPACE,
         "lattice = { cells = [1, 1, 1], side = 0.1 }",
@@ -258,7 +258,7 @@ fn wrong_lengths_and_texts() {
     case(PLANE, "[[0, 1, 2], [0, 2, 3]]", "[]", &[(7, 12, "`body.elements` is empty; expected at least 1")]);
     case(PLANE, "[[0, 1]]", "[[0, 1, 2]]", &[(8, 12, "`body.springs[0]` has 3 entries; expected 2")]);
     case(PLANE, "'Local shape'", "''", &[(11, 8, "`run[0].name` is empty; expected 1 to 80")]);
-    case(PLANE, "'Local shape'", "\"a\\tb\"", &[(11, 8, "holds the control character '\\t'")]);
+    case(PLANE, "'Local shape'", "\"a\\tb\"", &[(11, 8, "contains the control character '\\t'")]);
     case(
         PLANE,
         "'T/50'",
@@ -305,7 +305,7 @@ fn keys_that_exclude_or_need_each_other() {
 #[test]
 fn elements_that_are_none() {
     case(PLANE, "[0, 2, 3]", "[0, 2, 4]", &[(7, 31, "there is no node 4; the body has nodes 0 to 3")]);
-    case(PLANE, "[0, 2, 3]", "[0, 2, 2, 3]", &[(7, 31, "node 2 stands twice in `body.elements[1]`")]);
+    case(PLANE, "[0, 2, 3]", "[0, 2, 2, 3]", &[(7, 31, "node 2 occurs twice in `body.elements[1]`")]);
     case(
         PLANE,
         "[0, 2, 3]",
@@ -340,7 +340,7 @@ fn elements_that_are_none() {
         "[[0, 1], [1, 0], [2, 2], [3, 9]]",
         &[
             (8, 20, "`body.springs[1]` has the same nodes as `body.springs[0]`"),
-            (8, 32, "node 2 stands twice in `body.springs[2]`"),
+            (8, 32, "node 2 occurs twice in `body.springs[2]`"),
             (8, 40, "there is no node 9"),
         ],
     );
@@ -364,12 +364,12 @@ fn solids_turned_inside_out_or_flat() {
     // The order of many mesh formats, around each square.
     case(
         "[[0, 1, 3, 2, 4, 5, 7, 6]]",
-        "`body.elements[0]` lists its corners around its sides; expected bit order: x fastest, then y, then z \
+        "`body.elements[0]` lists its corners around its sides; expected x fastest, then y, then z \
          write [0, 1, 2, 3, 4, 5, 6, 7]",
     );
     case(
         "[[0, 1, 2, 3, 4, 6, 5, 7]]",
-        "has no volume: its nodes are in a plane, or not in their order list the corners in bit order",
+        "has no volume: its nodes are in a plane, or not in their order list the corners with x fastest",
     );
     case("[[0, 2, 1, 4]]", "turned inside out at rest write [0, 1, 2, 4]");
     case("[[0, 1, 2, 3]]", "has no volume");
@@ -606,12 +606,12 @@ fn bodies_that_no_rule_makes() {
         &[(
             5,
             55,
-            "`body.lattice.elements` is \"triangles\", but the block is in space: it has 3 `cells` take \"tetrahedra\"",
+            "`body.lattice.elements` is \"triangles\", but the lattice is in space: it has 3 `cells` use \"tetrahedra\"",
         )],
     );
     plane(
         "lattice = { cells = [1, 1], side = 0.1, elements = 'tetrahedra' }",
-        &[(5, 52, "is \"tetrahedra\", but the block is in the plane: it has 2 `cells` take \"triangles\"")],
+        &[(5, 52, "is \"tetrahedra\", but the lattice is in the plane: it has 2 `cells` use \"triangles\"")],
     );
     body(
         "lattice = { cells = [1, 1, 1], side = 0.1, elements = 'tetraeder' }",
@@ -685,18 +685,18 @@ fn mistakes_of_what_is_shown() {
     view("colour = { range = [0, 1] }", &[(20, 10, "`view.colour` has no `by`")]);
     view("colour = { by = 'speed', range = [3, 1] }", &[(20, 34, "runs from 3 to 1; expected a rising range")]);
     view("colour = { by = 'speed', range = [0, inf] }", &[(20, 38, "is inf; expected a finite number")]);
-    view("title = \"a\\nb\"", &[(20, 9, "holds the control character")]);
-    view("caption = \"a\\tb\"", &[(20, 11, "holds the control character '\\t'; it is lines of text")]);
+    view("title = \"a\\nb\"", &[(20, 9, "contains the control character")]);
+    view("caption = \"a\\tb\"", &[(20, 11, "contains the control character '\\t'; it is lines of text")]);
     view("strip = 'turned over'", &[(20, 9, "did you mean \"turned_over\"?")]);
     view("opacity = 0", &[(20, 11, "expected a number from 0.1 to 1")]);
     view("explode = -1", &[(20, 11, "expected a number from 0 to 3")]);
     view(
         "explode = 1\nshow = ['surfaces', 'springs']",
-        &[(20, 1, "`view.explode` draws elements apart, where springs have no place")],
+        &[(20, 1, "`view.explode` draws elements apart, so springs cannot be shown")],
     );
     view(
         "explode = 1\nshow = ['surfaces', 'displacements']",
-        &[(20, 1, "`view.explode` draws elements apart, where displacements have no place")],
+        &[(20, 1, "`view.explode` draws elements apart, so displacements cannot be shown")],
     );
     view("spring_colour = {}", &[(20, 1, "`view.spring_colour` is given, but springs are not shown")]);
     view(
@@ -705,7 +705,7 @@ fn mistakes_of_what_is_shown() {
     );
     view("labels = ['title']", &[(20, 11, "expected \"name\", \"model\", \"clock\", \"count\" or \"number\"")]);
     view("light = { elevation = 0 }", &[(20, 23, "expected a number from 0.2 to 1.57")]);
-    view("colours = { floor = '#333' }", &[(20, 21, "words on `view.colours.floor` would have a contrast of")]);
+    view("colours = { floor = '#333' }", &[(20, 21, "text on `view.colours.floor` would have a contrast of")]);
     view("floor = 'tiles'", &[(20, 9, "expected \"grid\", \"plain\" or \"none\"")]);
     view("edges = 'none'", &[(20, 9, "expected \"all\", \"visible\" or \"outline\"")]);
     view("show = []", &[(20, 8, "`view.show` is empty; expected at least 1")]);
@@ -725,5 +725,5 @@ fn cameras_that_see_nothing() {
         &[(10, 10, "inside the body at its start move it out with a larger `view.camera.distance`")],
     );
     camera("elevation = 1.5708", &[(10, 24, "is 1.5708; expected a number between -1.57 and 1.57")]);
-    camera("elevation = -1.6", &[(10, 24, "or the camera would look along its up-axis")]);
+    camera("elevation = -1.6", &[(10, 24, "does not look along its up-axis")]);
 }

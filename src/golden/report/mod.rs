@@ -1,7 +1,7 @@
-//! A comparison as a page: one HTML file that needs nothing else and works offline.
+//! A comparison as one HTML file, which works offline.
 //!
-//! The page is made of `page.html`, `page.css` and `page.js`. What it shows stands in it as JSON, the pictures too; what
-//! is said of the whole is written into the page itself, so that it can be read without scripts.
+//! The page is made from `page.html`, `page.css` and `page.js`. Its data and pictures are embedded as JSON; the overall
+//! verdict is plain HTML, so that it can be read without scripts.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -115,9 +115,9 @@ fn address<S: Serializer>(file: &Option<Vec<u8>>, serializer: S) -> Result<S::Ok
 impl Report {
     /// The whole HTML document.
     pub fn page(&self) -> String {
-        // Browsers hash what is between the tags with plain line ends.
+        // Browsers hash the text between the tags with LF line ends.
         let [style, script] = [STYLE, SCRIPT].map(|text| text.replace("\r\n", "\n"));
-        // Nothing runs and nothing is loaded but what is written here, whatever the names of files and runs say.
+        // Only these scripts and styles are executed, whatever the names of files and runs contain.
         let policy = format!(
             "default-src 'none'; img-src data:; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
             hash(&style),
@@ -197,7 +197,7 @@ fn difference_key() -> String {
         (FAINT, "by 2 of 255 or less"),
     ];
     let swatch = |([red, green, blue], words): ([u8; 3], &str)| {
-        // A style of its own would be refused by the policy.
+        // The policy does not allow inline styles.
         format!(
             "<span><svg class=\"square\" aria-hidden=\"true\"><rect width=\"100%\" height=\"100%\" \
              fill=\"rgb({red} {green} {blue})\" /></svg> {words}</span>\n"
@@ -206,7 +206,7 @@ fn difference_key() -> String {
     all.map(swatch).concat()
 }
 
-/// A template with its `{{names}}` replaced. What is put in is not looked at again, so nothing in it is taken for a name.
+/// A template with its `{{names}}` replaced. Inserted text is not searched for names.
 fn filled(template: &str, parts: &[(&str, &str)]) -> String {
     let mut page = String::with_capacity(template.len() + parts.iter().map(|(_, part)| part.len()).sum::<usize>());
     let mut left = template;
@@ -221,7 +221,7 @@ fn filled(template: &str, parts: &[(&str, &str)]) -> String {
     page + left
 }
 
-/// Text that stands for itself in HTML, between tags and in attributes.
+/// Text escaped for HTML, between tags and in attributes.
 fn escaped(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -237,7 +237,7 @@ fn escaped(text: &str) -> String {
     html
 }
 
-/// JSON that holds nothing by which it could end the element around it. The letters replaced occur in strings only.
+/// JSON escaped so that it cannot end the element around it. The escaped characters occur in strings only.
 fn inert(json: &str) -> String {
     let mut inert = String::with_capacity(json.len() + json.len() / 64);
     let mut left = json;
@@ -250,7 +250,7 @@ fn inert(json: &str) -> String {
     inert + left
 }
 
-/// What a content security policy calls an inline style or script.
+/// The hash of an inline style or script for a content security policy.
 fn hash(text: &str) -> String {
     format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(text.as_bytes())))
 }

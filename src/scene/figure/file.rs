@@ -6,7 +6,7 @@ use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A figure: scenes put together on one sheet, as contact sheet or as diagram of forces.
+/// A figure: scenes on one sheet, as a contact sheet or as a diagram of forces.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FigureFile {
@@ -22,13 +22,14 @@ pub(super) struct FigureFile {
     pub(super) size: [u32; 2],
     /// The colours. Default: those of the first scene.
     pub(super) theme: Option<Theme>,
-    /// How many times larger than usual all type is, with the rows it stands in. What has no room, or would be too small to
-    /// be read, is left out. Default: that of the first scene.
+    /// Scale of all text. Text for which there is no room, or that would be too small to read, is left out. Default: that of
+    /// the first scene.
     #[schemars(range(min = 0.5, max = 3.0))]
     pub(super) text_scale: Option<f64>,
-    /// A contact sheet: runs of scenes at chosen moments. Either this or `forces`.
+    /// A contact sheet: runs of scenes as rows, moments as columns. Either this or `forces`.
     pub(super) sheet: Option<SheetFile>,
-    /// A diagram of the forces at the start of scenes. Either this or `sheet`.
+    /// A diagram of the forces that each run's model exerts on the nodes at the start of scenes. Scenes with several runs are
+    /// rows, with one column for each run; scenes with one run stand side by side. Either this or `sheet`.
     pub(super) forces: Option<ForcesFile>,
 }
 
@@ -40,12 +41,12 @@ fn size() -> [u32; 2] {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetFile {
-    /// The scene, beside the figure's file, of all columns that name none.
+    /// The scene file of all columns that name none, relative to the figure file.
     pub(super) scene: Option<String>,
-    /// The moments shown (s), a column for each, instead of `column`.
+    /// The moments shown (s), one column for each, such as `[0.0, 0.5]`, instead of `column`.
     #[schemars(length(min = 1, max = 40), inner(range(min = 0.0)))]
     pub(super) moments: Option<Vec<f64>>,
-    /// The columns, if they are more than moments of one scene.
+    /// The columns, instead of `moments`: for different scenes or labels.
     #[serde(default)]
     #[schemars(length(max = 40))]
     pub(super) column: Vec<ColumnFile>,
@@ -53,17 +54,17 @@ pub(super) struct SheetFile {
     #[serde(default)]
     #[schemars(length(max = 20))]
     pub(super) row: Vec<RowFile>,
-    /// Diagnostics over time below the pictures, with marks at the moments shown; all columns are then of one scene.
-    /// Default: none.
+    /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`. All
+    /// columns must then show one scene. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
     pub(super) strips: Vec<Diagnostic>,
-    /// A diagnostic written below each picture. Default: none.
+    /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
-    /// Where the axis of time begins (s), not after any moment shown. Default: 0.
+    /// Start of the time axis (s), not after any moment shown. Default: 0.
     #[schemars(range(min = 0.0))]
     pub(super) from: Option<f64>,
-    /// Where the axis of time changes its scale (s): what comes before takes most of the width. Default: nowhere.
+    /// Time at which the time axis changes its scale (s): what comes before takes most of the width. Default: nowhere.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) split: Option<f64>,
 }
@@ -72,12 +73,12 @@ pub(super) struct SheetFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ColumnFile {
-    /// The scene, beside the figure's file. Default: that of the sheet.
+    /// The scene file, relative to the figure file. Default: that of the sheet.
     pub(super) scene: Option<String>,
     /// The moment shown (s). Default: that of the row.
     #[schemars(range(min = 0.0))]
     pub(super) time: Option<f64>,
-    /// What stands above it. Default: the moment.
+    /// The label above it. Default: the moment.
     #[schemars(length(max = 80))]
     pub(super) label: Option<String>,
 }
@@ -91,7 +92,7 @@ pub(super) struct RowFile {
     /// The moment shown (s). Default: that of the column.
     #[schemars(range(min = 0.0))]
     pub(super) time: Option<f64>,
-    /// What stands beside it. Default: the name of the run.
+    /// The label beside it. Default: the name of the run.
     #[schemars(length(max = 80))]
     pub(super) label: Option<String>,
     /// A second line beside it. Default: none.
@@ -99,36 +100,35 @@ pub(super) struct RowFile {
     pub(super) note: Option<String>,
 }
 
-/// A diagram of forces: at the start of each scene, what each run's model does to the nodes. Scenes of several runs are
-/// rows, with a column for each run; scenes of one run stand beside each other.
+/// A diagram of forces.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ForcesFile {
-    /// The scenes, beside the figure's file. All have runs of the same names.
+    /// The scene files, relative to the figure file. All have runs of the same names.
     #[schemars(length(min = 1, max = 12))]
     pub(super) scenes: Vec<String>,
     /// A line below the name of each run. Default: none.
     #[serde(default)]
     #[schemars(length(max = 12))]
     pub(super) notes: Vec<String>,
-    /// The run whose forces are outlined beside those of all others, with the angles between them. Default: none.
+    /// A run whose forces are outlined beside those of all others, with the angles between them. Default: none.
     pub(super) compare: Option<String>,
-    /// What the vectors of the paper's section 3 are is shown, too: `r` from the centre `c` to a node, `R` to its place
-    /// in the equilibrium shape.
+    /// Whether the vectors of the paper's section 3 are drawn: `r` from the centre `c` to a node, `R` to its place in the
+    /// equilibrium shape.
     #[serde(default)]
     pub(super) vectors: bool,
-    /// The numbers: `force` at each arrow, `none`.
+    /// The numbers at the arrows.
     #[serde(default)]
     pub(super) numbers: NumbersFile,
 }
 
-/// What is written at arrows.
+/// The numbers at arrows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum NumbersFile {
-    /// The size of each force, in stiffness times side.
+    /// The magnitude of each force, in units of stiffness times side.
     #[default]
     Force,
-    /// Nothing.
+    /// No numbers.
     None,
 }

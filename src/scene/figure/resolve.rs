@@ -1,4 +1,4 @@
-//! What a figure means: its scenes are read, and each run and moment that it names is found in them.
+//! Resolves a figure: reads its scenes, and finds the runs and moments that it names.
 
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
 use super::{Column, Content, Figure, Forces, Row, Sheet, look};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Reads a scene from a path.
 type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
 
-/// The figure that a checked file means.
+/// The figure of a checked file.
 pub(super) fn resolve(
     checked: Checked,
     name: &str,
@@ -65,7 +65,7 @@ struct Scenes<'a, 'r, 't> {
 }
 
 impl Scenes<'_, '_, '_> {
-    /// The place of a scene named at `path` in the file; `None` if there is none, which is said.
+    /// The index of the scene named at `path` in the file; `None` after reporting that there is none.
     fn scene(&mut self, named: &str, path: &[Way<'_>]) -> Result<Option<usize>, SceneError> {
         let file = self.folder.join(named);
         if let Some(&place) = self.places.get(&file) {
@@ -77,7 +77,7 @@ impl Scenes<'_, '_, '_> {
                 self.places.insert(file, self.scenes.len() - 1);
                 Ok(Some(self.scenes.len() - 1))
             }
-            // What is wrong inside a scene is shown with its place there.
+            // Mistakes inside a scene have positions there.
             Err(error @ (SceneError::Mistakes(_) | SceneError::Syntax(_))) => Err(error),
             Err(error) => {
                 self.report.at(path, error.to_string(), None);
@@ -165,7 +165,7 @@ impl Scenes<'_, '_, '_> {
         Ok((report.total() == before).then_some(sheet))
     }
 
-    /// Whether the axis of time holds its own beginning, the change of its scale, and the moments of columns.
+    /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
     fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
         let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {

@@ -5,11 +5,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::mem::swap;
 
-/// The body: a `lattice`, a `polygon`, a `fan`, a `disc` or `bars`, or `nodes` and `elements` listed one by one, here or in
+/// The body: exactly one of `lattice`, `polygon`, `fan`, `disc` or `bars`, or explicit `nodes` and `elements`, here or in
 /// a `file`.
 ///
-/// It starts as given, is turned by `rotation`, moved by `offset`, set down by `lowest` and thrown with `velocity`,
-/// in this order. At rest it is never turned nor moved.
+/// At the start `rotation`, `offset`, `lowest`, `velocity` and `spin` are applied in this order. They do not change the rest
+/// shape.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
@@ -27,25 +27,29 @@ use std::mem::swap;
     }
 ))]
 pub(in crate::scene) struct BodyFile {
-    /// A block of equal cubes, or of equal squares in the plane, whole or cut into other elements. It stands on y = 0, and
-    /// its middle is at x = 0 and z = 0.
+    /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the plane. It
+    /// stands on y = 0, with its middle at x = 0 and z = 0: six cells of 0.1 m along x reach from -0.3 m to 0.3 m. Nodes are
+    /// numbered with x fastest, then y, then z.
     pub(in crate::scene) lattice: Option<Lattice>,
-    /// One regular polygon in the plane as a single element. It stands with a side on y = 0, its middle above the origin.
+    /// One regular polygon in the plane as a single element: `{ sides = 6, radius = 1.0 }`. It stands with a side on y = 0, its
+    /// centre above the origin. Corners are numbered counter-clockwise from the left end of that side.
     pub(in crate::scene) polygon: Option<PolygonFile>,
-    /// A regular polygon in the plane, cut into triangles around a node in its middle. It stands like a `polygon`.
+    /// A regular polygon in the plane, cut into triangles around a node in its centre: `{ sides = 6, radius = 1.0 }`. It stands
+    /// like a `polygon`; the central node comes first.
     pub(in crate::scene) fan: Option<PolygonFile>,
-    /// A disc in the plane: triangles around its middle, and rings of quadrilaterals around them. It stands like a
-    /// `polygon`.
+    /// A disc in the plane: `{ radius = 1.0, rings = 3, sectors = 12 }`. It has triangles around its centre, and rings of
+    /// quadrilaterals around them. It stands like a `polygon` with as many sides as sectors; nodes are numbered from the centre
+    /// outwards, in each ring like those of a polygon.
     pub(in crate::scene) disc: Option<DiscFile>,
-    /// Two-node elements end to end, beginning at the origin.
+    /// A chain of two-node elements that begins at the origin: `{ count = 8, length = 0.1, direction = [1, 0] }`.
     pub(in crate::scene) bars: Option<BarsFile>,
-    /// Rest position of each node (m). Two coordinates make a body in the plane, three one in space.
+    /// Rest position of each node (m). Two coordinates make a body in the plane, three a body in space.
     #[schemars(length(min = 1))]
     pub(in crate::scene) nodes: Option<Vec<Coordinates>>,
-    /// The nodes of each element, two or more, counted from 0. In the plane polygons, counter-clockwise; in space
-    /// tetrahedra and pyramids (the base counter-clockwise seen from the last node), wedges (two triangles, both
-    /// counter-clockwise seen from the second), hexahedra (corners in bit order: x fastest, then y, then z) or, with any
-    /// other number of nodes in any order, whatever their convex hull is; see also `convex`.
+    /// The nodes of each element, two or more, counted from 0. In the plane: polygons, counter-clockwise. In space:
+    /// tetrahedra and pyramids (the base counter-clockwise seen from the last node), wedges (both triangles
+    /// counter-clockwise seen from the second), hexahedra (corners with x fastest, then y, then z) or, with any other number
+    /// of nodes in any order, their convex hull, which has the faces and edges of the element; see also `convex`.
     #[schemars(length(min = 1), inner(length(min = 2)))]
     pub(in crate::scene) elements: Option<Vec<Vec<u32>>>,
     /// Pairs of nodes, for mass-spring models without a named topology.
@@ -56,19 +60,20 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) faces: Option<Vec<Vec<u32>>>,
     /// Initial position of each node (m), before `rotation`, `offset` and `lowest`. Default: the rest positions.
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
-    /// A shape without depth, turned inside out or at random in which the body starts instead of its own. Default: its
-    /// own.
+    /// A degenerate, inverted or random shape in which the body starts, such as `{ shape = "cloud", seed = 1 }`. Default: its
+    /// rest shape.
     pub(in crate::scene) start: Option<Start>,
-    /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not turned by `rotation`.
+    /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not rotated by `rotation`.
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass` for all.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
-    /// A NumPy archive (.npz) beside the scene, with the arrays `nodes` and `elements` and, if wanted, `springs`, `faces`,
-    /// `positions`, `velocities` and `masses`, which mean what these keys do. Coordinates and masses are float64 or
-    /// float32; the indices are whole numbers, with -1 in places that a short element or face does not use.
+    /// A NumPy archive (.npz) beside the scene, as `numpy.savez` and `numpy.savez_compressed` write it. Its arrays `nodes` and
+    /// `elements`, and optionally `springs`, `faces`, `positions`, `velocities` and `masses`, mean the same as these keys.
+    /// Coordinates and masses are float64 or float32; indices are integers, with -1 at the end of rows that are shorter than
+    /// the longest.
     #[schemars(length(min = 1))]
     pub(in crate::scene) file: Option<String>,
-    /// Whether elements in space are the convex hulls of their nodes, listed in any order: octahedra, bipyramids, flat
+    /// Whether all elements in space are the convex hulls of their nodes, listed in any order: octahedra, bipyramids, flat
     /// quadrilaterals of a cloth. Otherwise elements of four, five, six and eight nodes are tetrahedra, pyramids, wedges
     /// and hexahedra.
     #[serde(default)]
@@ -76,15 +81,15 @@ pub(in crate::scene) struct BodyFile {
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
-    /// A turn about the mean of the nodes before the start. Default: none.
+    /// A rotation about the mean of the nodes at the start. Default: none.
     pub(in crate::scene) rotation: Option<Rotation>,
-    /// A shift after the turn (m). Default: none.
+    /// A translation after the rotation (m). Default: none.
     pub(in crate::scene) offset: Option<Coordinates>,
-    /// Height (m) at which the lowest node starts, along y, after turn and shift. Default: wherever those left it.
+    /// Height (m) at which the lowest node starts, along y, after rotation and translation. Default: unchanged.
     pub(in crate::scene) lowest: Option<f64>,
     /// Initial velocity of all nodes (m/s). Default: at rest.
     pub(in crate::scene) velocity: Option<Coordinates>,
-    /// A rigid spin at the start about the mean of the nodes, on top of all other velocities. Default: none.
+    /// A rigid spin at the start about the mean of the nodes, added to all other velocities. Default: none.
     pub(in crate::scene) spin: Option<SpinFile>,
 }
 
@@ -121,17 +126,16 @@ impl BodyFile {
     }
 }
 
-/// A start from which bodies seldom come back, around the middle of the nodes at rest.
+/// A degenerate, inverted or random start, around the mean of the nodes at rest.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
-    /// Whether all nodes are at a `point`, on a `line` or in a `plane`, each as near as can be to where it is at rest; or
-    /// in a `mirror-image`; or at random places in the box around the body, a `cloud`.
+    /// What the body becomes at its start.
     pub(in crate::scene) shape: StartShape,
-    /// Where the line leads, or where plane and mirror face, at any length but zero. Points and clouds have none.
+    /// Direction of the line, or normal of the plane or mirror, of any length but zero. Points and clouds have none.
     /// Default: along x.
     pub(in crate::scene) direction: Option<Coordinates>,
-    /// Chooses among random clouds; nothing else has one. The same seed makes the same cloud everywhere.
+    /// Seed of a random cloud, which is the same on every machine. Other shapes have none.
     #[serde(default = "first", skip_serializing_if = "is_first")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub(in crate::scene) seed: u32,
@@ -141,15 +145,15 @@ pub struct Start {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartShape {
-    /// All nodes at one place.
+    /// All nodes at one point.
     Point,
-    /// All nodes on a straight line.
+    /// All nodes projected to a straight line.
     Line,
-    /// All nodes in a plane.
+    /// All nodes projected to a plane.
     Plane,
-    /// Turned inside out.
+    /// Mirrored, so that all elements are turned inside out.
     MirrorImage,
-    /// Random places.
+    /// Nodes at random points of the box around the body.
     Cloud,
 }
 
@@ -165,12 +169,12 @@ impl StartShape {
         }
     }
 
-    /// Whether it leads or faces anywhere.
+    /// Whether it has a direction.
     pub(in crate::scene) fn has_direction(self) -> bool {
         matches!(self, Self::Line | Self::Plane | Self::MirrorImage)
     }
 
-    /// Whether there are many of it.
+    /// Whether it needs a seed.
     pub(in crate::scene) fn is_random(self) -> bool {
         self == Self::Cloud
     }
@@ -180,32 +184,31 @@ impl StartShape {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SpinFile {
-    /// The axis, of any length but zero, about which the spin is counter-clockwise when it points at the viewer. In
-    /// the plane there is none.
+    /// The axis, of any length but zero; the spin is counter-clockwise when the axis points at the viewer. Not in the plane.
     pub(in crate::scene) axis: Option<Coordinates>,
     /// The angular velocity (rad/s).
     pub(in crate::scene) rate: f64,
 }
 
-/// A block of equal cells. It stands on y = 0, and its middle is at x = 0 and z = 0: six cells of 0.1 m along x reach from
-/// -0.3 m to 0.3 m. Nodes are numbered with x fastest, then y, then z.
+/// A block of equal cells.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lattice {
-    /// How many cells along x, y and z; two numbers make squares in the plane.
+    /// Number of cells along x, y and z; two numbers make squares in the plane.
     #[schemars(length(min = 2, max = 3), inner(range(min = 1, max = 4_000_000_000_u32)))]
     pub(in crate::scene) cells: Vec<u32>,
-    /// Length of a cell's edge (m): one number, or one for each axis.
+    /// Length of a cell's edges (m): one number, or one for each axis, such as `[0.1, 0.2, 0.1]` for bricks.
     pub(in crate::scene) side: SideFile,
-    /// What the cells are: the elements themselves, or cut or joined to others.
+    /// Into which elements the cells are divided.
     #[serde(default)]
     pub(in crate::scene) elements: Cells,
-    /// Nodes are moved at random by up to this part of a cell's shortest side. Those on the outside move only within it
-    /// and the corners not at all, so that the block keeps its shape; less far where an element would come out flat.
+    /// Random displacement of nodes, in parts of a cell's shortest side. Nodes on the surface move only along it and corners
+    /// not at all, so that the block keeps its outer shape. Displacements are reduced where an element would be flattened or
+    /// turned inside out.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 0.4))]
     pub(in crate::scene) irregular: f64,
-    /// Chooses among the random blocks that `irregular` and `mixed` allow. The same seed makes the same block everywhere.
+    /// Seed of `irregular` and `mixed` blocks, which are the same on every machine.
     #[serde(default = "first")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub(in crate::scene) seed: u32,
@@ -223,51 +226,49 @@ fn is_first(seed: &u32) -> bool {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum SideFile {
-    /// All alike (m).
+    /// The same along all axes (m).
     Equal(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// One for each axis (m).
     PerAxis(#[schemars(length(min = 2, max = 3))] Vec<Positive>),
 }
 
-/// What becomes of the cells of a block.
+/// Into which elements the cells of a block are divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Cells {
-    /// Each is an element.
+    /// Each cell is one element.
     #[default]
     Cells,
-    /// In the plane: each is cut in two, with diagonals that alternate.
+    /// In the plane: each cell is cut in two, with alternating diagonals.
     Triangles,
-    /// In space: each is cut in five, and neighbours match.
+    /// In space: each cell is cut in five, and the faces of neighbours match.
     Tetrahedra,
     /// Elements of many kinds in a random order: triangles, quadrilaterals, pentagons and hexagons in the plane;
     /// hexahedra, wedges, pyramids and tetrahedra in space.
     Mixed,
 }
 
-/// A regular polygon. Its lowest side lies on y = 0, its middle is above the origin; its corners are numbered
-/// counter-clockwise from the left end of that side, after the node in the middle if there is one.
+/// A regular polygon.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct PolygonFile {
-    /// How many sides it has.
+    /// Number of sides.
     #[schemars(range(min = 3, max = 4_000_000_000_u32))]
     pub(in crate::scene) sides: u32,
-    /// Distance of its corners from its middle (m).
+    /// Distance of the corners from the centre (m).
     pub(in crate::scene) radius: Positive,
 }
 
-/// A disc. It stands like a polygon of as many sides as it has sectors; its nodes are numbered from the middle outwards,
-/// in each ring like those of a polygon.
+/// A disc.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct DiscFile {
-    /// Distance of the outermost nodes from the middle (m).
+    /// Distance of the outermost nodes from the centre (m).
     pub(in crate::scene) radius: Positive,
-    /// How many rings of elements there are, all of the same width: the inner one triangles, the others quadrilaterals.
+    /// Number of rings of elements of equal width: the inner one has triangles, the others quadrilaterals.
     #[schemars(range(min = 1, max = 4_000_000_000_u32))]
     pub(in crate::scene) rings: u32,
-    /// How many elements there are in each ring.
+    /// Number of elements in each ring.
     #[schemars(range(min = 3, max = 4_000_000_000_u32))]
     pub(in crate::scene) sectors: u32,
 }
@@ -276,21 +277,21 @@ pub(in crate::scene) struct DiscFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct BarsFile {
-    /// How many bars there are.
+    /// Number of bars.
     #[schemars(range(min = 1, max = 4_000_000_000_u32))]
     pub(in crate::scene) count: u32,
     /// Length of one bar (m).
     pub(in crate::scene) length: Positive,
-    /// Where the chain leads, at any length but zero. Two coordinates make it one in the plane, three one in space.
+    /// Direction of the chain, of any length but zero. Two coordinates make a chain in the plane, three one in space.
     pub(in crate::scene) direction: Coordinates,
 }
 
-/// A turn.
+/// A rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
-    /// The axis, of any length but zero, about which the turn is counter-clockwise when it points at the viewer. In
-    /// the plane there is none.
+    /// The axis, of any length but zero; the rotation is counter-clockwise when the axis points at the viewer. Not in the
+    /// plane.
     pub(in crate::scene) axis: Option<Coordinates>,
     /// The angle (rad).
     pub(in crate::scene) angle: f64,

@@ -34,20 +34,20 @@ pub(in crate::scene) struct SceneFile {
     pub(in crate::scene) title: Option<String>,
     /// Acceleration of gravity (m/s²), such as `[0, -9.8, 0]`. Default: none.
     pub(in crate::scene) gravity: Option<Coordinates>,
-    /// How long, in which steps, and how often a frame is shown.
+    /// Duration, time step and frame rate.
     pub(in crate::scene) time: TimeFile,
     /// The body, the same in all runs.
     pub(in crate::scene) body: BodyFile,
-    /// The runs, at least one: each is one panel of the picture.
+    /// The runs, at least one; each has one panel of the picture.
     #[schemars(length(min = 1, max = 256))]
     pub(in crate::scene) run: Vec<RunFile>,
-    /// What the body bounces off, in the order in which they act. Default: nothing.
+    /// The obstacles that nodes of the body collide with, in the order in which they act. Default: none.
     #[serde(default)]
     pub(in crate::scene) obstacle: Vec<ObstacleFile>,
-    /// Nodes that are held where they are. Default: none.
+    /// Nodes that are held in place. Default: none.
     #[serde(default)]
     pub(in crate::scene) hold: Vec<HoldFile>,
-    /// Nodes that are grabbed, dragged along a path and let go. Default: none.
+    /// Nodes that are grabbed, dragged along a path and released. Default: none.
     #[serde(default)]
     pub(in crate::scene) grab: Vec<GrabFile>,
     /// How the scene is drawn.
@@ -60,22 +60,22 @@ pub(in crate::scene) struct SceneFile {
 #[serde(transparent)]
 pub(in crate::scene) struct Positive(#[schemars(extend("exclusiveMinimum" = 0))] pub(in crate::scene) f64);
 
-/// How long a scene lasts and how its time is cut up.
+/// Duration, time step and frame rate of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct TimeFile {
-    /// Simulated time (s); 0 shows the start alone.
+    /// Simulated time (s); 0 shows only the start.
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
-    /// Time step ΔT: seconds, or a fraction of the cycle T such as `"T/50"` or `"0.02 T"`. T = 2π√(m/k), with the
-    /// smallest mass of a node and the largest stiffness of all runs, so that one step serves every run.
+    /// Time step ΔT: seconds, or a fraction of the cycle T such as `"T/50"` or `"0.02 T"`. T = 2π√(m/k), with the mass of
+    /// the lightest node and the largest stiffness of all runs, so that one step suits every run.
     #[serde(default)]
     pub(in crate::scene) step: StepFile,
     /// Frames per second of simulated time (1/s).
     #[serde(default = "sixty")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) frames_per_second: f64,
-    /// How positions and velocities move from one step to the next.
+    /// The integrator, which advances positions and velocities by one step.
     #[serde(default)]
     pub(in crate::scene) integrator: Integrator,
 }
@@ -88,7 +88,7 @@ fn sixty() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum StepFile {
-    /// A number of seconds.
+    /// Seconds.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// A fraction of the cycle T.
     Cycles(#[schemars(extend("format" = "fraction-of-T"))] FractionOfCycle),
@@ -104,22 +104,21 @@ impl Default for StepFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct RunFile {
-    /// Its name, shown over its panel and used by `--only` and in result files: different from all others.
+    /// Unique name, shown above its panel and used by `--only` and in result files.
     #[schemars(length(min = 1, max = 80))]
     pub(in crate::scene) name: String,
     /// The elastic model and its parameters.
     pub(in crate::scene) model: ModelParameters,
-    /// Time step of this run alone, written like that of `[time]` and with the same T. Default: that of `[time]`.
+    /// Time step of this run, with the same T as in `[time]`. Default: that of `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
-    /// Integrator of this run alone. Default: that of `[time]`.
+    /// Integrator of this run. Default: that of `[time]`.
     pub(in crate::scene) integrator: Option<Integrator>,
-    /// How a step is computed. Default: `fast`. The choice moves states by round-off in each step, which chaotic motion
-    /// enlarges.
+    /// How a step is computed. Default: `fast`. The two differ by round-off in each step, which chaotic motion amplifies.
     pub(in crate::scene) kernel: Option<Kernel>,
-    /// The colour of its curves and arrows, and of the line beside its name: digits such as `"#0072b2"`, or a name of CSS
-    /// such as `"teal"`. With the background it has a contrast of at least 3, and it is at least 20 (CIEDE2000) from
-    /// turned-over elements, also to colour-blind eyes. Default: one for each of the first eight runs, other than
-    /// those chosen for other runs. Dashes differ in any case, so several runs may have one colour.
+    /// The colour of its curves and arrows, and of the line beside its name: hexadecimal such as `"#0072b2"`, or a CSS name
+    /// such as `"teal"`. Its contrast with the background must be at least 3, and its difference from turned-over elements
+    /// at least 20 (CIEDE2000), also with colour blindness. Default: a different colour for each of the first eight runs,
+    /// which also differs from colours chosen for other runs. Dashes always differ, so several runs may share a colour.
     pub(in crate::scene) colour: Option<TypedColour>,
     /// A model of the caller's own, which takes the place of `model` in scenes made in code.
     #[serde(skip)]

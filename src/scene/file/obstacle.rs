@@ -4,19 +4,19 @@ use super::{Coordinates, MotionPath, Rotation, Swing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Something rigid that nodes bounce off. It stays where it is unless a `path` or a `swing` moves it.
+/// A rigid obstacle that nodes collide with. It is fixed unless a `path` or a `swing` moves it.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub(in crate::scene) enum ObstacleFile {
-    /// A plane with everything behind it filled, drawn as ground.
+    /// A half-space, drawn as ground. It rotates about its point nearest to the origin.
     Floor(FloorFile),
-    /// A half-space like a floor, drawn as a plate: something flat that presses.
+    /// A half-space, drawn as a plate around its `point`, about which it rotates.
     Plate(PlateFile),
-    /// A ball; in the plane a disc.
+    /// A ball; in the plane a disc. It rotates about its centre.
     Sphere(SphereFile),
-    /// A rod with round ends.
+    /// A rod with round ends: all points near a line segment. It rotates about its centre.
     Capsule(CapsuleFile),
-    /// A cuboid; in the plane a rectangle.
+    /// A cuboid; in the plane a rectangle. It rotates about its centre.
     Box(BoxFile),
 }
 
@@ -50,20 +50,20 @@ macro_rules! kinds {
             #[schemars(extend("not" = { "required": ["path", "swing"] }))]
             pub(in crate::scene) struct $table {
                 $($(#[$key_doc])* pub(in crate::scene) $key: $type,)*
-                /// Restitution coefficient e: the part of the normal velocity that a rebound gives back.
+                /// Coefficient of restitution e: the part of the normal velocity that is kept in a rebound.
                 #[serde(default)]
                 #[schemars(range(min = 0.0, max = 1.0))]
                 restitution: f64,
-                /// Friction coefficient μ.
+                /// Coefficient of friction μ.
                 #[serde(default)]
                 #[schemars(range(min = 0.0))]
                 friction: f64,
-                /// The point about which the turns of `path` or `swing` go (m): a sphere swings like a pendulum about a
-                /// point above it. Default: as said for this kind.
+                /// The point about which `path` and `swing` rotate (m): a sphere swings like a pendulum about a point above
+                /// it. Default: as said for this kind.
                 about: Option<Coordinates>,
-                /// A path along which it moves. Not together with `swing`.
+                /// A path of keyframes along which it moves. Not together with `swing`.
                 path: Option<MotionPath>,
-                /// A periodic motion to and fro. Not together with `path`.
+                /// An oscillation, such as `{ period = 1.2, shift = [0.1, 0, 0] }`. Not together with `path`.
                 swing: Option<Swing>,
             }
 
@@ -103,47 +103,47 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// A plane with everything behind it filled, drawn as ground. It turns about its point nearest to the origin.
+    /// A half-space, drawn as ground. It rotates about its point nearest to the origin.
     FloorFile as Floor {
-        /// Direction out of the floor, of any length but zero. Default: up, along y.
+        /// Outward normal, of any length but zero. Default: up, along y.
         normal: Option<Coordinates>,
         /// Distance of the surface from the origin along `normal` (m).
         #[serde(default)]
         height: f64,
     }
-    /// A half-space, drawn as a plate around its point. It turns about that point.
+    /// A half-space, drawn as a plate around its point. It rotates about that point.
     PlateFile as Plate {
-        /// A point of its surface (m).
+        /// A point of the surface (m).
         point: Coordinates,
-        /// Direction out of the surface, towards what is pressed, of any length but zero.
+        /// Outward normal, towards the body, of any length but zero.
         normal: Coordinates,
     }
-    /// A ball, in the plane a disc. It turns about its middle.
+    /// A ball, in the plane a disc. It rotates about its centre.
     SphereFile as Sphere {
-        /// Its middle (m).
+        /// Centre (m).
         centre: Coordinates,
-        /// Its radius (m).
+        /// Radius (m).
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: f64,
     }
-    /// All points near a line: a rod with round ends. It turns about its middle.
+    /// All points near a line: a rod with round ends. It rotates about its centre.
     CapsuleFile as Capsule {
-        /// The middle of one round end (m).
+        /// Centre of one round end (m).
         from: Coordinates,
-        /// The middle of the other (m).
+        /// Centre of the other (m).
         to: Coordinates,
-        /// The radius of rod and ends (m).
+        /// Radius of rod and ends (m).
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: f64,
     }
-    /// A cuboid, in the plane a rectangle. It turns about its middle.
+    /// A cuboid, in the plane a rectangle. It rotates about its centre.
     BoxFile as Box {
-        /// Its middle (m).
+        /// Centre (m).
         centre: Coordinates,
-        /// Its sides (m), each greater than zero.
+        /// Lengths of its sides (m), each greater than zero.
         #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
         size: Coordinates,
-        /// How its sides are turned. Default: along the axes.
+        /// Orientation of its sides. Default: along the axes.
         rotation: Option<Rotation>,
     }
 }

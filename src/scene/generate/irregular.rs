@@ -1,14 +1,14 @@
-//! Blocks whose nodes are moved at random, and yet no element is turned inside out.
+//! Lattices with randomly displaced nodes, without inverted elements.
 
 use super::lattice::Grid;
 use super::random;
 use crate::sim::body::IndexLists;
 use glam::DVec3;
 
-/// An element is as good as flat when any of its corners has less than this part of its regular volume (area).
+/// An element counts as flat if one of its corners has less than this part of its regular volume (area).
 const LEAST: f64 = 0.1;
 
-/// Appends the middles of cells to the nodes at their corners.
+/// Appends the centres of cells to the nodes at their corners.
 pub(super) fn extend_to_middles(nodes: &mut Vec<DVec3>, middles: &[[u32; 8]]) {
     for cell in middles {
         nodes.push(middle(nodes, cell));
@@ -19,11 +19,11 @@ fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
     cell.iter().map(|&node| nodes[node as usize]).sum::<DVec3>() / 8.0
 }
 
-/// Moves the nodes of a block at random, each by up to `part` of a cell's shortest side. Those on the outside move only
-/// within it, and the middles of cells stay there.
+/// Moves the nodes of a lattice at random, each by up to `part` of a cell's shortest side. Nodes on the surface move only
+/// along it, and the centres of cells stay in place.
 ///
-/// Where an element comes out flat or inside out, all its nodes move half as far, until none does: in the regular block,
-/// to which this leads, none is.
+/// If an element becomes flat or inverted, the displacements of its nodes are halved, until there is none. This ends, since
+/// the regular lattice has none.
 pub(super) fn disturb(
     grid: &Grid,
     nodes: &mut [DVec3],
@@ -52,7 +52,7 @@ pub(super) fn disturb(
             }
         }
         let bad = || is_bad.iter().enumerate().filter(|&(_, &bad)| bad).map(|(node, _)| node);
-        // What has no shift left is regular; only numbers beyond double precision can seem spoilt then.
+        // Without displacements the lattice is regular; only coordinates beyond double precision can still fail the test.
         if bad().all(|node| shifts[node] == DVec3::ZERO) {
             return;
         }
@@ -64,7 +64,7 @@ pub(super) fn disturb(
 fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
     let axes = if grid.is_flat() { 2 } else { 3 };
     let shortest = grid.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
-    // The diagonal of the box in which a node moves is not longer than what was asked for.
+    // The diagonal of the box in which a node moves is as long as the displacement asked for.
     let farthest = part * shortest / (axes as f64).sqrt();
     let [nx, ny, nz] = grid.cells;
     let mut shifts = Vec::with_capacity(grid.len() as usize);
@@ -90,7 +90,7 @@ fn is_spoilt(element: &[u32], regular: &[DVec3], now: &[DVec3], is_flat: bool) -
         };
         spanned(now) / spanned(regular) < LEAST
     };
-    // The first of each is the corner, and its neighbours follow in any order: only ratios count.
+    // Each corner with its neighbours in any order: only ratios matter.
     match (is_flat, element.len()) {
         (true, 3) => is_lost([0, 1, 2, 0]),
         (true, 4) => (0..4).any(|at| is_lost([at, (at + 1) % 4, (at + 3) % 4, at])),

@@ -1,4 +1,4 @@
-//! Blocks of cells, whole or cut into triangles, tetrahedra or whatever fits.
+//! Lattices of cells, whole or cut into triangles, tetrahedra or mixed elements.
 
 use super::{Made, irregular, mixed};
 use crate::scene::file::{Cells, Lattice, SideFile};
@@ -42,7 +42,7 @@ impl Grid {
         x + (nx + 1) * (y + (ny + 1) * z)
     }
 
-    /// The nodes of a cell, in bit order in space.
+    /// The nodes of a cell; in space with x fastest, then y, then z.
     pub(super) fn corners(&self, cell: [u32; 3]) -> [u32; 8] {
         let first = self.node(cell);
         let [row, layer] = [self.node([0, 1, 0]), self.node([0, 0, 1])];
@@ -61,7 +61,7 @@ impl Grid {
         (0..nz.max(1)).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
     }
 
-    /// Positions of all nodes: standing on y = 0, the middle over the origin.
+    /// Positions of all nodes: standing on y = 0, centred above the origin.
     fn nodes(&self) -> Vec<DVec3> {
         let [nx, ny, nz] = self.cells;
         let mut nodes = Vec::with_capacity(self.len() as usize);
@@ -106,7 +106,7 @@ pub(super) fn census(typed: &Lattice, most_nodes: u64) -> Census {
     }
 }
 
-/// A block. In the plane its cells are squares or triangles, in space cubes or tetrahedra, whatever the other asks for.
+/// A lattice. In the plane its cells are squares or triangles, in space cubes or tetrahedra.
 pub(super) fn make(typed: &Lattice) -> Made {
     let grid = Grid::new(typed);
     let mut elements = IndexLists::default();

@@ -1,6 +1,6 @@
-//! Bodies made by a rule: blocks of cells, polygons, discs and chains of bars.
+//! Generated bodies: lattices, polygons, discs and chains of bars.
 //!
-//! Each says first how large it will be, then makes itself. What is typed has been checked before.
+//! Sizes are computed first, to be validated before the body is made. The input has been checked before.
 
 mod irregular;
 mod lattice;
@@ -17,7 +17,7 @@ use crate::sim::body::{Dimension, IndexLists};
 use crate::sim::census::Census;
 use glam::DVec3;
 
-/// A body that a scene names by a rule.
+/// A body that is generated.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Generator<'a> {
     /// A block of cells.
@@ -40,7 +40,7 @@ pub(super) struct Made {
 }
 
 impl<'a> Generator<'a> {
-    /// The one that a scene names; the first, should there be several.
+    /// The generator in a scene; the first, if there are several.
     pub(super) fn of(file: &'a BodyFile) -> Option<Self> {
         let lattice = file.lattice.as_ref().map(Self::Lattice);
         let polygon = || file.polygon.as_ref().map(Self::Polygon);
@@ -60,8 +60,8 @@ impl<'a> Generator<'a> {
         if coordinates == 2 { Dimension::Plane } else { Dimension::Space }
     }
 
-    /// How large the body will be. A mixed block is gone through for that, if its corners alone are no more nodes than
-    /// `most_nodes`; else it is said to be as large as such a block can be.
+    /// How large the body will be. Elements of a mixed lattice are counted if its corners alone have no more nodes than
+    /// `most_nodes`; otherwise the largest possible size is returned.
     pub(super) fn census(self, most_nodes: u64) -> Census {
         match self {
             Self::Lattice(typed) => lattice::census(typed, most_nodes),
@@ -83,7 +83,7 @@ impl<'a> Generator<'a> {
         }
     }
 
-    /// The length of all edges (m), where that is what was typed.
+    /// The length of all edges (m), if it was typed.
     pub(super) fn side(self) -> Option<f64> {
         match self {
             Self::Lattice(Lattice { side: SideFile::Equal(side), elements: Cells::Cells, .. }) => Some(*side),

@@ -1,6 +1,6 @@
-//! Numbers that look random and are the same on every machine.
+//! Pseudo-random numbers that are the same on every machine.
 //!
-//! Each follows from what it is for, not from those drawn before: so no order of drawing has to be kept.
+//! Each is a hash of its use, independent of numbers drawn before, so the order of drawing does not matter.
 
 /// A number for an index and a use of it: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over one after the other.
 pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {

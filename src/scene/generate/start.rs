@@ -1,15 +1,15 @@
-//! Starts from which bodies seldom come back.
+//! Degenerate, inverted and random starts.
 
 use super::random;
 use crate::scene::file::StartShape;
 use crate::sim::body::{Dimension, bounds};
 use glam::DVec3;
 
-/// What the random numbers of clouds are for, besides the axis.
+/// The use of random numbers in clouds, to which the axis is added.
 const CLOUD: u64 = 16;
 
-/// Brings nodes (m) from where they are at rest to a start of a shape, with a unit direction for what has one and a seed
-/// for what is random.
+/// Moves nodes (m) from their rest positions to a start of a shape, with a unit direction if it has one and a seed if it is
+/// random.
 pub(in crate::scene) fn brought_to_start(
     nodes: &mut [DVec3],
     shape: StartShape,

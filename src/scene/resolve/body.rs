@@ -1,4 +1,4 @@
-//! The body and how it starts.
+//! The body and its initial state.
 
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
@@ -14,7 +14,7 @@ use crate::sim::state::State;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A body, how it starts, and what else was said of it.
+/// A body, its initial state, and what else the scene says about it.
 #[derive(Debug)]
 pub(super) struct ResolvedBody {
     /// The body.
@@ -29,7 +29,7 @@ pub(super) struct ResolvedBody {
     pub(super) has_cells: bool,
 }
 
-/// Whether a body is meant to be in the plane or in space, from the first coordinates that say so.
+/// Whether a body is in the plane or in space, by the first coordinates given.
 pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimension> {
     if let Some(generator) = Generator::of(file) {
         return Some(generator.dimension());
@@ -39,7 +39,7 @@ pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimen
 }
 
 /// The body, or `None` after reporting every mistake in it. `flawed`: keys with mistakes have been left out. `beside` is
-/// what its file holds.
+/// the content of its file.
 pub(super) fn resolve(
     file: &BodyFile,
     beside: Option<Lists>,
@@ -59,7 +59,7 @@ pub(super) fn resolve(
     }
 }
 
-/// A body made by a rule.
+/// A generated body.
 fn generated(
     file: &BodyFile,
     generator: Generator<'_>,
@@ -99,7 +99,7 @@ fn generated(
     Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
 }
 
-/// What no other key shows to be wrong with a generator; the direction of bars, or any for others.
+/// Checks of a generator that the schema cannot express; returns the direction of bars, any direction for others.
 fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
     let at = |key, inner| [Way::Key("body"), Way::Key(key), Way::Key(inner)];
     match generator {
@@ -113,8 +113,8 @@ fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<
             if let Some((typed, place, other)) = wrong {
                 let [typed, other] = [typed, other].map(quoted);
                 let message =
-                    format!("`body.lattice.elements` is {typed}, but the block is {place}: it has {axes} `cells`");
-                report.at(&at("lattice", "elements"), message, format!("take {other}, or other `cells`"));
+                    format!("`body.lattice.elements` is {typed}, but the lattice is {place}: it has {axes} `cells`");
+                report.at(&at("lattice", "elements"), message, format!("use {other}, or other `cells`"));
             }
             let sides = match side {
                 SideFile::PerAxis(sides) => sides.len(),
@@ -189,12 +189,12 @@ fn listed(
     Some(ResolvedBody { body, initial, springs, side, has_cells: false })
 }
 
-/// What elements of some numbers of nodes are meant to be.
+/// How elements of four, five, six and eight nodes are interpreted.
 fn solids(file: &BodyFile) -> Solids {
     if file.convex { Solids::Convex } else { Solids::Ordered }
 }
 
-/// Whether a body and its runs are too large, and what would make it less. A run with a mistake counts as none.
+/// Whether a body and its runs exceed the limits, and what would reduce them. Runs with mistakes are not counted.
 fn beyond(body: Census, less: &'static str, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
     let mut models: Vec<usize> = Vec::new();
     let known = runs.iter().enumerate().filter_map(|(at, run)| Some((at, &run.as_ref()?.model)));
@@ -204,7 +204,7 @@ fn beyond(body: Census, less: &'static str, runs: &[Option<RunFile>], limits: &L
     Some(excess)
 }
 
-/// The place of a run's springs.
+/// The path of a run's springs.
 fn springs_of(run: usize) -> [Way<'static>; 4] {
     [Way::Key("run"), Way::Index(run), Way::Key("model"), Way::Key("springs")]
 }
@@ -233,14 +233,14 @@ fn start(
     }
     if let Some(height) = file.lowest {
         let lowest = position.iter().fold(f64::INFINITY, |lowest, point| lowest.min(point.y));
-        // In this order the lowest node stands at the very height that was typed.
+        // In this order the lowest node is exactly at the height that was typed.
         position.iter_mut().for_each(|point| point.y = height + (point.y - lowest));
     }
     State::new(position, velocity)
 }
 
-/// A start of another shape (with a unit direction and a seed), a turn (unit axis, angle), a spin (rad/s), a shift and a
-/// velocity, each with its mistakes reported and then left out.
+/// A start of another shape (with a unit direction and a seed), a rotation (unit axis, angle), a spin (rad/s), a translation
+/// and a velocity; those with mistakes are reported and left out.
 #[expect(clippy::type_complexity, reason = "a list of all that a start may have")]
 fn check_start(
     file: &BodyFile,
@@ -251,7 +251,7 @@ fn check_start(
         check_use(typed.shape, report);
         let path = [Way::Key("body"), Way::Key("start"), Way::Key("direction")];
         let along = match &typed.direction {
-            // Said above, and reason enough.
+            // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
             Some(along) => direction(vector(along, dimension, &path, report)?, &path, report)?,
             None => DVec3::X,
@@ -273,7 +273,7 @@ fn check_start(
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
-/// Reports keys of a start that say nothing about its shape.
+/// Reports keys of a start that its shape does not have.
 fn check_use(shape: StartShape, report: &mut Report<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
@@ -283,12 +283,12 @@ fn check_use(shape: StartShape, report: &mut Report<'_>) {
         let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
         if !used && report.is_typed(&path) {
             let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(shape.name()));
-            report.at_key(&path, message, "leave it out, or take another shape".to_owned());
+            report.at_key(&path, message, "remove it, or use another shape".to_owned());
         }
     }
 }
 
-/// A vector turned about a unit axis (Rodrigues' formula), to the same bits on every machine.
+/// A vector rotated about a unit axis (Rodrigues' formula), with the same bits on every machine.
 fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
     let (sine, cosine) = libm::sincos(angle);
     v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))

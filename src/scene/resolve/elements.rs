@@ -9,12 +9,12 @@ use crate::sim::diagnose::volume_by_faces;
 use crate::sim::topology;
 use glam::DVec3;
 
-/// Below this part of the size of an element's box (to the power of the dimension) its area or volume counts as
-/// none: rounding of coordinates leaves some 1e-16, and a needle a millionth as thick as long still has 1e-6.
+/// An area or volume below this part of that of the element's bounding cube counts as zero: rounding of coordinates leaves
+/// some 1e-16, and a needle a millionth as thick as long still has 1e-6.
 const FLAT: f64 = 1e-12;
 
-/// Reports every wrong index, repeated node, repeated element or spring, element without extent or inside out, and every
-/// node that nothing holds. `flawed`: there were mistakes before, and nothing is said then that may follow from them.
+/// Reports every wrong index, repeated node, repeated element or spring, degenerate or inverted element, and every node
+/// without element or spring. `flawed`: there were mistakes before, whose possible consequences are not reported.
 pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
     let Lists { place, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
@@ -32,7 +32,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
             distinct.push(at);
         }
     }
-    // Where some nodes are not those that were meant, others may not be either.
+    // If some indices are wrong, others may be, too.
     if sound {
         let mut disorder = Disorder::default();
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
@@ -51,10 +51,10 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
         check_indices(place, "faces", at, face, node_count, report);
     }
-    // A wrong index leaves the node that was meant without an element: said once is enough.
+    // A wrong index leaves the right node without an element; that is not reported a second time.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        place.tell(report, "nodes", &[node], message, "take it out, or list it in an element".to_owned());
+        place.tell(report, "nodes", &[node], message, "remove it, or list it in an element".to_owned());
     }
 }
 
@@ -79,7 +79,7 @@ impl Lists {
         }
         let kind = topology::kind(self.dimension, solids, element.len());
         let whole = match kind {
-            // A length is not zero where the box is not, and other elements may be rods or flat: they are no solids.
+            // Elements of two nodes have a length if their box has one; other elements that are not solids may be flat or rods.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
                 if element.len() > MOST_IN_HULL {
@@ -101,7 +101,7 @@ impl Lists {
         let measure = volume_by_faces(kind, element, &self.nodes);
         disorder.ordered += 1;
         let around = || volume_by_faces(kind, &AROUND.map(|place| element[place]), &self.nodes);
-        // A sound hexahedron read in the other order is wound into itself and has hardly any volume, of either sign.
+        // A valid hexahedron read in the other order intersects itself and has hardly any volume, of either sign.
         if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
             disorder.found.push((at, Wrong::Around, kind));
         } else if measure.abs() <= FLAT * whole {
@@ -116,8 +116,8 @@ impl Lists {
     }
 }
 
-/// The order in which other programs list the corners of a hexahedron, around one side and then around the other; and the
-/// way back.
+/// The order in which other programs list the corners of a hexahedron, around one side and then around the other. It is its
+/// own inverse.
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// What is wrong with the nodes of an element.
@@ -133,12 +133,12 @@ enum Wrong {
 struct Disorder {
     /// How many elements there are of which an order is expected.
     ordered: usize,
-    /// Place, what is wrong, and kind of each.
+    /// Index, mistake and kind of each.
     found: Vec<(usize, Wrong, ElementKind)>,
 }
 
 impl Disorder {
-    /// Reports each; all at once, if all elements have the same mistake: it is one of whatever wrote them.
+    /// Reports each, or all in one message if all elements have the same mistake, which is then one of the program that wrote them.
     fn tell(self, lists: &Lists, report: &mut Report<'_>) {
         let place = &lists.place;
         match self.common(lists) {
@@ -162,7 +162,7 @@ impl Disorder {
             return None;
         }
         let (what, help) = match (wrong, lists.dimension) {
-            // A polygon without area has no order in which it has one.
+            // A polygon without area has none in any order.
             (Wrong::Flat, Dimension::Plane) => return None,
             (Wrong::Turned, Dimension::Plane) => {
                 ("are clockwise; expected counter-clockwise", "list the nodes of each backwards".to_owned())
@@ -171,7 +171,7 @@ impl Disorder {
                 ("have no volume: their nodes are in planes, or not in their order", CONVEX.to_owned())
             }
             (Wrong::Around, _) => (
-                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected bit order: x fastest, then y, then z",
+                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
                 format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}"),
             ),
             (Wrong::Turned, Dimension::Space) => {
@@ -207,14 +207,14 @@ fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, O
         }
         (Wrong::Flat, _) => {
             let help = match kind {
-                ElementKind::Hexahedron => "list the corners in bit order: x fastest, then y, then z",
+                ElementKind::Hexahedron => "list the corners with x fastest, then y, then z",
                 _ => CONVEX,
             };
             let message = format!("`{name}` has no volume: its nodes are in a plane, or not in their order");
             (message, Some(help.to_owned()))
         }
         (Wrong::Around, _) => {
-            let expected = "expected bit order: x fastest, then y, then z";
+            let expected = "expected x fastest, then y, then z";
             let message = format!("`{name}` lists its corners around its sides; {expected}");
             (message, Some(format!("write {:?}", AROUND.map(|place| element[place]))))
         }
@@ -226,7 +226,7 @@ fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, O
     }
 }
 
-/// What helps against every order.
+/// The help for any order.
 const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
 /// The most nodes of an element whose faces are those of its convex hull: finding them takes seconds from there on.
@@ -257,9 +257,9 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// Reports indices that do not exist and nodes that stand twice in one list. Whether there are none.
+/// Reports indices that do not exist and nodes that occur twice in one list. Returns whether there are none.
 fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize, report: &mut Report<'_>) -> bool {
-    /// So few are compared with each other faster than they are sorted.
+    /// Up to this length comparing all pairs is faster than sorting.
     const FEW: usize = 16;
     let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
     if list.len() <= FEW && (0..list.len()).all(is_new) {
@@ -270,7 +270,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
     let mut order: Vec<usize> = (0..list.len()).collect();
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
-        let message = format!("node {} stands twice in `{}`", list[pair[1]], place.name(key, &[at]));
+        let message = format!("node {} occurs twice in `{}`", list[pair[1]], place.name(key, &[at]));
         place.tell(report, key, &[at, pair[1]], message, None);
         sound = false;
     }
@@ -285,7 +285,7 @@ fn check_indices(place: &Place, key: &str, at: usize, list: &[u32], nodes: usize
     sound
 }
 
-/// Reports a list with the same nodes as an earlier one, in whatever order. Whether it is one.
+/// Reports a list with the same nodes as an earlier one, in any order. Returns whether it is one.
 fn repeated<'l>(
     place: &Place,
     key: &str,
@@ -301,7 +301,7 @@ fn repeated<'l>(
     if first != at {
         let [this, other] = [at, first].map(|at| place.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        place.tell(report, key, &[at], message, "take one of them out".to_owned());
+        place.tell(report, key, &[at], message, "remove one of them".to_owned());
     }
     first != at
 }

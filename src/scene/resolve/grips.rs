@@ -1,4 +1,4 @@
-//! What holds and drags nodes.
+//! Kinematic constraints: nodes held and dragged.
 
 use super::body::ResolvedBody;
 use super::{motion, vector};
@@ -13,7 +13,7 @@ use glam::DVec3;
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
 
-/// The grips, holds first, or `None` after reporting every mistake in them.
+/// The constraints, `hold` first, or `None` after reporting every mistake in them.
 pub(super) fn resolve(
     holds: &[Option<HoldFile>],
     grabs: &[Option<GrabFile>],
@@ -41,8 +41,8 @@ pub(super) fn resolve(
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         let way = [&path[..], &[Way::Key("path")]].concat();
         if typed.path.repeat {
-            let message = format!("`grab[{at}].path` repeats, so the nodes would never be let go");
-            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "take `repeat` out".to_owned());
+            let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
+            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "remove `repeat`".to_owned());
             continue;
         }
         let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
@@ -50,7 +50,7 @@ pub(super) fn resolve(
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
             let message =
-                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be let go at once");
+                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
             report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are".to_owned());
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
             named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
@@ -60,13 +60,13 @@ pub(super) fn resolve(
     (named.len() == holds.len() + grabs.len()).then(|| named.into_iter().map(|(_, _, grip)| grip).collect())
 }
 
-/// Reports grips that end before a time step (s) has passed, so that they would hold nothing.
+/// Reports constraints that are shorter than a time step (s), which would have no effect.
 pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>], step: f64, report: &mut Report<'_>) {
     for (at, hold) in holds.iter().enumerate() {
         let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
         if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
             let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
-            let help = "it would hold nothing: let it last longer".to_owned();
+            let help = "it would hold nothing: make it longer".to_owned();
             report.at(&[Way::Key("hold"), Way::Index(at), Way::Key("until")], message, help);
         }
     }
@@ -76,39 +76,39 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
     }
 }
 
-/// Reports nodes that two hands have at the same time.
+/// Reports nodes that have two constraints at the same time.
 fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
     }
-    // One node says it all: others of the same two hands follow from the same mistake.
+    // One node for each pair of constraints is enough.
     let mut clashes: BTreeMap<[usize; 2], u32> = BTreeMap::new();
-    for (node, mut hands) in holders {
-        let time = |hand: usize| (named[hand].2.from, named[hand].2.until);
-        hands.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
-        // A hand that comes before another lets go, comes before the last of all lets go.
-        let mut last = hands[0];
-        for &hand in &hands[1..] {
-            if time(hand).0 < time(last).1 {
-                clashes.entry([hand.max(last), hand.min(last)]).or_insert(node);
+    for (node, mut holding) in holders {
+        let time = |grip: usize| (named[grip].2.from, named[grip].2.until);
+        holding.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
+        // In order of their starts, one that overlaps any earlier one overlaps that which ends last.
+        let mut last = holding[0];
+        for &grip in &holding[1..] {
+            if time(grip).0 < time(last).1 {
+                clashes.entry([grip.max(last), grip.min(last)]).or_insert(node);
             }
-            if time(hand).1 > time(last).1 {
-                last = hand;
+            if time(grip).1 > time(last).1 {
+                last = grip;
             }
         }
     }
     for ([second, first], node) in clashes {
         let ((other, _, one), (words, path, two)) = (&named[first], &named[second]);
         let (from, until) = (one.from.max(two.from), one.until.min(two.until));
-        let until = if until.is_finite() { format!("until {until} s") } else { "for good".into() };
+        let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
         let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
-        let help = "leave each node to one of them at a time".to_owned();
+        let help = "assign each node to one of them at a time".to_owned();
         report.at(&[&path[..], &[Way::Key("nodes")]].concat(), message, help);
     }
 }
 
-/// The nodes that are meant, in rising order.
+/// The selected nodes, in rising order.
 fn nodes(
     typed: &NodesFile,
     body: &ResolvedBody,
@@ -131,7 +131,7 @@ fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>)
         if node as usize >= count {
             report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
         } else if first.insert(node, place).is_some() {
-            report.at(&at, format!("node {node} stands twice in `{}`", written(path)), None);
+            report.at(&at, format!("node {node} occurs twice in `{}`", written(path)), None);
         }
     }
     let mut nodes = list.to_vec();
@@ -149,7 +149,7 @@ fn within(
     let dimension = body.body.dimension;
     let mut point = |typed, key| vector(typed, dimension, &[path, &[Way::Key(key)]].concat(), report);
     let position = &body.initial.position;
-    // An end of a lattice may be at -0.30000000000000004 m, and is typed as -0.3.
+    // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
     let close = ROUND_OFF * body.body.extent();
     let nodes: Vec<u32> = match region {
         RegionFile { of: Some(of), within: Some(within), .. } => {
@@ -170,7 +170,7 @@ fn within(
             warn_of_rest(&nodes, layers, position, dimension, path, report);
             nodes
         }
-        // The structure of the file has been checked.
+        // The schema rules this out.
         _ => return None,
     };
     if nodes.is_empty() {
@@ -182,7 +182,7 @@ fn within(
     Some(nodes)
 }
 
-/// Closer than this part of the body's longest side coordinates are equal.
+/// Coordinates that are closer than this part of the body's longest side are equal.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Nodes of equal coordinate along one axis at rest, as the layers of a lattice are.
@@ -210,9 +210,9 @@ fn layers_of(body: &Body) -> Vec<Layers> {
     (0..if body.dimension == Dimension::Plane { 2 } else { 3 }).map(along).collect()
 }
 
-/// Warns of a box that takes the same part of each layer at one end, as one does that was typed for a body that stands
-/// elsewhere. Such a box is thin along one axis: it takes less than half of the layers there, and at least half along the
-/// others. Rows and corners are thin along several.
+/// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at another
+/// place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them along the
+/// others. Boxes for rows and corners are thin along several axes.
 fn warn_of_rest(
     nodes: &[u32],
     layers: &[Layers],
@@ -249,7 +249,7 @@ fn warn_of_rest(
     }
 }
 
-/// The box around points in words.
+/// The bounding box of points in words.
 fn between(points: &[DVec3], dimension: Dimension) -> String {
     let words = |corner: Vec<f64>| corner.into_iter().map(fine).collect::<Vec<_>>().join(", ");
     let [low, high] = corners(points, dimension).map(words);

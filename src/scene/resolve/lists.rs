@@ -14,7 +14,7 @@ use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// Where the lists stand.
+/// Where the lists are.
 #[derive(Clone, Debug)]
 pub(super) enum Place {
     /// In the scene itself.
@@ -24,7 +24,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// How a list or an entry is called.
+    /// The name of a list or an entry in messages.
     pub(super) fn name(&self, key: &str, at: &[usize]) -> String {
         let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
         match self {
@@ -60,7 +60,7 @@ impl Place {
         }
     }
 
-    /// In the scene there is only the name of the file to point at, so the message says the rest.
+    /// The position is that of the file's name in the scene, so the message names list and entry.
     fn tell_of_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
@@ -143,13 +143,12 @@ impl Lists {
         (report.total() == before).then_some(lists).flatten()
     }
 
-    /// A digest of everything listed: whatever changes the body changes it, and neither compression nor the width of
-    /// numbers nor where the file lies does.
+    /// A digest of all lists: it depends on the body, not on compression, the width of numbers or the location of the file.
     pub(super) fn digest(&self) -> String {
         let mut hasher = Sha256::new();
         let coordinates = |points: &[DVec3], hasher: &mut Sha256| {
             for point in points {
-                // Both zeros mean the same.
+                // Zero and −0 are equal.
                 hasher.update(point.to_array().map(|coordinate| (coordinate + 0.0).to_le_bytes()).as_flattened());
             }
         };
@@ -162,7 +161,7 @@ impl Lists {
         for (key, lists) in [("elements", Some(&self.elements)), ("faces", self.faces.as_ref())] {
             let Some(lists) = lists else { continue };
             lengths(&mut hasher, key, lists.len());
-            // One by one, numbers cost more than their digest.
+            // Hashing numbers one by one is slower.
             let mut bytes = Vec::new();
             for list in lists.iter() {
                 bytes.clear();
@@ -218,13 +217,13 @@ pub(super) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
     }
 }
 
-/// Endings of files of meshes.
+/// Extensions of mesh files.
 const MESHES: [&str; 15] =
     ["obj", "stl", "ply", "off", "msh", "mesh", "vtk", "vtu", "gltf", "glb", "node", "ele", "inp", "fbx", "3mf"];
 
-/// What to do about a file that is no archive.
+/// The help for a file that is not an archive.
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
-                        -1 behind short ones); docs/bodies.md has an example";
+                        -1 at the end of short ones); docs/bodies.md has an example";
 
 /// The arrays that an archive may have, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
@@ -234,7 +233,7 @@ struct Reader<'a, 't> {
     npz: Npz,
     place: Place,
     limits: &'a Limits,
-    /// What may still be read (bytes).
+    /// How much may still be read (bytes).
     left: u64,
     report: &'a mut Report<'t>,
 }
@@ -244,7 +243,7 @@ impl Reader<'_, '_> {
         self.place.tell(self.report, key, at, message, help);
     }
 
-    /// Says something that begins with the name of an array or of one of its places.
+    /// Reports a mistake whose message begins with the name of an array or entry.
     fn say(&mut self, key: &str, at: &[usize], message: &str) {
         let message = format!("`{}` {message}", self.place.name(key, at));
         self.tell(key, at, message, None);
@@ -252,13 +251,13 @@ impl Reader<'_, '_> {
 
     fn lists(&mut self) -> Option<Lists> {
         for name in self.npz.names().iter().filter(|name| !ARRAYS.contains(&name.as_str())) {
-            // As `meshio` calls them.
+            // The names in `meshio`.
             let known = [("points", "nodes"), ("cells", "elements")].into_iter().find(|(other, _)| other == name);
             let help = match known.map(|(_, ours)| ours).or_else(|| nearest(name, &ARRAYS)) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
-            let message = format!("`{}` is no array that a body has", self.place.name(name, &[]));
+            let message = format!("`{}` is not an array of a body", self.place.name(name, &[]));
             self.tell(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
@@ -289,7 +288,7 @@ impl Reader<'_, '_> {
         Some(Lists { place, dimension, nodes, elements, springs, faces, positions, velocities, masses })
     }
 
-    /// The head of an array that must be there.
+    /// The header of a required array.
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.optional_head(key);
         if found.is_none() {
@@ -300,12 +299,12 @@ impl Reader<'_, '_> {
         found.flatten()
     }
 
-    /// The head of an array that need not be there.
+    /// The header of an optional array.
     fn optional(&mut self, key: &str) -> Option<Array> {
         self.optional_head(key).flatten()
     }
 
-    /// Nothing if there is no such array; none in it if it has a mistake, which is reported.
+    /// `None` if there is no such array; `Some(None)` if it has a mistake, which is reported.
     fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
         match self.npz.array(key)? {
             Ok(array) if array.shape.first() == Some(&0) && !["faces"].contains(&key) => {
@@ -427,7 +426,7 @@ impl Reader<'_, '_> {
         Some(pairs)
     }
 
-    /// Rows of nodes without the places that they do not use.
+    /// Rows of nodes without their unused entries.
     fn rows_of_indices(&mut self, key: &str, array: &Array, least: usize) -> Option<IndexLists> {
         let expected = format!("one row for each of the {key} with at least {least} nodes");
         let numbers = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
@@ -440,7 +439,7 @@ impl Reader<'_, '_> {
             let used = used.map_or(0, |last| last + 1);
             for column in 0..used {
                 match numbers.whole(row, column) {
-                    -1 => self.say(key, &[row, column], "is -1, and a node follows it; unused places come last"),
+                    -1 => self.say(key, &[row, column], "is -1, but a node follows; expected -1 only at the end"),
                     _ => row_of.extend(self.index(key, &numbers, [row, column])),
                 }
             }

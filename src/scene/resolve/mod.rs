@@ -1,5 +1,5 @@
-//! What a scene means: defaults filled in, lengths compared, indices checked. Every mistake is reported; nothing is
-//! built from a part that has one.
+//! Resolves a scene: fills in defaults, compares lengths, checks indices. Every mistake is reported; parts with mistakes are
+//! not used.
 
 mod body;
 mod elements;
@@ -41,7 +41,7 @@ pub(super) struct Parts {
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
-    /// What the body's own file holds, if it has one and that has no mistake.
+    /// The lists in the body's own file, if it has one without mistakes.
     #[serde(skip)]
     beside: Option<Lists>,
     /// Keys of the top level below which something is left out because of mistakes.
@@ -62,11 +62,11 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The sound parts of a checked file. A body's own file is looked for in `folder`.
+    /// The valid parts of a checked file. A body's own file is searched in `folder`.
     pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
         let file = &checked.sound;
         let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
-            // Beside a generator or a file, lists for each node are mistakes, which have been said.
+            // Together with a generator or a file, lists are mistakes, which have been reported.
             if body.file.is_some() || Generator::of(&body).is_some() {
                 (body.nodes, body.elements, body.springs, body.faces) = (None, None, None, None);
                 (body.positions, body.velocities, body.masses) = (None, None, None);
@@ -114,7 +114,7 @@ impl Parts {
         self.runs.iter().flatten().any(|run| run.own.is_some())
     }
 
-    /// Digests of what the files beside the scene hold.
+    /// Digests of the files in the scene's folder.
     pub(super) fn digests_of_files(&self) -> FileDigests {
         let [regular, semi_bold] = match &self.font {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
@@ -147,8 +147,8 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
     }
     let known = report.total();
     let read = T::deserialize(json);
-    // Where mistakes were found a needed key may be left out. Else the schema has found it sound, and should the
-    // types know better, their words are better than none.
+    // After mistakes a required key may be missing. Otherwise the schema has accepted the value, and an error of the types
+    // is unexpected, but reported.
     read.map_err(|error| {
         if known == 0 {
             report.at(path, error.to_string(), None)
@@ -160,7 +160,7 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
 
-/// What is simulated. Each part is `None` if it, or one that it needs, has a mistake.
+/// The physics. Each part is `None` if it, or one that it needs, has a mistake.
 struct Physics {
     gravity: Option<DVec3>,
     body: Option<ResolvedBody>,
@@ -169,7 +169,7 @@ struct Physics {
     runs: Option<Vec<Run>>,
 }
 
-/// The scene, or `None` if there is any mistake: first what is simulated, then how that is looked at.
+/// The scene, or `None` if there is any mistake: first the physics, then the view.
 pub(super) fn resolve(
     mut parts: Parts,
     name: &str,
@@ -227,7 +227,7 @@ fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut R
     Physics { gravity, body, obstacles, grips, runs }
 }
 
-/// How it is looked at: here the `[view]` table is handed over.
+/// The view, which `look` resolves.
 fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<View> {
     let Physics { gravity, body, obstacles, grips, runs } = physics;
     let (body, obstacles) = (body.as_ref()?, obstacles.as_ref()?);
@@ -248,19 +248,19 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
     Some(view)
 }
 
-/// Warns of a scene that shows nothing but its start, and of one whose end nobody may want to wait for.
+/// Warns of a scene that shows only its start, and of one that takes very long.
 fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
-    /// What a corner of an element takes in a step (s), as measured on one cube.
+    /// Computation time for one corner of an element and one step (s), measured on one cube.
     const CORNER: f64 = 3e-8;
     const LONG: f64 = 7200.0;
     let last = scene.last_frame();
     if last == 0 && scene.duration > 0.0 {
         let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
-        let message = format!("at {rate} frames per second, {duration} s have a single frame, the start");
+        let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
         report.warn(
             &[Way::Key("time"), Way::Key("frames_per_second")],
             message,
-            format!("at least {} show its end", short(1.0 / scene.duration)),
+            format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
     }
     let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));

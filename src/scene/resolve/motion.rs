@@ -1,4 +1,4 @@
-//! Turns and paths.
+//! Rotations and paths.
 
 use super::{direction, vector};
 use crate::reading::report::{Report, Way, written};
@@ -7,7 +7,7 @@ use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Place};
 use glam::DVec3;
 
-/// The unit axis of a turn; a mistake if there is one too few or too many.
+/// The unit axis of a rotation; a mistake if it is missing in space or given in the plane.
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
@@ -19,13 +19,13 @@ pub(super) fn axis(
     match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
-            let message = format!("`{rotation}` has an `axis`, but the body is in the plane and turns within it");
-            report.at_key(&path, message, "take `axis` out; a positive angle turns counter-clockwise".to_owned());
+            let message = format!("`{rotation}` has an `axis`, but the body is in the plane");
+            report.at_key(&path, message, "remove `axis`; a positive angle rotates counter-clockwise".to_owned());
             None
         }
         (None, Dimension::Space) => {
             let help = "such as axis = [0, 0, 1]".to_owned();
-            report.at(&path, format!("`{rotation}` has no `axis`, which a turn in space needs"), help);
+            report.at(&path, format!("`{rotation}` has no `axis`, which a rotation in space needs"), help);
             None
         }
         (Some(axis), Dimension::Space) => {
@@ -34,7 +34,7 @@ pub(super) fn axis(
     }
 }
 
-/// A shift and a turn.
+/// A translation and a rotation.
 fn place(
     shift: Option<&Coordinates>,
     rotation: Option<&Rotation>,
@@ -56,7 +56,7 @@ fn place(
     Some(Place { shift: shift?, turn: turn? })
 }
 
-/// A path from key to key. With a single key it stays there.
+/// A path of keyframes. With a single key it is constant.
 pub(super) fn keys(
     typed: &MotionPath,
     dimension: Dimension,
@@ -88,7 +88,7 @@ pub(super) fn keys(
     if let (true, Some(first), Some(last)) = (typed.repeat, keys.first(), keys.last()) {
         if keys.len() == 1 {
             let message = format!("`{}` repeats, but has a single key", written(path));
-            report.at(path, message, "add keys, or take `repeat` out".to_owned());
+            report.at(path, message, "add keys, or remove `repeat`".to_owned());
             return None;
         }
         if !same(first.place, last.place) {
@@ -101,19 +101,24 @@ pub(super) fn keys(
     Some(Motion::Keys { keys, ease: typed.ease, repeat: typed.repeat })
 }
 
-/// Whether two places are the same up to rounding and whole turns.
+/// Whether two poses are equal up to rounding and whole turns.
 fn same(one: Place, other: Place) -> bool {
-    /// A rounding of what was typed is no jump.
+    /// Rounding of typed numbers is not a jump.
     const CLOSE: f64 = 1e-6;
     let [one_pose, other_pose] = [one, other].map(|place| Motion::at(place).pose(0.0));
     one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)
         && one_pose.turn.dot(other_pose.turn).abs() >= 1.0 - CLOSE * CLOSE
 }
 
-/// A motion to and fro.
-pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Motion> {
+/// An oscillation.
+pub(super) fn swing(
+    typed: &Swing,
+    dimension: Dimension,
+    path: &[Way<'_>],
+    report: &mut Report<'_>,
+) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
-        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would swing", written(path));
+        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
         report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
         return None;
     }
@@ -121,7 +126,7 @@ pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], repor
     Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
 }
 
-/// Reports keys that are nearer to each other than a time step (s).
+/// Reports keys that are closer to each other than a time step (s).
 pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;

@@ -91,10 +91,10 @@ fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &
     }
 }
 
-/// How deep a node may lie in an obstacle at the start, in body sizes: the rounding of a body set down on it.
+/// How deep a node can be in an obstacle at the start, in body sizes, because of rounding.
 const TOUCHING: f64 = 1e-9;
 
-/// Reports an obstacle in which nodes start, or which starts within the body.
+/// Reports obstacles with nodes inside at the start, and obstacles that start inside the body.
 fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) {
     let placed = obstacle.at(0.0, 1.0);
     let name = match obstacle.shape {
@@ -116,7 +116,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         let message = format!("the body starts inside this {name}: node {node} lies {depth:.3e} m below its surface");
         let help = match obstacle.shape {
             Shape::Floor { .. } => "move the floor, or set the body on it with `lowest` or `offset` in [body]",
-            _ => "move one of them; a path may bring the obstacle there later",
+            _ => "move one of them; a path can move the obstacle there later",
         };
         return report.at(path, message, help.to_owned());
     }
@@ -125,7 +125,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     let near = |point: &DVec3| point.cmpge(low).all() && point.cmple(high).all();
     let points = inner_points(&obstacle.shape, body.body.dimension);
     let points: Vec<_> = points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).collect();
-    // Of large bodies fewer points are asked, the middle of the obstacle always.
+    // For large bodies fewer points are tested, but always the centre of the obstacle.
     let faces = body.body.faces.nodes.len().max(1);
     let stride = (points.len() * faces).div_ceil(MOST_COMPARED).max(1);
     let within = points.into_iter().step_by(stride).find(|&point| is_within(body, point));
@@ -134,17 +134,17 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         let point =
             if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
         let message = format!("this {name} starts inside the body, at {point}, between its nodes");
-        report.at(path, message, "move one of them; only nodes bounce off an obstacle, from outside".to_owned());
+        report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside".to_owned());
     }
 }
 
-/// How many points of an obstacle, times faces of the body, are looked at: some tenths of a second of work at most.
+/// How many points of an obstacle, times faces of the body, are tested: some tenths of a second at most.
 const MOST_COMPARED: usize = 10_000_000;
 
-/// How many steps are taken through an obstacle in each direction to see whether it lies in a body.
+/// How many points of an obstacle are tested along each axis.
 const SAMPLES: u32 = 8;
 
-/// Points all over the inside of an obstacle, its middle first; none of half-spaces, which nodes tell of.
+/// Points inside an obstacle, its centre first; none for half-spaces, for which testing the nodes is enough.
 fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     let steps = || (0..=SAMPLES).map(|at| f64::from(at) / f64::from(SAMPLES) * 2.0 - 1.0);
     let across =
@@ -168,7 +168,7 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     }
 }
 
-/// Reports motions so quick that a step cannot follow them: nodes would meet an obstacle that jumps.
+/// Reports motions that are too fast for the time step: the obstacle would jump.
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(common) = obstacle.as_ref().map(ObstacleFile::common) else { continue };
@@ -177,17 +177,17 @@ pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mu
             motion::check_steps(typed, step, &[&path[..], &[Way::Key("path")]].concat(), report);
         }
         if let Some(swing) = common.swing.filter(|swing| swing.period < LEAST_STEPS * step) {
-            let message = format!("it would swing once in {} s, but a time step takes {step:.3e} s", swing.period);
-            let help = format!("take a period of at least {LEAST_STEPS} steps, or shorter steps");
+            let message = format!("it would oscillate once in {} s, but a time step takes {step:.3e} s", swing.period);
+            let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
             report.at(&[&path[..], &[Way::Key("swing"), Way::Key("period")]].concat(), message, help);
         }
     }
 }
 
-/// How many steps a swing to and fro must take at least to be one.
+/// The least number of steps in a period.
 const LEAST_STEPS: f64 = 4.0;
 
-/// Whether a point lies within the outer surface of a body at its start, by how often that winds around it.
+/// Whether a point is inside the surface of a body at its start, by the winding number.
 fn is_within(body: &ResolvedBody, point: DVec3) -> bool {
     let (shape, position) = (&body.body, &body.initial.position);
     let at = |node: u32| position[node as usize] - point;

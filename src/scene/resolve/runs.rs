@@ -8,7 +8,7 @@ use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::sim::model::ElasticModel;
 use std::sync::Arc;
 
-/// The most steps that a run may have: beyond it double precision does not tell one step's time from the next.
+/// The most steps of a run: beyond, double precision cannot distinguish the times of two steps.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
 /// The runs, or `None` if a part they need has a mistake.
@@ -30,7 +30,7 @@ pub(super) fn resolve(
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
         .collect();
-    // One missing model would make another T, and with it mistakes that are none.
+    // Without one of the models T would differ, and steps would be reported wrongly.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
     let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
     let mut runs = Vec::with_capacity(models.len());
@@ -77,7 +77,7 @@ fn seconds(step: &StepFile, cycle: f64) -> f64 {
     }
 }
 
-/// Reports names that stand twice, and names that cannot be used in files.
+/// Reports duplicate names, and names that cannot be used in files.
 fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
     for (at, run) in typed.iter().enumerate() {
         let Some(run) = run else { continue };
@@ -91,7 +91,7 @@ fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
         let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
         if let Some(first) = typed[..at].iter().position(same) {
             let message = format!("two runs are called {quoted}: `run[{first}]` and `run[{at}]`");
-            report.at(&path, message, "give each run a name of its own".to_owned());
+            report.at(&path, message, "give each run a unique name".to_owned());
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a schema asks for, in words.
+//! What a schema expects, in words.
 
 use crate::reading::words::{list, quoted};
 use crate::scene::schema::choices;
@@ -25,14 +25,14 @@ pub(super) fn expected(schema: &Json) -> String {
 }
 
 /// The numbers that are allowed, in words.
-pub(super) fn range(
+pub(in crate::scene) fn range(
     noun: &str,
     least: Option<f64>,
     most: Option<f64>,
     above: Option<f64>,
     below: Option<f64>,
 ) -> String {
-    // That a whole number has 32 bits is nothing that anybody asked for.
+    // The limit of 32 bits is an implementation detail.
     let most = most.filter(|&most| most < f64::from(u32::MAX));
     match (least, most, above, below) {
         (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
@@ -45,7 +45,7 @@ pub(super) fn range(
 }
 
 /// The first sentence of a description.
-pub(super) fn first_sentence(text: &str) -> &str {
+pub(in crate::scene) fn first_sentence(text: &str) -> &str {
     let ends = text.match_indices(". ").find(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
     ends.map_or(text, |(at, _)| &text[..=at])
 }

@@ -37,7 +37,7 @@ impl Walk<'_, '_, '_> {
             for other in strings(Some(needed)).filter(|other| !has(other) && !partner(other)) {
                 if !misspelt(schema, table, other) {
                     let message = format!("`{}.{name}` needs `{other}`", self.here());
-                    self.mistake(key.span(), message, Some(format!("list `{other}`, or take `{name}` out")));
+                    self.mistake(key.span(), message, Some(format!("list `{other}`, or remove `{name}`")));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 
-mod expect;
+pub(super) mod expect;
 mod keys;
 
 use super::schema::{choices, variants};
@@ -44,7 +44,7 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
             }
             (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
                 walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                // What is beyond the limit has been refused as a whole.
+                // Entries beyond the limit were reported together.
                 let most = inner["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
                 Json::Array(walk.entries(inner, &items[..most]))
             }
@@ -173,8 +173,20 @@ impl<'p> Walk<'_, '_, 'p> {
             if let Some(control) = text.chars().find(|&c| c.is_control() && !(may_break && c == '\n')) {
                 let kind = if may_break { "lines" } else { "one line" };
                 let message =
-                    format!("`{}` holds the control character {control:?}; it is {kind} of text", self.here());
+                    format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
                 self.mistake(span, message, None);
+            }
+            // Texts that are drawn have a maximum length; names of files have none.
+            if let Some(character) =
+                text.chars().find(|&c| needs_shaping(c)).filter(|_| schema.get("maxLength").is_some())
+            {
+                let message = format!(
+                    "`{}` has {character:?}, which is drawn wrongly; expected characters that are written from left to \
+                     right, unjoined and without combining marks",
+                    self.here()
+                );
+                let help = "use Latin, Greek, Cyrillic, Chinese, Japanese or Korean, with accented letters as single characters";
+                self.report.warn(&self.path, message, help.to_owned());
             }
         }
         Json::String(text.into())
@@ -277,7 +289,32 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 }
 
-/// What goes on after the text that is no colour, if it should be one, and what to do.
+/// Whether a character runs from right to left, is joined to or reordered with its neighbours, or combines with the one
+/// before it: text is drawn from left to right, one glyph for each character.
+fn needs_shaping(character: char) -> bool {
+    matches!(
+        u32::from(character),
+        // Combining marks; Hebrew to Arabic; Devanagari to Myanmar; Jamo; Khmer and Mongolian; marks; presentation forms;
+        // other scripts from right to left; other Indic scripts.
+        0x300..=0x36f
+            | 0x590..=0x8ff
+            | 0x900..=0x109f
+            | 0x1100..=0x11ff
+            | 0x1700..=0x18af
+            | 0x1900..=0x1cff
+            | 0x1dc0..=0x1dff
+            | 0x20d0..=0x20ff
+            | 0xa800..=0xabff
+            | 0xfb1d..=0xfdff
+            | 0xfe20..=0xfe2f
+            | 0xfe70..=0xfefc
+            | 0x1_0800..=0x1_0fff
+            | 0x1_1000..=0x1_1fff
+            | 0x1_e800..=0x1_efff
+    )
+}
+
+/// The rest of the message and the help for a text that should be a colour, but is not.
 fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
     match schema.get("format").and_then(Json::as_str)? {
         "colour" => TypedColour::mistake(text),

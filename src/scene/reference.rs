@@ -1,0 +1,192 @@
+//! The reference of scene files and figure files as Markdown, made from their schemas.
+
+use super::figure;
+use super::schema::{choices, schema, variants};
+use super::structure::expect::{first_sentence, range};
+use serde_json::Value;
+
+/// The reference of scene files.
+pub(crate) fn scenes() -> String {
+    written(include_str!("reference/scenes.md"), &schema())
+}
+
+/// The reference of figure files.
+pub(crate) fn figures() -> String {
+    written(include_str!("reference/figures.md"), &figure::schema())
+}
+
+/// An introduction, then one section for each table.
+fn written(introduction: &str, schema: &Value) -> String {
+    let mut reference =
+        Reference { text: introduction.to_owned(), sections: Vec::new(), lists: Vec::new(), next: Vec::new() };
+    reference.text += "\n## Top level\n";
+    reference.body(schema, "");
+    reference.finish();
+    reference.text
+}
+
+/// A reference that is being written.
+struct Reference<'s> {
+    text: String,
+    /// Tables that have a section, each with its path. A table that occurs at several paths has one section.
+    sections: Vec<(&'s Value, String)>,
+    /// Lists of choices that were written, each with the path of its key. Elsewhere they are referred to.
+    lists: Vec<(&'s Value, String)>,
+    /// Tables of the section just written, whose sections follow it.
+    next: Vec<(&'s Value, String)>,
+}
+
+impl<'s> Reference<'s> {
+    /// The sections of nested tables, depth first.
+    fn finish(&mut self) {
+        for (table, path) in std::mem::take(&mut self.next) {
+            let (depth, heading) = match (path.contains('.'), table["type"] == "array") {
+                (true, _) => ("###", path.clone()),
+                (false, true) => ("##", format!("[[{path}]]")),
+                (false, false) => ("##", format!("[{path}]")),
+            };
+            self.text += &format!("\n{depth} `{heading}`\n\n{}\n", description(table));
+            if table["items"]["description"].is_string() {
+                self.text += &format!("\n{}\n", description(&table["items"]));
+            }
+            self.body(table_of(table).expect("a table"), &path);
+            self.finish();
+        }
+    }
+
+    /// The keys of a table, or of each kind of it.
+    fn body(&mut self, table: &'s Value, path: &str) {
+        let Some((tag, kinds)) = variants(table) else { return self.keys(table, path, |_, _| true) };
+        let (_, first) = kinds[0];
+        let shared = |key: &str, value: &Value| kinds.iter().all(|(_, kind)| kind["properties"][key] == *value);
+        for (name, kind) in &kinds {
+            self.text += &format!("\n**`{tag} = \"{name}\"`**: {}\n", description(kind));
+            self.keys(kind, path, |key, value| key != tag && !shared(key, value));
+        }
+        self.text += &format!("\nKeys of every `{tag}`:\n");
+        self.keys(first, path, shared);
+    }
+
+    /// Those keys of a table that are wanted, as a list.
+    fn keys(&mut self, table: &'s Value, path: &str, wanted: impl Fn(&str, &Value) -> bool) {
+        let Some(properties) = table["properties"].as_object() else { return };
+        let required = table["required"].as_array();
+        self.text.push('\n');
+        for (key, value) in properties.iter().filter(|(key, value)| wanted(key, value)) {
+            let (mut kind, mut meaning) = (kind(value), description(value));
+            if table_of(value).is_some() {
+                kind = format!("[{kind}](#{})", self.section(value, path, key));
+                meaning = first_sentence(meaning);
+            }
+            if required.is_some_and(|required| required.iter().any(|name| name == key)) {
+                kind += ", required";
+            } else if let Some(default) = value.get("default").and_then(default) {
+                kind += &format!(", default `{default}`");
+            }
+            let choices = described_choices(value);
+            if let Some((_, path)) = self.lists.iter().find(|(known, _)| Some(*known) == choices) {
+                self.text += &format!("- **`{key}`** ({kind}, as for `{path}`): {meaning}\n");
+                continue;
+            }
+            self.text += &format!("- **`{key}`** ({kind}): {meaning}\n");
+            for choice in choices.into_iter().flat_map(entries) {
+                self.text += &format!("  - `{}`: {}\n", choice["const"], description(choice));
+            }
+            self.lists.extend(choices.map(|choices| (choices, joined(path, key))));
+        }
+    }
+
+    /// The anchor of the section of a table, which is written later unless there is one already.
+    fn section(&mut self, table: &'s Value, path: &str, key: &str) -> String {
+        let inner = table_of(table).expect("a table");
+        let known = self
+            .sections
+            .iter()
+            .find(|(known, _)| known["properties"] == inner["properties"] && known["oneOf"] == inner["oneOf"]);
+        let path = match known {
+            Some((_, path)) => path.clone(),
+            None => {
+                let path = joined(path, key);
+                self.sections.push((inner, path.clone()));
+                self.next.push((table, path.clone()));
+                path
+            }
+        };
+        path.replace('.', "")
+    }
+}
+
+fn joined(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn description(schema: &Value) -> &str {
+    schema["description"].as_str().unwrap_or_default()
+}
+
+/// The table that a key holds, alone, in an array or as one of several alternatives.
+fn table_of(schema: &Value) -> Option<&Value> {
+    if schema["properties"].is_object() || variants(schema).is_some() {
+        return Some(schema);
+    }
+    let alternatives = schema["anyOf"].as_array().into_iter().flatten();
+    schema.get("items").into_iter().chain(alternatives).find_map(table_of)
+}
+
+/// The type of a value in words, with its range.
+fn kind(schema: &Value) -> String {
+    if let Some(alternatives) = schema["anyOf"].as_array() {
+        return alternatives.iter().map(kind).collect::<Vec<_>>().join(" or ");
+    }
+    if let Some(choices) = choices(schema) {
+        // Those with descriptions stand in a list of their own.
+        let described = described_choices(schema).is_some();
+        let quoted: Vec<_> = choices.iter().map(|choice| format!("`\"{choice}\"`")).collect();
+        return if described { "string".into() } else { quoted.join(" or ") };
+    }
+    let bound = |keyword: &str| schema[keyword].as_f64();
+    let numbers =
+        |noun| range(noun, bound("minimum"), bound("maximum"), bound("exclusiveMinimum"), bound("exclusiveMaximum"));
+    match (schema["type"].as_str(), schema["format"].as_str()) {
+        (Some("number"), _) => numbers("number"),
+        (Some("integer"), _) => numbers("whole number"),
+        (Some("boolean"), _) => "`true` or `false`".into(),
+        (Some("string"), Some("colour")) => "colour".into(),
+        (Some("string"), Some("colour-or-transparent")) => "colour or `\"transparent\"`".into(),
+        (Some("string"), Some("fraction-of-T")) => "fraction of T".into(),
+        (Some("string"), _) => "string".into(),
+        (Some("array"), _) => {
+            let entries = match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+                (Some(least), Some(most)) if least == most => format!("array of {least}"),
+                (Some(least), Some(most)) => format!("array of {least} to {most}"),
+                (Some(least), None) => format!("array of at least {least}"),
+                (None, Some(most)) => format!("array of at most {most}"),
+                (None, None) => "array".into(),
+            };
+            format!("{entries}: {}", kind(&schema["items"]))
+        }
+        _ => "table".into(),
+    }
+}
+
+/// The strings that a value or its entries may be, of which each has a description.
+fn described_choices(schema: &Value) -> Option<&Value> {
+    let inner = if schema["type"] == "array" { &schema["items"] } else { schema };
+    let lists = [&inner["oneOf"], &inner["anyOf"][1]["oneOf"]];
+    lists.into_iter().find(|list| list[0]["const"].is_string())
+}
+
+fn entries(array: &Value) -> impl Iterator<Item = &Value> {
+    array.as_array().into_iter().flatten()
+}
+
+/// A default as one would type it; none for tables and for what is empty.
+fn default(value: &Value) -> Option<String> {
+    match value {
+        Value::Object(_) => None,
+        Value::Array(items) if items.is_empty() => None,
+        Value::String(text) if text.is_empty() => None,
+        Value::Number(number) => number.as_f64().map(|number| format!("{}", (number * 1e4).round() / 1e4)),
+        other => Some(other.to_string()),
+    }
+}
