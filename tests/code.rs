@@ -229,7 +229,7 @@ fn mistakes_in_code_are_told_as_those_in_files() {
         (with(BodyBuilder::polygon(3, 1.0).masses([1.0; 3])), "`body.masses` needs `nodes`"),
         (
             with(BodyBuilder::polygon(2, 1.0)),
-            "`body.polygon.sides` is 2; expected a whole number from 3 to 4000000000; How many sides it has",
+            "`body.polygon.sides` is 2; expected a whole number from 3 to 4000000000; Number of sides",
         ),
         (
             with(BodyBuilder::lattice(Lattice::new([3, 0, 3], 0.1))),
@@ -242,13 +242,13 @@ fn mistakes_in_code_are_told_as_those_in_files() {
         (with(BodyBuilder::lattice(Lattice::new([1000; 3], 0.1))), "this makes 1 003 003 001 nodes"),
         (
             with(tetrahedron().rotation(Rotation::in_plane(1.0))),
-            "`body.rotation.axis`: `body.rotation` has no `axis`, which a turn in space needs; such as axis = [0, 0, 1]",
+            "`body.rotation.axis`: `body.rotation` has no `axis`, which a rotation in space needs; such as axis = [0, 0, 1]",
         ),
         (with(arrays()).duration(f64::INFINITY), "`time.duration` is inf; expected a finite number"),
         (with(arrays()).step(0.0), "`time.step` is 0.0; expected a number greater than 0"),
         (
             with(arrays()).run("One", shape(1.0)),
-            "`run[1].name`: two runs are called \"One\": `run[0]` and `run[1]`; give each run a name of its own",
+            "`run[1].name`: two runs are called \"One\": `run[0]` and `run[1]`; give each run a unique name",
         ),
         (scene(arrays()).run("", shape(1.0)), "`run[0].name` is empty; expected 1 to 80"),
         (
