@@ -137,7 +137,7 @@ pub struct Start {
     pub(in crate::scene) direction: Option<Coordinates>,
     /// Seed of a random cloud, which is the same on every machine. Other shapes have none.
     #[serde(default = "first", skip_serializing_if = "is_first")]
-    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32), extend("default" = 1))]
     pub(in crate::scene) seed: u32,
 }
 
