@@ -111,12 +111,7 @@ fn same(one: Place, other: Place) -> bool {
 }
 
 /// An oscillation.
-pub(super) fn swing(
-    typed: &Swing,
-    dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
-) -> Option<Motion> {
+pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
         let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
         report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
