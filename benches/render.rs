@@ -8,7 +8,7 @@ use localshape::picture::Composer;
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::snapshot::Frame;
+use localshape::sim::Frame;
 use std::hint::black_box;
 
 /// Cubes that fall on the floor, as in Fig. 4(b), of any number along each side.

@@ -3,10 +3,10 @@
 //! Everything of one size is measured in turns, so that whatever else the machine does meets all alike, and the best of
 //! many short samples counts. `-- 3 10 40` measures these sizes alone.
 
+use localshape::internals::multiply_adds;
+use localshape::internals::{Crew, lanes, limit_lanes};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
-use localshape::sim::crew::Crew;
-use localshape::sim::floor::{lanes, limit_lanes, multiply_adds};
 use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
 use std::time::Instant;

@@ -11,7 +11,7 @@ use crate::sim::snapshot::Frame;
 use image::RgbImage;
 
 /// Draws frames of one scene.
-pub struct Artist<'a> {
+pub(crate) struct Artist<'a> {
     /// On the scene's background, or on white and on black if it has none.
     composers: Vec<Composer<'a>>,
     renderer: Renderer,
@@ -19,7 +19,7 @@ pub struct Artist<'a> {
 
 /// A frame that is composed and can be drawn.
 #[derive(Clone, Debug)]
-pub struct Composed {
+pub(crate) struct Composed {
     /// One, or two on white and on black.
     pictures: Vec<Picture>,
 }
@@ -29,7 +29,7 @@ impl<'a> Artist<'a> {
     ///
     /// # Errors
     /// If the device refuses.
-    pub fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
+    pub(crate) fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
         let composers = match scene.view.look.transparent {
             false => vec![Composer::new(scene)],
             true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
@@ -38,12 +38,12 @@ impl<'a> Artist<'a> {
     }
 
     /// Takes note of the scene's course, which strips show; see [`Composer::set_history`].
-    pub fn set_history(&mut self, history: &History) {
+    pub(crate) fn set_history(&mut self, history: &History) {
         self.composers.iter_mut().for_each(|composer| composer.set_history(history));
     }
 
     /// Composes a frame.
-    pub fn compose(&self, frame: &Frame) -> Composed {
+    pub(crate) fn compose(&self, frame: &Frame) -> Composed {
         Composed { pictures: self.composers.iter().map(|composer| composer.compose(frame)).collect() }
     }
 
@@ -51,7 +51,7 @@ impl<'a> Artist<'a> {
     ///
     /// # Errors
     /// If the device fails.
-    pub fn draw(&mut self, composed: &Composed) -> Result<Vec<u8>, RenderError> {
+    pub(crate) fn draw(&mut self, composed: &Composed) -> Result<Vec<u8>, RenderError> {
         match &composed.pictures[..] {
             [on_white, on_black] => Ok(self.renderer.draw_transparent(on_white, on_black)?.into_raw()),
             pictures => Ok(self.renderer.draw(&pictures[0])?.into_raw()),
@@ -61,7 +61,7 @@ impl<'a> Artist<'a> {
 
 /// Why a figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
-pub enum FigureError {
+pub(crate) enum FigureError {
     /// It shows more than fits.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
@@ -77,7 +77,12 @@ pub enum FigureError {
 ///
 /// # Panics
 /// If `moments` are those of another figure.
-pub fn draw_figure(gpu: &Gpu, figure: &Figure, moments: &Moments, samples: u32) -> Result<RgbImage, FigureError> {
+pub(crate) fn draw_figure(
+    gpu: &Gpu,
+    figure: &Figure,
+    moments: &Moments,
+    samples: u32,
+) -> Result<RgbImage, FigureError> {
     let picture = compose_figure(figure, moments)?;
     Ok(Renderer::new(gpu, figure.size, samples)?.draw(&picture)?)
 }

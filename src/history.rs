@@ -38,8 +38,8 @@ pub struct Course {
 impl History {
     /// Simulates runs of a scene from start to end.
     ///
-    /// It takes about as long as simulating for pictures does; [`Frames`](crate::runner::Frames) tell it on their way. It
-    /// works on the rayon pool it is called from; the result has the same bits for any number of threads.
+    /// It takes about as long as simulating for pictures does. It works on the rayon pool it is called from; the result has
+    /// the same bits for any number of threads.
     ///
     /// # Panics
     /// If the scene has no such run.

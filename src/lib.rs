@@ -4,62 +4,90 @@
 //! Manipulation Based on Maintaining Local Shapes*: elasticity belongs to volume elements that remember their shape, and
 //! not to springs. [`paper`] maps its equations to this crate.
 //!
-//! # From a scene to a picture
+//! # From code to a picture
 //!
 #![cfg_attr(feature = "render", doc = "```")]
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
-//! use localshape::gpu::{AdapterChoice, Gpu};
-//! use localshape::scene::{Limits, Scene};
-//! use localshape::runner::Runner;
-//! use localshape::{picture, render::Renderer};
+//! use localshape::gpu::AdapterChoice;
+//! use localshape::sim::model::{mass_spring, shape_based};
+//! use localshape::{BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene, picture};
 //!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let scene = Scene::load("scenes/fig4b.toml".as_ref(), &Limits::default())?;
-//! // Both runs, half a second after they touched the floor.
-//! let frame = Runner::new(&scene, &[0, 1]).frame(30);
-//! assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 0);
-//! assert_eq!(frame.runs[1].snapshot.diagnostics.turned_over, 9);
-//! # if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
-//! let gpu = Gpu::new(&AdapterChoice::Auto)?;
-//! let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
-//! # let folder = tempfile::tempdir()?; let path = folder.path().join("cubes.png");
-//! # let _ = r#"
-//! image.save("cubes.png")?;
-//! # "#; image.save(path)?;
-//! # Ok(())
-//! # }
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! #     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
+//! #     let folder = tempfile::tempdir()?;
+//!     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.
+//!     let cubes = BodyBuilder::lattice(Lattice::new([3, 3, 3], 0.1));
+//!     let scene = Scene::builder("cubes", cubes.rotation(Rotation::about([1.0, 0.0, 1.0], 0.4)).lowest(0.2))
+//!         .gravity([0.0, -9.8, 0.0])
+//!         .obstacle(ObstacleBuilder::floor(0.0).restitution(0.5))
+//!         .run("Local shape", shape_based::Parameters::new(1e4))
+//!         .run("Springs", mass_spring::Parameters::new(1e4))
+//!         .build(&Limits::default())?;
+//!     // Both runs half a second after the start, beside each other.
+//!     let frame = Runner::new(&scene, &[0, 1]).frame(30);
+//!     let gpu = Gpu::new(&AdapterChoice::Auto)?;
+//!     let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
+//! #     let _ = r#"
+//!     image.save("cubes.png")?;
+//! #     "#; image.save(folder.path().join("cubes.png"))?;
+//!     Ok(())
+//! }
 //! ```
 //!
-//! A body made in code becomes a scene by [`Scene::new`](scene::Scene::new), with a camera that shows it.
+//! [`Scene::load`](scene::Scene::load) reads the same from a file.
 //!
-//! # The way of the data
+//! # Modules
 //!
 //! ```text
-//! scene file ─▶ Scene ─▶ World (one per run) ─▶ Frame of Snapshots ─▶ Picture ─▶ image ─▶ files
+//! scene file or builder ─▶ Scene ─▶ Runner ─▶ Frame of Snapshots ─▶ Picture ─▶ image
 //! ```
 //!
-//! [`scene`] reads and resolves, [`sim`] simulates in double precision, [`runner`] advances runs and hands out frames,
-//! `picture` makes plain data of a frame, `render` draws it, `artist` does both, [`history`] tells what comes before and after it, [`moments`] takes the
-//! states that a figure shows, [`table`] measures what the paper tells in numbers, [`output`] writes files, `animation` makes
-//! one file of frames, [`cli`] is the program. Without the feature `render` (on by default) the crate simulates and needs no
-//! graphics library.
+//! [`scene`] makes scenes, in code or from files: a body, models on it, and what acts on them. [`runner`] advances the runs
+//! of a scene side by side and hands out frames. [`sim`] is what it advances, in double precision: states, diagnostics, the
+//! elastic models, and the traits for models of your own ([`sim::model`]). [`look`] says what pictures show, `picture`
+//! lays out a frame, `render` draws it on the device of `gpu`, and `animation` makes one file of many images. [`golden`]
+//! tests scenes of your own against stored results in `cargo test`. [`paper`] maps the paper's equations to this crate.
+//!
+//! # Features
+//!
+//! `render`, on by default, is everything that draws. Without it the crate simulates, and needs no graphics library.
+
+#![cfg_attr(
+    not(feature = "render"),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "much of what a scene says is for pictures, and is read without them, too"
+    )
+)]
 
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;
 
+#[cfg(test)]
+extern crate self as localshape;
+
+#[cfg(feature = "render")]
+pub use gpu::Gpu;
+#[cfg(feature = "render")]
+pub use render::Renderer;
+pub use runner::Runner;
+pub use scene::{BodyBuilder, Lattice, Limits, ObstacleBuilder, Rotation, Scene};
+
 #[cfg(feature = "render")]
 pub mod animation;
 #[cfg(feature = "render")]
-pub mod artist;
-pub mod cli;
-pub mod colour;
+mod artist;
+mod cli;
+mod colour;
 pub mod golden;
 #[cfg(feature = "render")]
 pub mod gpu;
-pub mod history;
+mod history;
 pub mod look;
-pub mod moments;
-pub mod output;
+mod moments;
+mod output;
+#[allow(rustdoc::private_intra_doc_links, reason = "it maps equations to code inside, which few readers build")]
 pub mod paper;
 #[cfg(feature = "render")]
 pub mod picture;
@@ -70,4 +98,31 @@ pub mod runner;
 pub mod scene;
 mod shell;
 pub mod sim;
-pub mod table;
+mod table;
+
+/// What the program, the benchmarks and the tests that run the program need from outside. It may change at any time.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::cli::run;
+    #[cfg(feature = "render")]
+    pub use crate::cli::settle;
+    pub use crate::colour::{ciede2000, lab, linear};
+    pub use crate::golden::Pixels;
+    pub use crate::golden::report::{PicturePair, Report};
+    pub use crate::golden::{Displacement, FrameDifference, RunDifference};
+    pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
+    pub use crate::sim::crew::Crew;
+    pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
+    pub use crate::table::ratio;
+}
+
+// Tests of what is inside, as large as other crates.
+#[cfg(test)]
+#[path = "../tests/physics/mod.rs"]
+mod physics_tests;
+#[cfg(all(test, feature = "render"))]
+#[path = "../tests/render/mod.rs"]
+mod render_tests;
+#[cfg(test)]
+#[path = "../tests/scene/mod.rs"]
+mod scene_tests;

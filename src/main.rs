@@ -1,10 +1,11 @@
-//! The program; see [`localshape::cli`].
+//! The program.
 
+use localshape::internals;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let words: Vec<_> = std::env::args_os().collect();
     #[cfg(feature = "render")]
-    localshape::cli::settle(&words);
-    localshape::cli::run(words)
+    internals::settle(&words);
+    internals::run(words)
 }

@@ -86,7 +86,7 @@ impl Moments {
 type OfRun<'a> = (&'a Scene, usize);
 
 /// A figure's simulations on their way, in slices.
-pub struct Taking<'a> {
+pub(crate) struct Taking<'a> {
     figure: &'a Figure,
     parts: Vec<Part<'a>>,
     /// The parts with the courses of the first scene's runs, if strips are shown.
@@ -107,7 +107,7 @@ struct Part<'a> {
 
 impl<'a> Taking<'a> {
     /// The simulations of a figure at their start.
-    pub fn new(figure: &'a Figure) -> Self {
+    pub(crate) fn new(figure: &'a Figure) -> Self {
         match &figure.content {
             Content::Sheet(sheet) => Self::of_sheet(figure, sheet),
             Content::Forces(_) => Self { figure, parts: Vec::new(), courses: None },
@@ -161,13 +161,13 @@ impl<'a> Taking<'a> {
 
     /// Goes on, each run by `most_steps` at most, and returns whether all are at their end. However the way is cut up,
     /// the result has the same bits.
-    pub fn advance(&mut self, most_steps: u64) -> bool {
+    pub(crate) fn advance(&mut self, most_steps: u64) -> bool {
         let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
     /// Steps done with so far, and steps at the end, of all simulations together.
-    pub fn steps(&self) -> [u64; 2] {
+    pub(crate) fn steps(&self) -> [u64; 2] {
         self.parts.iter().fold([0_u64; 2], |[done, all], part| {
             [done.saturating_add(part.runner.steps()), all.saturating_add(part.runner.steps_at(part.end))]
         })
@@ -177,7 +177,7 @@ impl<'a> Taking<'a> {
     ///
     /// # Panics
     /// If the simulations are not at their end.
-    pub fn finish(self) -> Moments {
+    pub(crate) fn finish(self) -> Moments {
         match &self.figure.content {
             Content::Sheet(sheet) => {
                 let mut cells: Vec<Option<RunFrame>> = vec![None; sheet.rows.len() * sheet.columns.len()];

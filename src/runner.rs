@@ -1,7 +1,7 @@
 //! Advances runs of a scene, side by side, to the moments that are asked for: frames, the states of a figure, the course
 //! that strips show. Nothing else does.
 
-use crate::history::{Course, History};
+pub use crate::history::{Course, History};
 use crate::scene::Scene;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
@@ -64,19 +64,19 @@ impl<'a> Runner<'a> {
     }
 
     /// The same without the field that the scene colours its bodies by, for those who draw nothing.
-    pub fn without_field(mut self) -> Self {
+    pub(crate) fn without_field(mut self) -> Self {
         self.runs.iter_mut().for_each(|running| running.world.show(None));
         self
     }
 
     /// The same noting down the course of some diagnostics of all runs on the way.
-    pub fn with_course(self, wanted: &[Diagnostic]) -> Self {
+    pub(crate) fn with_course(self, wanted: &[Diagnostic]) -> Self {
         self.with_closer_course(wanted, None, &[])
     }
 
     /// The same with more moments: as many as usually of the whole scene between two that are looked at `closer` (s), if
     /// there are any, and the steps nearest to each of `shown` (s).
-    pub fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+    pub(crate) fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
         for running in &mut self.runs {
             running.wanted = wanted.to_vec();
             running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
@@ -100,7 +100,7 @@ impl<'a> Runner<'a> {
     }
 
     /// Steps that all runs together have taken at a moment.
-    pub fn steps_at(&self, moment: Moment) -> u64 {
+    pub(crate) fn steps_at(&self, moment: Moment) -> u64 {
         self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps_at(moment)))
     }
 
@@ -138,7 +138,7 @@ impl<'a> Runner<'a> {
     }
 
     /// What was noted down until now.
-    pub fn history(&self) -> History {
+    pub(crate) fn history(&self) -> History {
         let courses = self.runs.iter().map(|running| running.course.clone()).collect();
         History { end: self.scene.frame_time(self.scene.last_frame()), courses }
     }
@@ -179,7 +179,7 @@ impl Running {
 
 /// Frames of a scene in rising order, simulated once, also where the course of the whole scene must be known before the
 /// first of them is drawn.
-pub struct Frames<'a> {
+pub(crate) struct Frames<'a> {
     runner: Runner<'a>,
     frames: Vec<u64>,
     /// How many were handed out.
@@ -198,7 +198,7 @@ struct Waiting {
 
 /// What comes next.
 #[derive(Debug)]
-pub enum Next {
+pub(crate) enum Next {
     /// Some more steps were taken.
     Working,
     /// The course of the scene from start to end, before the first frame.
@@ -213,7 +213,7 @@ impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With `whole_course`, which it must note down, all is simulated
     /// before the first.
     /// Their states wait in a file without a name in `folder`.
-    pub fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
+    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
         let waiting = whole_course.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
         Self { runner, frames: frames.to_vec(), taken: 0, waiting }
     }
@@ -222,7 +222,7 @@ impl<'a> Frames<'a> {
     ///
     /// # Errors
     /// If states that wait cannot be kept on disk.
-    pub fn next(&mut self, most_steps: u64) -> io::Result<Next> {
+    pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
         let Self { runner, frames, taken, waiting } = self;
         if let Some(waiting) = waiting
             && !waiting.is_known
@@ -255,7 +255,7 @@ impl<'a> Frames<'a> {
     }
 
     /// Steps taken so far, and steps at the end, of all runs together.
-    pub fn steps(&self) -> [u64; 2] {
+    pub(crate) fn steps(&self) -> [u64; 2] {
         let scene = self.runner.scene;
         let last = match self.waiting {
             Some(_) => scene.last_frame(),
@@ -267,12 +267,12 @@ impl<'a> Frames<'a> {
     }
 
     /// How many frames were handed out.
-    pub fn taken(&self) -> usize {
+    pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
     /// Calls `ask` on each thread that was lent to the runs, besides those of the pool.
-    pub fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+    pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
         self.runner.ask_helpers(ask);
     }
 }

@@ -54,7 +54,7 @@ impl Format {
     ///
     /// # Errors
     /// If it needs `ffmpeg` and that is missing.
-    pub fn look(self) -> Result<(), AnimationError> {
+    pub(crate) fn look(self) -> Result<(), AnimationError> {
         match self {
             Self::Mp4 | Self::WebM => super::ffmpeg::look(self),
             _ => Ok(()),

@@ -20,9 +20,9 @@ mod y4m;
 
 pub use error::AnimationError;
 pub use format::Format;
-pub use resize::resized;
+pub(crate) use resize::resized;
 pub use sheet::Sheet;
-pub use spool::Spool;
+pub(crate) use spool::Spool;
 pub use timeline::{Shot, Timeline};
 
 use crate::colour::Colour;
@@ -42,17 +42,17 @@ pub struct Image {
 
 impl Image {
     /// A picture of one colour.
-    pub fn plain([width, height]: [u32; 2], colour: Colour) -> Self {
+    pub(crate) fn plain([width, height]: [u32; 2], colour: Colour) -> Self {
         Self { size: [width, height], pixels: colour.repeat(width as usize * height as usize) }
     }
 
     /// The colour of the top left corner.
-    pub fn corner(&self) -> Colour {
+    pub(crate) fn corner(&self) -> Colour {
         [self.pixels[0], self.pixels[1], self.pixels[2]]
     }
 
     /// Puts another picture, which must fit, in front of this one, with its top left corner at `x`, `y` (px).
-    pub fn paste(&mut self, other: &Self, [x, y]: [u32; 2]) {
+    pub(crate) fn paste(&mut self, other: &Self, [x, y]: [u32; 2]) {
         let row = 3 * other.size[0] as usize;
         for (line, source) in other.pixels.chunks_exact(row).enumerate() {
             let start = 3 * ((y as usize + line) * self.size[0] as usize + x as usize);

@@ -19,7 +19,7 @@ static ENCODED: LazyLock<Vec<u8>> =
 ///
 /// # Panics
 /// If a side is zero.
-pub fn resized(image: &Image, size: [u32; 2]) -> Image {
+pub(crate) fn resized(image: &Image, size: [u32; 2]) -> Image {
     if image.size == size {
         return image.clone();
     }

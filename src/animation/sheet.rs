@@ -79,7 +79,7 @@ impl Sheet {
     ///
     /// # Errors
     /// If a frame cannot be had, or there are more of them than have room.
-    pub fn encode(&self, animation: &Animation<'_>) -> Result<(Vec<u8>, Written), AnimationError> {
+    pub(crate) fn encode(&self, animation: &Animation<'_>) -> Result<(Vec<u8>, Written), AnimationError> {
         let shots = animation.timeline.shots();
         let grid = self.grid(shots.len() as u32, animation.reel.size()).ok_or_else(|| {
             let [width, height] = self.size;

@@ -11,7 +11,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Compressed frames in a file without a name, which goes with it. Who asks for a frame that is not there yet waits.
 #[derive(Debug)]
-pub struct Spool {
+pub(crate) struct Spool {
     size: [u32; 2],
     /// Where the file is, for messages.
     folder: PathBuf,
@@ -33,7 +33,7 @@ impl Spool {
     ///
     /// # Errors
     /// If nothing can be written there.
-    pub fn new(folder: &Path, size: [u32; 2]) -> Result<Self, OutputError> {
+    pub(crate) fn new(folder: &Path, size: [u32; 2]) -> Result<Self, OutputError> {
         let file = tempfile::tempfile_in(folder).map_err(OutputError::writing(folder))?;
         let kept = Kept { file, places: HashMap::new(), end: 0, ended: false };
         Ok(Self { size, folder: folder.to_owned(), kept: Mutex::new(kept), changed: Condvar::new() })
@@ -43,7 +43,7 @@ impl Spool {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn put(&self, frame: usize, picture: &[u8]) -> Result<(), OutputError> {
+    pub(crate) fn put(&self, frame: usize, picture: &[u8]) -> Result<(), OutputError> {
         let mut kept = self.lock();
         let end = kept.end;
         let written = kept.file.seek(SeekFrom::Start(end)).and_then(|_| kept.file.write_all(picture));
@@ -55,7 +55,7 @@ impl Spool {
     }
 
     /// No more frames come: who still waits for one does so in vain.
-    pub fn end(&self) {
+    pub(crate) fn end(&self) {
         self.lock().ended = true;
         self.changed.notify_all();
     }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Normal colour vision and two kinds of colour blindness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vision {
+pub(crate) enum Vision {
     /// Those with three kinds of cones.
     Normal,
     /// Those without green cones, some 1 % of all men.
@@ -33,10 +33,10 @@ const VIENOT_1999: [Loss; 2] = [
 
 impl Vision {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Normal, Self::Deuteranopia, Self::Protanopia];
+    pub(crate) const ALL: [Self; 3] = [Self::Normal, Self::Deuteranopia, Self::Protanopia];
 
     /// Its name within a sentence, after *to*.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Normal => "eyes with all cones",
             Self::Deuteranopia => "eyes without green cones (deuteranopia)",
@@ -46,7 +46,7 @@ impl Vision {
 }
 
 /// Linear light as somebody sees it, simulated by each of two models of colour blindness: Machado 2009 and Viénot 1999.
-pub fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
+pub(crate) fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
     match vision {
         Vision::Normal => [light; 2],
@@ -57,7 +57,7 @@ pub fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
 
 /// The difference of two colours to somebody: the smaller CIEDE2000 of both models of that vision. A difference of about 1
 /// is just noticeable between colours that touch; colours that differ by 20 are not confused.
-pub fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
+pub(crate) fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
     let [one, other] = [one, other].map(|colour| seen_by(vision, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
@@ -84,7 +84,8 @@ pub fn lab([r, g, b]: [f64; 3]) -> Lab {
 }
 
 /// The distance of two colours in CIELAB (CIE 1976).
-pub fn cie76(Lab(one): Lab, Lab(other): Lab) -> f64 {
+#[cfg(test)]
+pub(crate) fn cie76(Lab(one): Lab, Lab(other): Lab) -> f64 {
     (0..3).map(|axis| (one[axis] - other[axis]) * (one[axis] - other[axis])).sum::<f64>().sqrt()
 }
 

@@ -10,11 +10,13 @@ mod difference;
 mod oklab;
 mod typed;
 
-pub(crate) use difference::least_difference;
-pub use difference::{Lab, Vision, cie76, ciede2000, difference, lab, seen_by};
-pub use oklab::{Oklab, from_oklab, oklab};
+#[cfg(test)]
+pub(crate) use difference::{Lab, cie76, seen_by};
+pub(crate) use difference::{Vision, difference, least_difference};
+pub use difference::{ciede2000, lab};
+pub(crate) use oklab::{Oklab, from_oklab, oklab};
 pub(crate) use typed::names;
-pub use typed::{UnknownColour, parse, written};
+pub(crate) use typed::{UnknownColour, parse, written};
 
 /// An opaque colour: red, green, blue, as sRGB bytes.
 pub type Colour = [u8; 3];
@@ -28,7 +30,7 @@ pub fn linear(colour: Colour) -> [f64; 3] {
 }
 
 /// Linear light as the nearest sRGB bytes; values out of range are clamped.
-pub fn encoded(linear: [f64; 3]) -> Colour {
+pub(crate) fn encoded(linear: [f64; 3]) -> Colour {
     linear.map(|light| {
         let light = light.clamp(0.0, 1.0);
         let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 };
@@ -37,7 +39,7 @@ pub fn encoded(linear: [f64; 3]) -> Colour {
 }
 
 /// The relative luminance of a colour, from 0 to 1 (WCAG 2.2).
-pub fn luminance(colour: Colour) -> f64 {
+pub(crate) fn luminance(colour: Colour) -> f64 {
     let [red, green, blue] = linear(colour);
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
@@ -48,13 +50,13 @@ pub(crate) const LEAST_CONTRAST: f64 = 4.5;
 pub(crate) const LINE_CONTRAST: f64 = 3.0;
 
 /// The contrast of two colours, from 1 to 21 (WCAG 2.2). Words of the usual size need 4.5.
-pub fn contrast(one: Colour, other: Colour) -> f64 {
+pub(crate) fn contrast(one: Colour, other: Colour) -> f64 {
     let [a, b] = [luminance(one), luminance(other)];
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
 /// A mix of two colours, linear in their sRGB bytes: the first at a share of 0, the other at 1.
-pub fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
+pub(crate) fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
     std::array::from_fn(|at| {
         let [from, to] = [one[at], other[at]].map(f64::from);
         (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8
@@ -63,7 +65,7 @@ pub fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
 
 /// The colour itself if it has a contrast with the ground, else the nearest that has one: with the same hue, lighter
 /// or darker, whichever changes it less. Black or white where none has it.
-pub fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
+pub(crate) fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
     const STEPS: u32 = 200;
     let own = oklab(colour);
     let moved = |by: f64| {
@@ -77,7 +79,7 @@ pub fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
 }
 
 /// Of several colours, the one with most contrast with the ground; black if there is none.
-pub fn best_of(colours: &[Colour], ground: Colour) -> Colour {
+pub(crate) fn best_of(colours: &[Colour], ground: Colour) -> Colour {
     let most = |a: &&Colour, b: &&Colour| contrast(**a, ground).total_cmp(&contrast(**b, ground));
     colours.iter().max_by(most).copied().unwrap_or_default()
 }

@@ -4,10 +4,10 @@ use super::{Colour, encoded, linear};
 
 /// A colour in Oklab: lightness from 0 to 1, how red rather than green, how yellow rather than blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Oklab(pub [f64; 3]);
+pub(crate) struct Oklab(pub [f64; 3]);
 
 /// A colour in Oklab.
-pub fn oklab(colour: Colour) -> Oklab {
+pub(crate) fn oklab(colour: Colour) -> Oklab {
     let [r, g, b] = linear(colour);
     let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
     let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
@@ -20,7 +20,7 @@ pub fn oklab(colour: Colour) -> Oklab {
 }
 
 /// An Oklab colour as sRGB bytes. Channels out of range are clamped.
-pub fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
+pub(crate) fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
     let cube = |x: f64| x * x * x;
     let l = cube(lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b);
     let m = cube(lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b);
@@ -34,12 +34,13 @@ pub fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
 
 impl Oklab {
     /// How different two colours look: 0 for the same, 1 for black and white.
-    pub fn distance(self, other: Self) -> f64 {
+    #[cfg(test)]
+    pub(crate) fn distance(self, other: Self) -> f64 {
         (0..3).map(|axis| (self.0[axis] - other.0[axis]) * (self.0[axis] - other.0[axis])).sum::<f64>().sqrt()
     }
 
     /// How colourful it is: 0 for greys.
-    pub fn chroma(self) -> f64 {
+    pub(crate) fn chroma(self) -> f64 {
         let Self([_, a, b]) = self;
         (a * a + b * b).sqrt()
     }

@@ -5,7 +5,7 @@ use csscolorparser::NAMED_COLORS;
 
 /// Why a text is not a colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum UnknownColour {
+pub(crate) enum UnknownColour {
     /// It is neither a name nor digits.
     Unknown,
     /// It has the digits of a colour but not the `#` before them.
@@ -21,7 +21,7 @@ pub enum UnknownColour {
 ///
 /// # Errors
 /// A text that is none of these, or one whose colour is not opaque.
-pub fn parse(text: &str) -> Result<Colour, UnknownColour> {
+pub(crate) fn parse(text: &str) -> Result<Colour, UnknownColour> {
     let text = text.trim();
     let named = names().any(|name| name.eq_ignore_ascii_case(text));
     // Digits without a `#` are taken for a colour by some, but `add` is more likely a slip than a green.
@@ -35,7 +35,7 @@ pub fn parse(text: &str) -> Result<Colour, UnknownColour> {
 }
 
 /// A colour as digits: `#93a5ba`.
-pub fn written([red, green, blue]: Colour) -> String {
+pub(crate) fn written([red, green, blue]: Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// What was accepted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Blessed {
+pub(crate) struct Blessed {
     /// Files that were written, in order.
     pub written: Vec<PathBuf>,
     /// Files of a golden that were removed because nothing stands for them any more.
@@ -27,7 +27,7 @@ pub struct Blessed {
 
 /// Why nothing was accepted.
 #[derive(Debug, thiserror::Error)]
-pub enum BlessError {
+pub(crate) enum BlessError {
     /// The simulation gave other states, or ends earlier, and accepting that was not asked for.
     #[error("the state moved, so nothing was accepted; to accept it anyway: {command}")]
     StateMoved {
@@ -141,7 +141,7 @@ impl Comparison {
     ///
     /// # Errors
     /// If states moved and that was not to be accepted, if what is there cannot be read, or a file cannot be written.
-    pub fn bless(&self, with_states: bool) -> Result<Blessed, BlessError> {
+    pub(crate) fn bless(&self, with_states: bool) -> Result<Blessed, BlessError> {
         if self.passes() {
             return Ok(Blessed::default());
         }

@@ -4,6 +4,7 @@
 //! where a silhouette passes through the corner of a pixel. Another kind of adapter has other sample positions: pixels
 //! differ a little along all silhouettes, but those between them must be the same.
 
+#[cfg(test)]
 use super::picture::Pixels;
 use super::silhouettes::{CONTRAST, Finder, Place};
 use crate::output::Tags;
@@ -29,7 +30,7 @@ const PART_OF_INTERIORS: f64 = 1e-3;
 /// What is known of the machines that drew two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Machines {
+pub(crate) enum Machines {
     /// The same adapter with the same driver, for software on the same type of processor: not a byte may differ.
     Same,
     /// Neither picture says who drew it, so that nothing excuses a difference.
@@ -42,7 +43,7 @@ pub enum Machines {
 
 impl Machines {
     /// What two adapters, as pictures name them, are to each other.
-    pub fn of(expected: Option<&str>, actual: Option<&str>) -> Self {
+    pub(crate) fn of(expected: Option<&str>, actual: Option<&str>) -> Self {
         match (expected, actual) {
             (None, None) => Self::Unknown,
             (Some(one), Some(other)) if one == other => Self::Same,
@@ -59,7 +60,7 @@ pub(super) fn kind(adapter: &str) -> &str {
 
 /// How many pixels differ visibly, and how many may.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Count {
+pub(crate) struct Count {
     /// Pixels of which a channel differs by more than 2 of 255; for [`Distance::one_sided`] by more than 8.
     pub visible: u64,
     /// How many of them are allowed.
@@ -70,7 +71,7 @@ pub struct Count {
 
 /// How far two pictures of one size are apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Distance {
+pub(crate) struct Distance {
     /// What the limits are made for.
     pub machines: Machines,
     /// Pixels that are not equal.
@@ -89,7 +90,8 @@ pub struct Distance {
 
 impl Distance {
     /// That of two pictures; `None` if their sizes or channels are not alike.
-    pub fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
+    #[cfg(test)]
+    pub(crate) fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
         if expected.size != actual.size || expected.channels != actual.channels {
             return None;
         }
@@ -100,17 +102,17 @@ impl Distance {
     }
 
     /// Whether it is no more than such machines differ.
-    pub fn is_allowed(&self) -> bool {
+    pub(crate) fn is_allowed(&self) -> bool {
         self.limits().all(|limit| limit.is_kept())
     }
 
     /// How much of what is allowed is used: 1 at the limit, and more if there is too much.
-    pub fn of_limit(&self) -> f64 {
+    pub(crate) fn of_limit(&self) -> f64 {
         self.limits().map(|limit| limit.used()).fold(0.0, f64::max)
     }
 
     /// Pixels that differ and how many may, of those of which most that may differ do.
-    pub fn nearest_to_limit(&self) -> Count {
+    pub(crate) fn nearest_to_limit(&self) -> Count {
         let nearest = self.limits().max_by(|one, other| one.part().total_cmp(&other.part()));
         nearest.map_or(self.counted, |limit| limit.count)
     }

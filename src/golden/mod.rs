@@ -25,37 +25,28 @@ mod pair;
 mod picture;
 #[cfg(feature = "render")]
 mod plan;
-#[cfg_attr(
-    not(feature = "render"),
-    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
-)]
 mod record;
-pub mod report;
-#[cfg_attr(
-    not(feature = "render"),
-    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
-)]
+pub(crate) mod report;
 mod side;
 mod silhouettes;
-#[cfg_attr(
-    not(feature = "render"),
-    allow(dead_code, reason = "parts are for goldens, which are made where they can be drawn")
-)]
 mod states;
 #[cfg(feature = "render")]
 mod suite;
 mod text;
 mod verdict;
 
-pub use bless::{BlessError, Blessed};
-pub use distance::{Count, Distance, Machines};
-pub use picture::{PictureError, Pixels};
-pub use record::RECORD_FILE;
+pub(crate) use bless::{BlessError, Blessed};
+pub(crate) use picture::PictureError;
+#[doc(hidden)]
+pub use picture::Pixels;
+pub(crate) use record::RECORD_FILE;
 pub(crate) use side::Side;
-pub use states::{Change, Displacement, FrameDifference, Moved, RunDifference, StepChange};
+pub(crate) use states::Moved;
+#[doc(hidden)]
+pub use states::{Displacement, FrameDifference, RunDifference};
 #[cfg(feature = "render")]
 pub use suite::Suite;
-pub use verdict::{MovedHere, Verdict};
+pub(crate) use verdict::{MovedHere, Verdict};
 
 use crate::output::{Shown, Tags};
 use crate::sim::words::rounded;
@@ -70,7 +61,7 @@ use std::path::{Path, PathBuf};
 
 /// What keeps a comparison from being made at all.
 #[derive(Debug, thiserror::Error)]
-pub enum ComparisonError {
+pub(crate) enum ComparisonError {
     /// A file or folder is not there or cannot be read.
     #[error("cannot read {}", path.display())]
     Read {
@@ -111,7 +102,7 @@ pub enum ComparisonError {
 
 /// Pictures beside each other, and the states behind them.
 #[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// One for each picture on either side, in the order of their names.
     pub pictures: Vec<Compared>,
     /// The runs whose states are not those that were expected, in any frame that is known on both sides, drawn or not.
@@ -136,7 +127,7 @@ pub struct Comparison {
 
 /// The verdict on one picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Compared {
+pub(crate) struct Compared {
     /// Its file's name.
     pub name: String,
     /// The frame that it shows, if it says so.
@@ -152,7 +143,7 @@ impl Comparison {
     ///
     /// # Errors
     /// If there is nothing to compare on one of the sides. What is wrong with single pictures is told in their verdicts.
-    pub fn of(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
+    pub(crate) fn of(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
         Self::between(Side::read_or_absent(expected)?, Side::read(actual)?)
     }
 
@@ -259,20 +250,20 @@ impl Comparison {
     }
 
     /// Whether nothing is wrong.
-    pub fn passes(&self) -> bool {
+    pub(crate) fn passes(&self) -> bool {
         let is_there = self.sides[0].kind != Kind::Absent;
         let all_known = self.ends_early.is_none() && self.unknown.is_empty();
         is_there && all_known && self.moved.is_empty() && self.pictures.iter().all(|picture| picture.verdict.passes())
     }
 
     /// Whether there are other states than those that were expected, or fewer of them.
-    pub fn state_moved(&self) -> bool {
+    pub(crate) fn state_moved(&self) -> bool {
         let moved = |picture: &Compared| matches!(picture.verdict, Verdict::StateMoved { .. });
         !self.moved.is_empty() || self.ends_early.is_some() || self.pictures.iter().any(moved)
     }
 
     /// The verdict on the whole, in the words of the gravest on a picture.
-    pub fn verdict(&self) -> &'static str {
+    pub(crate) fn verdict(&self) -> &'static str {
         // From the most severe.
         const ORDER: [&str; 8] = [
             "unreadable",
@@ -292,17 +283,17 @@ impl Comparison {
     }
 
     /// Whether there is no golden yet.
-    pub fn is_golden_missing(&self) -> bool {
+    pub(crate) fn is_golden_missing(&self) -> bool {
         self.sides[0].kind == Kind::Absent
     }
 
     /// The first picture whose state moved.
-    pub fn first_moved(&self) -> Option<&Compared> {
+    pub(crate) fn first_moved(&self) -> Option<&Compared> {
         self.pictures.iter().find(|picture| matches!(picture.verdict, Verdict::StateMoved { .. }))
     }
 
     /// The command that accepts what is actually there; `None` if nothing is to be accepted, or nothing can be.
-    pub fn command_to_accept(&self) -> Option<String> {
+    pub(crate) fn command_to_accept(&self) -> Option<String> {
         if self.passes() || self.unfit().is_some() || !self.has_something_to_accept() {
             return None;
         }

@@ -16,7 +16,7 @@ const MOST_PASSED: usize = 8;
 
 impl Comparison {
     /// What a page shows of it. Of long sequences it shows the pictures of some frames.
-    pub fn report(&self) -> Report {
+    pub(crate) fn report(&self) -> Report {
         let [expected, actual] = &self.sides;
         let shown = self.shown();
         let pairs: Vec<(PicturePair, [Option<String>; 2])> =

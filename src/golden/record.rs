@@ -15,7 +15,7 @@ use std::io;
 use std::path::Path;
 
 /// The name of the file in a golden's folder.
-pub const RECORD_FILE: &str = "golden.toml";
+pub(crate) const RECORD_FILE: &str = "golden.toml";
 
 /// The largest file that is read (bytes).
 const LARGEST_FILE: u64 = 4 << 20;

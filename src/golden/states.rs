@@ -130,7 +130,7 @@ pub struct Displacement {
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Change {
+pub(crate) enum Change {
     /// Its states are other ones.
     Moved,
     /// It is not there any more.
@@ -141,7 +141,7 @@ pub enum Change {
 
 /// Another time step than was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StepChange {
+pub(crate) struct StepChange {
     /// As it was expected (s).
     pub before: f64,
     /// As it is (s).
@@ -170,7 +170,7 @@ impl fmt::Display for StepChange {
 
 /// A run whose states are not those that were expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Moved {
+pub(crate) struct Moved {
     /// Name of the run.
     pub run: String,
     /// What became of it.

@@ -1,6 +1,7 @@
 //! What is said of two pictures: whether physics or drawing moved.
 
 use super::distance::Distance;
+#[cfg(test)]
 use super::picture::Pixels;
 use super::states::Displacement;
 use crate::output::Tags;
@@ -10,7 +11,7 @@ use std::fmt;
 /// Whether two pictures show the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "verdict")]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// Every pixel is equal, and so are the states.
     #[serde(rename = "identical")]
     Identical,
@@ -57,7 +58,7 @@ pub enum Verdict {
 
 /// A run whose state in one picture is not the one that was expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MovedHere {
+pub(crate) struct MovedHere {
     /// Name of the run.
     pub run: String,
     /// The node that is farthest away, where that is known.
@@ -66,7 +67,8 @@ pub struct MovedHere {
 
 impl Verdict {
     /// The verdict on an actual picture beside the expected one.
-    pub fn new(expected: &Pixels, actual: &Pixels) -> Self {
+    #[cfg(test)]
+    pub(crate) fn new(expected: &Pixels, actual: &Pixels) -> Self {
         let distance = Distance::new(expected, actual);
         Self::of([expected.label.as_ref(), actual.label.as_ref()], [expected.size, actual.size], distance)
     }
@@ -86,7 +88,7 @@ impl Verdict {
     }
 
     /// Whether nothing is wrong.
-    pub fn passes(&self) -> bool {
+    pub(crate) fn passes(&self) -> bool {
         match self {
             Self::Identical | Self::WithinTolerance(_) => true,
             Self::NoState { distance, .. } => distance.is_some_and(|distance| distance.is_allowed()),
@@ -99,7 +101,7 @@ impl Verdict {
     }
 
     /// The verdict in the words that all of its kind share.
-    pub fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Identical => "identical",
             Self::WithinTolerance(_) => "same state, pixels within tolerance",
@@ -113,7 +115,7 @@ impl Verdict {
     }
 
     /// How far the pictures are apart, if they could be compared.
-    pub fn distance(&self) -> Option<&Distance> {
+    pub(crate) fn distance(&self) -> Option<&Distance> {
         match self {
             Self::WithinTolerance(distance) => Some(distance),
             Self::DrawnDifferently { distance, .. }

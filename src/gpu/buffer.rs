@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 /// A device buffer of elements of one type, which is rewritten for each frame and grows as needed.
 #[derive(Debug)]
-pub struct GrowingBuffer<T> {
+pub(crate) struct GrowingBuffer<T> {
     label: &'static str,
     usage: wgpu::BufferUsages,
     buffer: wgpu::Buffer,
@@ -16,14 +16,14 @@ pub struct GrowingBuffer<T> {
 
 impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
     /// An empty buffer for `usage`, with room for some elements.
-    pub fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages, room: usize) -> Self {
+    pub(crate) fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages, room: usize) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = create(gpu, label, usage, bytes::<T>(room.max(1)));
         Self { label, usage, buffer, length: 0, generation: 0, element: PhantomData }
     }
 
     /// Replaces the contents. The device buffer is made anew only when it is too small, then with room to spare.
-    pub fn write(&mut self, gpu: &Gpu, elements: &[T]) {
+    pub(crate) fn write(&mut self, gpu: &Gpu, elements: &[T]) {
         self.length = elements.len();
         if self.buffer.size() < bytes::<T>(elements.len()) {
             self.buffer = create(gpu, self.label, self.usage, bytes::<T>(elements.len().next_power_of_two()));
@@ -44,22 +44,17 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
     }
 
     /// The device buffer behind it.
-    pub fn buffer(&self) -> &wgpu::Buffer {
+    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
     }
 
     /// How many elements were written last.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.length
     }
 
-    /// Whether nothing was written last.
-    pub fn is_empty(&self) -> bool {
-        self.length == 0
-    }
-
     /// A number that changes whenever the device buffer is replaced and bindings to it must be made anew.
-    pub fn generation(&self) -> u64 {
+    pub(crate) fn generation(&self) -> u64 {
         self.generation
     }
 }

@@ -5,8 +5,8 @@ mod noise;
 mod processor;
 mod read_back;
 
-pub use buffer::GrowingBuffer;
-pub use read_back::{Pending, ReadBack, padded_row};
+pub(crate) use buffer::GrowingBuffer;
+pub(crate) use read_back::{Pending, ReadBack};
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -197,12 +197,12 @@ impl Gpu {
     }
 
     /// The device, for those who draw with it.
-    pub fn device(&self) -> &wgpu::Device {
+    pub(crate) fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
     /// The queue of the device.
-    pub fn queue(&self) -> &wgpu::Queue {
+    pub(crate) fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
@@ -212,7 +212,7 @@ impl Gpu {
     }
 
     /// The longest side of a picture that the device can draw (px).
-    pub fn longest_side(&self) -> u32 {
+    pub(crate) fn longest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
@@ -221,7 +221,7 @@ impl Gpu {
     ///
     /// # Errors
     /// The first thing that went wrong.
-    pub fn check(&self) -> Result<(), GpuError> {
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
         let mut trouble = self.trouble.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         match &*trouble {
             // A lost device stays lost.

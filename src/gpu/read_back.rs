@@ -8,7 +8,7 @@ const PIXEL: u32 = 4;
 
 /// The length of a row of `width` pixels in the buffer that a texture is copied to (bytes): rows begin at multiples of
 /// 256 bytes.
-pub fn padded_row(width: u32) -> u32 {
+pub(crate) fn padded_row(width: u32) -> u32 {
     (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
@@ -25,7 +25,7 @@ fn without_padding(rows: &[u8], width: u32, height: u32) -> Vec<u8> {
 
 /// A buffer for reading back one texture after the other.
 #[derive(Debug)]
-pub struct ReadBack {
+pub(crate) struct ReadBack {
     buffer: wgpu::Buffer,
     width: u32,
     height: u32,
@@ -33,14 +33,14 @@ pub struct ReadBack {
 
 /// A copy in progress, which [`ReadBack::collect`] completes.
 #[derive(Debug)]
-pub struct Pending {
+pub(crate) struct Pending {
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
     submission: wgpu::SubmissionIndex,
 }
 
 impl ReadBack {
     /// A buffer for textures of one size (px).
-    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
             size: u64::from(padded_row(width)) * u64::from(height),
@@ -51,7 +51,7 @@ impl ReadBack {
     }
 
     /// Adds the copy of a texture to the commands, submits them and returns at once.
-    pub fn submit(&self, gpu: &Gpu, mut commands: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Pending {
+    pub(crate) fn submit(&self, gpu: &Gpu, mut commands: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Pending {
         commands.copy_texture_to_buffer(
             texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -76,7 +76,7 @@ impl ReadBack {
     ///
     /// # Errors
     /// The device was lost or refused something on the way.
-    pub fn collect(&self, gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
+    pub(crate) fn collect(&self, gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
         let wait = wgpu::PollType::Wait { submission_index: Some(pending.submission), timeout: None };
         let waited = gpu.device().poll(wait);
         gpu.check()?;

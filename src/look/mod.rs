@@ -16,12 +16,13 @@ mod subject;
 pub(crate) mod typed;
 mod view;
 
+pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
-pub(crate) use framing::camera;
-pub use palette::{Palette, Theme};
-pub use ramp::SHADES;
-pub(crate) use resolve::{columns, resolve};
-pub use run_lines::LineStyle;
+pub(crate) use palette::Palette;
+pub use palette::Theme;
+pub(crate) use ramp::SHADES;
+pub(crate) use resolve::resolve;
+pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;

@@ -17,7 +17,7 @@ pub enum Theme {
 
 /// The colours of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Palette {
+pub(crate) struct Palette {
     /// Behind everything.
     pub background: Colour,
     /// Around arrows and marks, so that they stand out from whatever they lie on.
@@ -86,7 +86,7 @@ pub struct Palette {
 
 impl Palette {
     /// The colours of a theme.
-    pub fn of(theme: Theme) -> Self {
+    pub(crate) fn of(theme: Theme) -> Self {
         match theme {
             Theme::Light => LIGHT,
             Theme::Dark => DARK,
@@ -94,27 +94,27 @@ impl Palette {
     }
 
     /// Signs on sound elements in the plane: their edges' colour, a third of the way to the elements' own.
-    pub fn sign(&self) -> Colour {
+    pub(crate) fn sign(&self) -> Colour {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }
 
     /// What ghosts of shapes on the background are tinted with.
-    pub fn edge_on_ground(&self) -> Colour {
+    pub(crate) fn edge_on_ground(&self) -> Colour {
         if self.is_made_for_light() { self.edge } else { self.outline }
     }
 
     /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].
-    pub fn is_made_for_light(&self) -> bool {
+    pub(crate) fn is_made_for_light(&self) -> bool {
         contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])
     }
 
     /// A colour in which words can be read on the background: the nearest to a given one.
-    pub fn text_like(&self, colour: Colour) -> Colour {
+    pub(crate) fn text_like(&self, colour: Colour) -> Colour {
         readable(colour, self.halo, LEAST_CONTRAST)
     }
 
     /// The same on another ground, into which the floor goes over without a border and what is far fades.
-    pub fn on_ground(&self, ground: Colour) -> Self {
+    pub(crate) fn on_ground(&self, ground: Colour) -> Self {
         Self { background: ground, floor: ground, ..*self }
     }
 }

@@ -121,7 +121,7 @@ pub(crate) fn resolve(
 }
 
 /// How many panels stand beside each other of so many, unless a scene says so.
-pub(crate) fn columns(runs: usize) -> usize {
+fn columns(runs: usize) -> usize {
     COLUMNS.min(runs.max(1))
 }
 

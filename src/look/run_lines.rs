@@ -20,7 +20,7 @@ const DASHES: [&[f64]; 8] = [
 
 /// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStyle {
+pub(crate) struct LineStyle {
     /// Its colour.
     pub colour: Colour,
     /// Lengths of its dashes and of the gaps after them, by turns (px in the reference picture); empty for a solid line.

@@ -66,10 +66,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// What a scene shows that says nothing about it, from a metre before the origin; see [`Scene::framed`] for a camera
-    /// that shows a body.
-    ///
-    /// [`Scene::framed`]: crate::scene::Scene::framed
+    /// What a scene shows that says nothing about it, from a metre before the origin.
     fn default() -> Self {
         Self {
             size: [1280, 720],
@@ -171,7 +168,7 @@ pub struct Visible {
 impl Visible {
     /// What a scene that says nothing about it shows of a body of a number of nodes: its surfaces, and in the plane the
     /// nodes, too, unless they are many.
-    pub fn usual(dimension: Dimension, nodes: usize) -> Self {
+    pub(crate) fn usual(dimension: Dimension, nodes: usize) -> Self {
         const MANY_NODES: usize = 150;
         Self { surfaces: true, nodes: dimension == Dimension::Plane && nodes <= MANY_NODES, ..Self::default() }
     }
@@ -217,7 +214,7 @@ pub struct Look {
     /// What the colours come from: the theme asked for, unless its text could not be read on the background.
     pub theme: Theme,
     /// All colours.
-    pub palette: Palette,
+    pub(crate) palette: Palette,
     /// Whether the background is left out, so that whatever a picture is laid on shows.
     pub transparent: bool,
     /// The font.

@@ -11,7 +11,7 @@ const SUFFIX: &str = ".partial";
 
 /// A file under a hidden name until [`Self::commit`] gives it its own. Dropped before that, it leaves nothing.
 #[derive(Debug)]
-pub struct AtomicFile {
+pub(crate) struct AtomicFile {
     path: PathBuf,
     temporary: NamedTempFile,
 }
@@ -22,7 +22,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// If the folder cannot be written to.
-    pub fn create(path: &Path) -> Result<Self, OutputError> {
+    pub(crate) fn create(path: &Path) -> Result<Self, OutputError> {
         let folder = folder_of(path);
         // Made by the standard library, results are as open to others as any file; tempfile's own are their owner's.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
@@ -31,7 +31,7 @@ impl AtomicFile {
     }
 
     /// The name that the file will have.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -42,7 +42,7 @@ impl AtomicFile {
     }
 
     /// The open file.
-    pub fn file(&mut self) -> &mut File {
+    pub(crate) fn file(&mut self) -> &mut File {
         self.temporary.as_file_mut()
     }
 
@@ -50,7 +50,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// If they cannot be written; some of them may have been.
-    pub fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+    pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         self.temporary.as_file_mut().write_all(bytes).map_err(OutputError::writing(&self.path))
     }
 
@@ -62,7 +62,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// If it cannot be written or renamed; then it is removed.
-    pub fn commit(self) -> Result<(), OutputError> {
+    pub(crate) fn commit(self) -> Result<(), OutputError> {
         let Self { path, temporary } = self;
         temporary.as_file().sync_data().map_err(OutputError::writing(&path))?;
         temporary.persist(&path).map_err(|error| error.error).map_err(OutputError::writing(&path))?;
@@ -74,7 +74,7 @@ impl AtomicFile {
 ///
 /// # Errors
 /// If it cannot be written; then an earlier file of that name is as it was.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let mut file = AtomicFile::create(path)?;
     file.append(bytes)?;
     file.commit()

@@ -7,11 +7,11 @@ use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use std::path::Path;
 
 /// The name of the file in its folder.
-pub const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
+pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 
 /// Writes the diagnostics of frames as they come. The file appears with [`Self::finish`].
 #[derive(Debug)]
-pub struct DiagnosticsWriter {
+pub(crate) struct DiagnosticsWriter {
     file: AtomicFile,
     names: Vec<String>,
     /// Length of the rows that were written whole (bytes).
@@ -23,7 +23,7 @@ impl DiagnosticsWriter {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
+    pub(crate) fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
         let file = AtomicFile::create(&folder.join(DIAGNOSTICS_FILE))?;
         let names = scene.runs.iter().map(|run| run.name.clone()).collect();
         let mut writer = Self { file, names, length: 0 };
@@ -35,7 +35,7 @@ impl DiagnosticsWriter {
     ///
     /// # Errors
     /// If they cannot be written; rows written before stay.
-    pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let names = &self.names;
         let row = |run: &RunFrame| cells(&names[run.run], frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
         self.append(&rows(frame.runs.iter().map(row)))
@@ -51,7 +51,7 @@ impl DiagnosticsWriter {
     ///
     /// # Errors
     /// If it cannot be renamed.
-    pub fn finish(mut self) -> Result<(), OutputError> {
+    pub(crate) fn finish(mut self) -> Result<(), OutputError> {
         let length = self.length;
         self.file.file().set_len(length).map_err(OutputError::writing(self.file.path()))?;
         self.file.commit()

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// SHA-256 over all positions (m) and then all velocities (m/s) of a run's nodes, as little-endian double precision
 /// numbers x, y, z: 64 hexadecimal digits.
-pub fn state_digest(snapshot: &Snapshot) -> String {
+pub(crate) fn state_digest(snapshot: &Snapshot) -> String {
     let mut hash = Sha256::new();
     for vector in snapshot.position.iter().chain(&snapshot.velocity) {
         hash.update(super::states::vector_bytes(vector));

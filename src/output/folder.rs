@@ -8,12 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The file name of frame `index`: `frame_00000.png`.
-pub fn frame_file_name(index: u64) -> String {
+pub(crate) fn frame_file_name(index: u64) -> String {
     format!("frame_{index:05}.png")
 }
 
 /// The names of all frames as a pattern, for `run.json`.
-pub const FRAME_FILES: &str = "frame_*.png";
+pub(crate) const FRAME_FILES: &str = "frame_*.png";
 
 /// The number of the frame whose name a file has.
 fn frame_number(name: &str) -> Option<u64> {
@@ -25,7 +25,7 @@ fn frame_number(name: &str) -> Option<u64> {
 ///
 /// # Errors
 /// If the folder cannot be read.
-pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
@@ -39,7 +39,7 @@ pub fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
 
 /// What frames must have in common to be one sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Width and height (px).
     pub size: [u32; 2],
     /// Names of the runs drawn, in the scene's order.
@@ -48,7 +48,7 @@ pub struct Look {
 
 /// What may be replaced in a folder besides the files of the same scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replace {
+pub(crate) enum Replace {
     /// Nothing.
     Nothing,
     /// What earlier versions of the same scene file made.
@@ -59,7 +59,7 @@ pub enum Replace {
 
 /// A folder for the output of one scene, looked at but not yet touched.
 #[derive(Debug)]
-pub struct Folder {
+pub(crate) struct Folder {
     path: PathBuf,
     scene: Whose,
     look: Option<Look>,
@@ -87,7 +87,12 @@ impl Folder {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is none.
-    pub fn inspect(path: &Path, scene: &Scene, look: Option<Look>, replace: Replace) -> Result<Self, OutputError> {
+    pub(crate) fn inspect(
+        path: &Path,
+        scene: &Scene,
+        look: Option<Look>,
+        replace: Replace,
+    ) -> Result<Self, OutputError> {
         let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
         let mut folder = Self { path: path.to_owned(), scene, look, replace, earlier: None };
         if is_folder(path)? {
@@ -107,13 +112,13 @@ impl Folder {
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// What is replaced of an earlier version of the scene file, in words: `31 frames made by an earlier version of
     /// sag.toml`.
-    pub fn earlier(&self) -> Option<&str> {
+    pub(crate) fn earlier(&self) -> Option<&str> {
         self.earlier.as_deref()
     }
 
@@ -124,7 +129,7 @@ impl Folder {
     /// # Errors
     /// If the folder cannot be made or written to; or as [`Self::inspect`], for only now nobody else can change what is
     /// there.
-    pub fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone(&self.path)?;
         let found = self.find()?;
@@ -139,14 +144,14 @@ impl Folder {
 
 /// A folder in which nobody else writes until this is dropped.
 #[derive(Debug)]
-pub struct Claimed {
+pub(crate) struct Claimed {
     path: PathBuf,
     _lock: FolderLock,
 }
 
 impl Claimed {
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 }
@@ -322,22 +327,18 @@ impl Owner {
 mod tests {
     use super::*;
     use crate::output::Summary;
-    use crate::sim::body::{Body, Dimension, Solids};
-    use crate::sim::integrate::Integrator;
+    use crate::scene::{BodyBuilder, Limits};
     use crate::sim::model::shape_based::ShapeBased;
-    use glam::DVec3;
+    use std::sync::Arc;
 
     /// They have no digest that could tell them apart.
     #[test]
-    fn scenes_made_in_code_are_never_taken_for_each_other() {
+    fn scenes_with_models_of_their_own_are_never_taken_for_each_other() {
         let scene = |title: &str, side: f64| {
-            let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|node| side * node).to_vec();
-            let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
-            let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
             let (rotation, damping_of) = Default::default();
             let model = ShapeBased { stiffness: 1e4, damping: 0.0, passes: 2, rotation, damping_of };
-            let run = crate::scene::Run::new("run", std::sync::Arc::new(model), Integrator::SemiImplicitEuler, 1e-3);
-            Scene::new(title, body, vec![run])
+            let scene = Scene::builder(title, BodyBuilder::polygon(3, side)).own_run("run", Arc::new(model));
+            scene.build(&Limits::default()).unwrap()
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();

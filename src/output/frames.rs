@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 
 /// A frame as drawn.
 #[derive(Clone, Debug)]
-pub struct PixelFrame {
+pub(crate) struct PixelFrame {
     /// Width and height (px).
     pub size: [u32; 2],
     /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
@@ -24,7 +24,7 @@ pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send +
 
 /// Threads that compress and write frames. Memory is bounded: when they are all behind, [`Self::write`] waits.
 #[derive(Debug)]
-pub struct FrameWriter {
+pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     threads: Vec<JoinHandle<Written>>,
     written: Written,
@@ -39,13 +39,9 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// Starts `threads` (at least one) threads that write into `folder`, which exists.
-    pub fn start(folder: &Path, threads: usize) -> Self {
-        Self::start_with(Some(folder), threads, None)
-    }
-
-    /// The same, also handing each file to `tap` with the number of its frame; without a folder only that.
-    pub(crate) fn start_with(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
+    /// Starts `threads` (at least one) threads that write into `folder`, which exists, and hand each file to `tap` with the
+    /// number of its frame; without a folder only that.
+    pub(crate) fn start(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
         // Nothing waits in between: a frame goes to a thread that is free, or stays where it was drawn until one is.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
@@ -61,7 +57,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// If a frame handed over earlier could not be written. Then this one and all that follow are not taken.
-    pub fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
         match &self.queue {
             Some(queue) if queue.send(frame).is_ok() => Ok(()),
             _ => self.wait(),
@@ -73,7 +69,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// If one could not be written and [`Self::write`] did not report it.
-    pub fn finish(mut self) -> (usize, Spent, Result<(), OutputError>) {
+    pub(crate) fn finish(mut self) -> (usize, Spent, Result<(), OutputError>) {
         let result = self.wait();
         (self.written.frames, self.written.spent, result)
     }
@@ -129,7 +125,7 @@ mod tests {
     #[test]
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::start(folder.path(), 3);
+        let mut writer = FrameWriter::start(Some(folder.path()), 3, None);
         (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
@@ -141,7 +137,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::start(&folder.path().join("absent"), 2);
+        let mut writer = FrameWriter::start(Some(&folder.path().join("absent")), 2, None);
         let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
         assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();

@@ -15,7 +15,7 @@ const MOMENT: Duration = Duration::from_secs(1);
 /// A folder that this program writes in, locked until this is dropped. Where folders cannot be locked, nobody is
 /// kept out.
 #[derive(Debug)]
-pub struct FolderLock {
+pub(crate) struct FolderLock {
     /// The open folder, which holds the lock.
     folder: Option<File>,
 }
@@ -26,7 +26,7 @@ impl FolderLock {
     ///
     /// # Errors
     /// If somebody else writes in it, or it cannot be written to.
-    pub fn alone(path: &Path) -> Result<Self, OutputError> {
+    pub(crate) fn alone(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
         if !lock.take(true) {
             return Err(in_use(path));
@@ -37,7 +37,7 @@ impl FolderLock {
 
     /// Locks a folder, which exists, for one who writes files of its own in it beside those of others. Leftovers stay,
     /// for they may be others' work.
-    pub fn beside_others(path: &Path) -> Self {
+    pub(crate) fn beside_others(path: &Path) -> Self {
         let lock = Self::open(path);
         let started = Instant::now();
         // Whoever writes alone may be about to remove leftovers. Who still does so later has removed them, and needs not
@@ -52,7 +52,7 @@ impl FolderLock {
     ///
     /// # Errors
     /// If somebody does.
-    pub fn look(path: &Path) -> Result<(), OutputError> {
+    pub(crate) fn look(path: &Path) -> Result<(), OutputError> {
         if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
     }
 

@@ -18,27 +18,28 @@ mod summary;
 mod timing;
 
 pub(crate) use atomic::folder_of;
-pub use atomic::{AtomicFile, write_whole};
-pub use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
-pub use digest::state_digest;
-pub use error::OutputError;
+pub(crate) use atomic::{AtomicFile, write_whole};
+pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
+pub(crate) use digest::state_digest;
+pub(crate) use error::OutputError;
 pub(crate) use error::{is_folder, read_file};
-pub use folder::{Claimed, FRAME_FILES, Folder, Look, Replace, frame_file_name, frame_files};
+pub(crate) use folder::{FRAME_FILES, Folder, Look, Replace, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
-pub use frames::{FrameWriter, PixelFrame};
-pub use lock::FolderLock;
+pub(crate) use frames::{FrameWriter, PixelFrame};
+pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
-pub use sheets::SheetFiles;
-pub use states::{STATES_FILE, StatesWriter};
-pub use summary::{FrameSummary, LastState, Outcome, RunStatus, RunSummary, SUMMARY_FILE, SceneSummary, Summary};
+pub(crate) use sheets::SheetFiles;
+pub(crate) use states::{STATES_FILE, StatesWriter};
+pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary};
+pub(crate) use timing::Clock;
 pub(crate) use timing::thread_time;
-pub use timing::{Clock, Spent, Timings};
+pub use timing::{Spent, Timings};
 
 /// A number with 17 significant digits, from which the same double precision number is read again.
 ///
 /// Not-a-number is `nan` and infinity `inf`, which the readers of most languages know.
-pub fn exact(number: f64) -> String {
+pub(crate) fn exact(number: f64) -> String {
     if number.is_nan() { "nan".to_owned() } else { format!("{number:.16e}") }
 }
 

@@ -9,7 +9,7 @@ const BEGINNING: &str = "<!-- localshape table ";
 
 /// Files begun in a folder under hidden names. Dropped unfinished, they leave nothing.
 #[derive(Debug)]
-pub struct SheetFiles {
+pub(crate) struct SheetFiles {
     files: Vec<AtomicFile>,
     _lock: FolderLock,
 }
@@ -23,7 +23,7 @@ impl SheetFiles {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is none, or somebody else writes in it.
-    pub fn inspect(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
+    pub(crate) fn inspect(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
         if !is_folder(folder)? {
             return Ok(());
         }
@@ -51,7 +51,7 @@ impl SheetFiles {
     ///
     /// # Errors
     /// If the folder cannot be made or written to, is refused, or somebody else writes in it.
-    pub fn begin(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<Self, OutputError> {
+    pub(crate) fn begin(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<Self, OutputError> {
         fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let lock = FolderLock::alone(folder)?;
         Self::look(folder, names, mark, overwrite)?;
@@ -63,7 +63,7 @@ impl SheetFiles {
     ///
     /// # Errors
     /// If one cannot be written; those before it are there.
-    pub fn finish(self, texts: &[String]) -> Result<(), OutputError> {
+    pub(crate) fn finish(self, texts: &[String]) -> Result<(), OutputError> {
         assert_eq!(self.files.len(), texts.len(), "a text for each file");
         self.files.into_iter().zip(texts).try_for_each(|(mut file, text)| {
             file.append(text.as_bytes())?;

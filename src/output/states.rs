@@ -14,7 +14,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// The name of the file in its folder.
-pub const STATES_FILE: &str = "states.npz";
+pub(crate) const STATES_FILE: &str = "states.npz";
 
 /// Writes the states of frames as they come, in memory that does not grow with their number.
 ///
@@ -30,7 +30,7 @@ pub const STATES_FILE: &str = "states.npz";
 /// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
 /// the end: for a moment that takes twice the space on disk.
 #[derive(Debug)]
-pub struct StatesWriter {
+pub(crate) struct StatesWriter {
     path: PathBuf,
     spool: File,
     body: Arc<Body>,
@@ -59,7 +59,7 @@ impl StatesWriter {
     ///
     /// # Errors
     /// If the folder cannot be written to.
-    pub fn create(folder: &Path, scene: &Scene, runs: &[usize]) -> Result<Self, OutputError> {
+    pub(crate) fn create(folder: &Path, scene: &Scene, runs: &[usize]) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
         let spool = tempfile::tempfile_in(folder_of(&path)).map_err(OutputError::writing(&path))?;
         let nodes = scene.body.len();
@@ -87,7 +87,7 @@ impl StatesWriter {
     ///
     /// # Errors
     /// If it cannot be written; frames written before stay.
-    pub fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
         record.extend(frame.time.to_le_bytes());
         for (run, &own_time) in frame.runs.iter().zip(&self.own_time) {
@@ -108,7 +108,7 @@ impl StatesWriter {
     ///
     /// # Errors
     /// If the file cannot be written; then there is none.
-    pub fn finish(mut self) -> Result<(), OutputError> {
+    pub(crate) fn finish(mut self) -> Result<(), OutputError> {
         let mut file = AtomicFile::create(&self.path)?;
         self.arrange(file.file()).map_err(OutputError::writing(&self.path))?;
         file.commit()

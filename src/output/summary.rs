@@ -8,11 +8,11 @@ use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
 /// The name of the file in its folder.
-pub const SUMMARY_FILE: &str = "run.json";
+pub(crate) const SUMMARY_FILE: &str = "run.json";
 
 /// The contents of `run.json`, with its keys in this order.
 #[derive(Clone, Debug, Serialize)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Version of this crate.
     pub localshape: String,
     /// The scene.
@@ -35,7 +35,7 @@ pub struct Summary {
 
 /// Which scene it is.
 #[derive(Clone, Debug, Serialize)]
-pub struct SceneSummary {
+pub(crate) struct SceneSummary {
     /// Its title.
     pub title: String,
     /// Its file, as a full path; `null` if it was read from a text.
@@ -52,7 +52,7 @@ pub struct SceneSummary {
 /// How a command ended for one scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Outcome {
+pub(crate) enum Outcome {
     /// It has not ended, or was killed.
     Unfinished,
     /// All frames were made.
@@ -65,7 +65,7 @@ pub enum Outcome {
 
 /// The frames asked for and made.
 #[derive(Clone, Debug, Serialize)]
-pub struct FrameSummary {
+pub(crate) struct FrameSummary {
     /// How many were asked for.
     pub asked: usize,
     /// How many were simulated and recorded.
@@ -80,7 +80,7 @@ pub struct FrameSummary {
 
 /// How a run went.
 #[derive(Clone, Debug, Serialize)]
-pub struct RunSummary {
+pub(crate) struct RunSummary {
     /// Its name.
     pub name: String,
     /// Time step (s).
@@ -95,7 +95,7 @@ pub struct RunSummary {
 /// Whether a run went well.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
-pub enum RunStatus {
+pub(crate) enum RunStatus {
     /// It did.
     Ok,
     /// It blew up.
@@ -111,7 +111,7 @@ pub enum RunStatus {
 
 /// A run in the last frame recorded.
 #[derive(Clone, Debug, Serialize)]
-pub struct LastState {
+pub(crate) struct LastState {
     /// Number of the frame.
     pub frame: u64,
     /// Time (s).
@@ -125,7 +125,7 @@ pub struct LastState {
 
 impl Summary {
     /// The summary before the first frame, of `asked` frames of some of the scene's runs.
-    pub fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
+    pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
             RunSummary { name: run.name.clone(), time_step: run.step, status: RunStatus::Ok, last: None }
@@ -150,7 +150,7 @@ impl Summary {
     }
 
     /// Takes note of the last frame recorded.
-    pub fn note_last(&mut self, frame: &Frame) {
+    pub(crate) fn note_last(&mut self, frame: &Frame) {
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
             let snapshot = &run.snapshot;
             summary.status = match snapshot.status {
@@ -170,7 +170,7 @@ impl Summary {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let mut summary = self.clone();
         summary.scene.relative_file = self.scene.file.as_ref().and_then(|file| relative(Path::new(file), folder));
         let mut text = serde_json::to_string_pretty(&summary).expect("plain data");

@@ -46,7 +46,7 @@ pub struct Timings {
 
 /// A moment, from which time is counted on the wall and on processors.
 #[derive(Clone, Copy, Debug)]
-pub struct Clock {
+pub(crate) struct Clock {
     wall: Instant,
     cpu: Option<Duration>,
     read: fn() -> Option<Duration>,
@@ -54,12 +54,12 @@ pub struct Clock {
 
 impl Clock {
     /// Counts the processor time of the calling thread only; must be read on the same thread.
-    pub fn thread() -> Self {
+    pub(crate) fn thread() -> Self {
         Self::new(thread_time)
     }
 
     /// Counts the processor time of all threads.
-    pub fn process() -> Self {
+    pub(crate) fn process() -> Self {
         Self::new(process_time)
     }
 
@@ -68,7 +68,7 @@ impl Clock {
     }
 
     /// What was spent since.
-    pub fn spent(&self) -> Spent {
+    pub(crate) fn spent(&self) -> Spent {
         let cpu = self.cpu.zip((self.read)()).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
         Spent { wall: self.wall.elapsed().as_secs_f64(), cpu }
     }

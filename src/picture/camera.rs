@@ -30,7 +30,7 @@ const NEAR: f64 = 0.02;
 
 /// What a camera looks at in one frame, alike in all panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Framing {
+pub(crate) struct Framing {
     /// The point looked at (m).
     pub target: DVec3,
     /// Where the target is, or how deep it has sunk, before it rises with a body (m): the origin of all panels.
@@ -43,7 +43,7 @@ pub struct Framing {
 
 impl Framing {
     /// The framing of a camera that does not follow.
-    pub fn still(camera: &Camera) -> Self {
+    pub(crate) fn still(camera: &Camera) -> Self {
         let Camera { target, distance, rise, .. } = *camera;
         Self { target, base: target, distance, rise }
     }
@@ -51,7 +51,7 @@ impl Framing {
 
 /// Where the middles of the bodies shown are in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Middles {
+pub(crate) struct Middles {
     /// The lowest corner of the box around them (m); infinite if no body is shown.
     pub low: DVec3,
     /// The highest corner of that box (m).
@@ -62,7 +62,7 @@ pub struct Middles {
 
 impl Middles {
     /// Those of the bodies whose middles are given, in a scene where the body starts with its middle at `start` (m).
-    pub fn new(middles: impl IntoIterator<Item = DVec3>, start: DVec3) -> Self {
+    pub(crate) fn new(middles: impl IntoIterator<Item = DVec3>, start: DVec3) -> Self {
         let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, start };
         middles.into_iter().fold(none, |all, at| Self { low: all.low.min(at), high: all.high.max(at), start })
     }
@@ -82,7 +82,7 @@ impl Middles {
 /// first sinks with the lowest body. All of it begins gently, so that small bounces do not move the camera. If it
 /// follows the body, it also goes along level with the common middle, at once and all the way, and draws back as far as
 /// the bodies of the panels part.
-pub fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing {
+pub(crate) fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing {
     let Camera { target, distance, rise, .. } = *camera;
     let heights = [middles.low.y, middles.high.y];
     let pull = |length: f64, gentle: f64, most: f64| {
@@ -107,7 +107,7 @@ pub fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing 
 
 /// A camera at work on one panel: maps points of the world (m) to pixels of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lens {
+pub(crate) struct Lens {
     /// Where it stands (m).
     pub eye: DVec3,
     /// Unit vector to the right of the panel.
@@ -129,7 +129,7 @@ pub struct Lens {
 impl Lens {
     /// The camera of a view for one panel, whose left, top, width and height are given (px), with type of `unit` times
     /// the reference size.
-    pub fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
+    pub(crate) fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
         let camera = &view.camera;
         let [above, below] = layout::rooms(view);
         let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
@@ -159,7 +159,7 @@ impl Lens {
     }
 
     /// The pixel of a point, and its distance along the view (m); `None` for points not in front of the camera.
-    pub fn project(&self, point: DVec3) -> Option<([f64; 2], f64)> {
+    pub(crate) fn project(&self, point: DVec3) -> Option<([f64; 2], f64)> {
         let from_eye = point - self.eye;
         let distance = from_eye.dot(self.forward);
         let scale = if self.orthographic { self.focal } else { self.focal / distance };
@@ -169,14 +169,14 @@ impl Lens {
     }
 
     /// The cosine of the angle between an outward `normal` at `point` and the direction to the viewer; 0 without a normal.
-    pub fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
+    pub(crate) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
         let view = if self.orthographic { self.forward } else { point - self.eye };
         let cosine = -normal.dot(view) / (normal.length() * view.length());
         if cosine.is_finite() { cosine } else { 0.0 }
     }
 
     /// Whether a plane through `point` with an outward `normal` shows its outside.
-    pub fn sees(&self, point: DVec3, normal: DVec3) -> bool {
+    pub(crate) fn sees(&self, point: DVec3, normal: DVec3) -> bool {
         let view = if self.orthographic { self.forward } else { point - self.eye };
         normal.dot(view) < 0.0
     }
@@ -184,7 +184,7 @@ impl Lens {
     /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Its fourth
     /// coordinate is the distance along the view in that unit, so that nothing in it depends on how small or large a
     /// body is. Depth is 1 at the near plane and 0 infinitely far; in the plane it is ½ throughout, at a distance of 1.
-    pub fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
+    pub(crate) fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
         let [left, top, width, height] = panel;
         let shift = [2.0 * (self.centre[0] - left) / width - 1.0, 1.0 - 2.0 * (self.centre[1] - top) / height];
         let row = |axis: DVec3, factor: f64| (axis * factor).extend((origin - self.eye).dot(axis) / unit * factor);
@@ -198,7 +198,7 @@ impl Lens {
     }
 
     /// Distance of the nearest thing drawn, in the terms of [`Self::clip`].
-    pub fn near_in(&self, unit: f64) -> f64 {
+    pub(crate) fn near_in(&self, unit: f64) -> f64 {
         if self.orthographic { 0.5 } else { self.near / unit }
     }
 }

@@ -67,7 +67,7 @@ const WORDS_BELOW: f64 = 85.0;
 const NO_WORDS: f64 = 28.0;
 
 /// A rectangle: left, top, width, height (px).
-pub type Rectangle = [u32; 4];
+pub(crate) type Rectangle = [u32; 4];
 
 /// Where a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

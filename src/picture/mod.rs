@@ -38,13 +38,14 @@ mod tally;
 mod text;
 mod wire;
 
-pub use crate::colour::Colour;
-pub use crate::look::{Palette, SHADES};
-pub use camera::{Framing, Lens, Middles, framing};
-pub use compose::{Composer, NoRoom, compose, compose_figure};
-pub use layout::Rectangle;
-pub use shadow::{CELLS, Shade};
-pub use text::{Face, Fonts, Glyph, TextRun, Weight};
+pub(crate) use crate::colour::Colour;
+pub(crate) use crate::look::{Palette, SHADES};
+pub(crate) use camera::Framing;
+pub use compose::{Composer, compose};
+pub(crate) use compose::{NoRoom, compose_figure};
+pub(crate) use layout::Rectangle;
+pub(crate) use shadow::{CELLS, Shade};
+pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 
 use glam::{DVec2, Mat4, Vec3};
 use narrow::narrow;
@@ -53,28 +54,28 @@ use narrow::narrow;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height (px).
-    pub size: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// Its colours.
-    pub palette: Palette,
+    pub(crate) palette: Palette,
     /// The fonts of its text.
-    pub fonts: Fonts,
+    pub(crate) fonts: Fonts,
     /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
-    pub ramp: Vec<Colour>,
+    pub(crate) ramp: Vec<Colour>,
     /// One for each run shown.
-    pub panels: Vec<Panel>,
+    pub(crate) panels: Vec<Panel>,
     /// Flat marks below the bodies, in the order in which they are drawn.
-    pub under: Vec<Mark>,
+    pub(crate) under: Vec<Mark>,
     /// Flat marks above the bodies, in the order in which they are drawn.
-    pub marks: Vec<Mark>,
+    pub(crate) marks: Vec<Mark>,
     /// Flat curves above the marks, in the order in which they are drawn.
-    pub curves: Vec<Curve>,
+    pub(crate) curves: Vec<Curve>,
     /// Text, above everything else.
-    pub words: Vec<TextRun>,
+    pub(crate) words: Vec<TextRun>,
 }
 
 /// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), measured from the panel's origin.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub(crate) struct Panel {
     /// The part of the picture that belongs to it.
     pub viewport: Rectangle,
     /// The part of the viewport that the body and its lines may touch. Its width or height is 0 if there is none.
@@ -103,7 +104,7 @@ pub struct Panel {
 
 /// The obstacles of a panel.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Obstacles {
+pub(crate) struct Obstacles {
     /// Opaque obstacles. In the plane all of them lie behind the body, each in front of the next.
     pub solids: Vec<Solid>,
     /// Transparent obstacles, from the farthest to the nearest.
@@ -113,12 +114,12 @@ pub struct Obstacles {
 }
 
 /// The largest number of obstacles that occlude the ambient light of a body.
-pub const MOST_OCCLUDERS: usize = 5;
+pub(crate) const MOST_OCCLUDERS: usize = 5;
 
 /// An obstacle that occludes the ambient light of a body near it: all points within a distance of a box. That makes a
 /// rounded box, a capsule or a sphere; a plate or a wall is a very large one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Occluder {
+pub(crate) struct Occluder {
     /// The middle of the box.
     pub centre: Vec3,
     /// Half of its sides.
@@ -131,16 +132,9 @@ pub struct Occluder {
     pub is_clear: bool,
 }
 
-impl Obstacles {
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.solids.is_empty() && self.slabs.is_empty()
-    }
-}
-
 /// A closed surface of one colour.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solid {
+pub(crate) struct Solid {
     /// The surface.
     pub mesh: Mesh,
     /// Its colour, before light falls on it.
@@ -155,7 +149,7 @@ pub struct Solid {
 
 /// A transparent obstacle.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Slab {
+pub(crate) struct Slab {
     /// Its faces that are turned towards the viewer.
     pub panes: Vec<Pane>,
     /// The edges of these.
@@ -164,7 +158,7 @@ pub struct Slab {
 
 /// A transparent convex polygon.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pane {
+pub(crate) struct Pane {
     /// Its corners, around it.
     pub corners: Vec<PaneCorner>,
     /// Its colour.
@@ -177,7 +171,7 @@ pub struct Pane {
 
 /// A corner of a pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PaneCorner {
+pub(crate) struct PaneCorner {
     /// Where it is.
     pub position: [f32; 3],
     /// Where it is on the grid, whose lines are at whole numbers.
@@ -189,7 +183,7 @@ pub struct PaneCorner {
 
 /// Camera and light of a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub(crate) struct Sight {
     /// From the panel's coordinates to clip space of its viewport. Depth is `near` over the distance.
     pub clip: Mat4,
     /// Where the eye is.
@@ -218,7 +212,7 @@ pub struct Sight {
 
 /// The floor of a panel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Floor {
+pub(crate) struct Floor {
     /// Unit vector out of it.
     pub normal: Vec3,
     /// Unit vectors along its grid.
@@ -245,7 +239,7 @@ pub struct Floor {
 
 /// A closed surface.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
+pub(crate) struct Mesh {
     /// Its corners.
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
@@ -258,7 +252,7 @@ pub struct Mesh {
 /// A corner of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub struct Vertex {
+pub(crate) struct Vertex {
     /// Where it is.
     pub position: [f32; 3],
     /// Normal of the face, of any length.
@@ -269,7 +263,7 @@ pub struct Vertex {
 
 /// A straight line in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub(crate) struct Line {
     /// One end.
     pub from: [f32; 3],
     /// The other end.
@@ -284,7 +278,7 @@ pub struct Line {
 /// The kind of a line, which decides how it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
-pub enum LineKind {
+pub(crate) enum LineKind {
     /// An edge of a sound element.
     Edge = 0,
     /// An edge of a turned-over element.
@@ -303,7 +297,7 @@ pub enum LineKind {
 
 /// A straight line in space with colours of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stroke {
+pub(crate) struct Stroke {
     /// Its ends.
     pub ends: [[f32; 3]; 2],
     /// The colours at its ends.
@@ -318,7 +312,7 @@ pub struct Stroke {
 
 /// The second colour of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Second {
+pub(crate) enum Second {
     /// There is none.
     None,
     /// It replaces the first colours over surfaces.
@@ -329,7 +323,7 @@ pub enum Second {
 
 /// A node in space: a disc that always faces the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bead {
+pub(crate) struct Bead {
     /// Its middle.
     pub at: [f32; 3],
     /// Its radius (px).
@@ -342,7 +336,7 @@ pub struct Bead {
 
 /// A flat curve on the picture with round ends and joints.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub(crate) struct Curve {
     /// The vertices of the polyline (px to the right and down); a single point is a dot.
     pub points: Vec<[f32; 2]>,
     /// Its width (px).
@@ -357,7 +351,7 @@ pub struct Curve {
 
 /// A flat mark on the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mark {
+pub(crate) struct Mark {
     /// Left, top, width and height (px).
     pub rectangle: [f32; 4],
     /// Unit vector along its width (px to the right and down): the rectangle is turned around its left upper corner.
@@ -374,7 +368,7 @@ pub struct Mark {
 
 impl Mark {
     /// Along the width of a mark that is not turned.
-    pub const UPRIGHT: [f32; 2] = [1.0, 0.0];
+    pub(crate) const UPRIGHT: [f32; 2] = [1.0, 0.0];
 
     /// An opaque mark of one colour that is not turned: left, top, width and height (px).
     fn upright([left, top, width, height]: [f64; 4], shape: MarkShape, colour: Colour) -> Self {
@@ -397,7 +391,7 @@ impl Mark {
 
 /// What a mark looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum MarkShape {
+pub(crate) enum MarkShape {
     /// A filled rectangle.
     Filled,
     /// A filled rectangle with a rising diagonal.

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// Cells of a shadow in each direction.
-pub const CELLS: usize = 128;
+pub(crate) const CELLS: usize = 128;
 /// Half the angle of the cone from which the key light comes (rad).
 const KEY_CONE: f64 = 0.12;
 /// How much steeper the key light falls for each distance of the camera that bodies have risen: the shadow stays in the
@@ -28,7 +28,7 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// A square of the floor with a value for each cell.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shade {
+pub(crate) struct Shade {
     /// The corner of the first cell on the floor (sides from the panel's origin along the floor's two axes).
     pub corner: [f32; 2],
     /// Length of the whole square (sides).

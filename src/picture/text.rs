@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// The two weights in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Weight {
+pub(crate) enum Weight {
     /// For everything that explains.
     Regular,
     /// For names and counts.
@@ -18,7 +18,7 @@ pub enum Weight {
 
 /// One glyph of a line of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Glyph {
+pub(crate) struct Glyph {
     /// The number of its font.
     pub face: u8,
     /// Its number in the font.
@@ -29,7 +29,7 @@ pub struct Glyph {
 
 /// A line of text, laid out.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TextRun {
+pub(crate) struct TextRun {
     /// Its text, after shortening.
     pub text: String,
     /// Its weight.
@@ -50,7 +50,7 @@ pub struct TextRun {
 
 impl TextRun {
     /// Left, top, right and bottom of the box that it may fill (px): from its ascenders to its descenders.
-    pub fn bounds(&self) -> [f32; 4] {
+    pub(crate) fn bounds(&self) -> [f32; 4] {
         let [left, right] = self.span;
         [left, self.baseline - ASCENT * self.size, right, self.baseline + DESCENT * self.size]
     }
@@ -70,11 +70,11 @@ const DESCENT: f32 = 0.22;
 
 /// The fonts of a picture: those of its scene, with the built-in ones as fallback. Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Fonts(Arc<[Face]>);
+pub(crate) struct Fonts(Arc<[Face]>);
 
 /// One font.
 #[derive(Debug)]
-pub struct Face {
+pub(crate) struct Face {
     font: FontArc,
     /// Identifies a font, also among those of different scenes.
     pub key: u64,
@@ -110,7 +110,7 @@ impl Default for Fonts {
 
 impl Fonts {
     /// The fonts of a scene. A file that is no font, which no scene that was loaded has, is passed over.
-    pub fn new(files: &FontFiles) -> Self {
+    pub(crate) fn new(files: &FontFiles) -> Self {
         let built_in = |bytes: &'static [u8], key| {
             let font = FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole");
             Face { font: FontArc::new(font), key }
@@ -131,7 +131,7 @@ impl Fonts {
     }
 
     /// One of the fonts, by the number that glyphs name. The first one for a number that there is not.
-    pub fn face(&self, number: u8) -> &Face {
+    pub(crate) fn face(&self, number: u8) -> &Face {
         self.0.get(usize::from(number)).unwrap_or(&self.0[0])
     }
 
@@ -178,13 +178,13 @@ impl Fonts {
     }
 
     /// The width of a text set at a size (px).
-    pub fn width(&self, text: &str, weight: Weight, size: f64) -> f64 {
+    pub(crate) fn width(&self, text: &str, weight: Weight, size: f64) -> f64 {
         text.chars().map(|character| self.advance(weight, character)).sum::<f64>() * size
     }
 
     /// The text itself if it is at most `room` wide (px), else its beginning and an ellipsis; nothing if even that is
     /// too wide. Characters that take no place of their own, such as line breaks, become spaces.
-    pub fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
+    pub(crate) fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
         let seen = text.chars().filter(|&c| !is_invisible(c));
         let text: String = seen.map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = text.trim();
@@ -243,7 +243,7 @@ impl Face {
 
     /// The outline of a glyph for type of a size (px), whose origin lies at a place between two pixels (px, to the right);
     /// `None` for blanks.
-    pub fn outline(&self, id: u16, size: f32, place: f32) -> Option<OutlinedGlyph> {
+    pub(crate) fn outline(&self, id: u16, size: f32, place: f32) -> Option<OutlinedGlyph> {
         // The scale of a font is its height, sizes of type are lengths of the em.
         let scale = PxScale::from(size * self.font.height_unscaled() / self.units_per_em());
         self.font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))

@@ -2,14 +2,32 @@
 
 use super::report::{Report, Way, written};
 use crate::sim::body::Dimension;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A point or a vector: three coordinates in space, two in the plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub(crate) struct Coordinates(#[schemars(length(min = 2, max = 3))] pub(crate) Vec<f64>);
+pub struct Coordinates(#[schemars(length(min = 2, max = 3))] pub(crate) Vec<f64>);
+
+impl<const N: usize> From<[f64; N]> for Coordinates {
+    fn from(coordinates: [f64; N]) -> Self {
+        Self(coordinates.into())
+    }
+}
+
+impl From<DVec2> for Coordinates {
+    fn from(point: DVec2) -> Self {
+        point.to_array().into()
+    }
+}
+
+impl From<DVec3> for Coordinates {
+    fn from(point: DVec3) -> Self {
+        point.to_array().into()
+    }
+}
 
 /// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.
 pub(crate) fn vector(

@@ -4,19 +4,22 @@ use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
 
-/// One mistake and its place. It prints as one line; see [`Mistakes`] for the picture with the source.
+/// One mistake and its place; [`Mistakes`] print it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mistake {
-    /// Line, counted from 1.
+    /// Line, counted from 1; 0 in a scene made in code.
     pub line: usize,
-    /// Column in characters, counted from 1.
+    /// Column in characters, counted from 1; 0 in a scene made in code.
     pub column: usize,
+    /// The key or entry, such as `run[0].model.stiffness`; empty where there is none.
+    #[serde(skip)]
+    pub place: String,
     /// What was found and what was expected.
     pub message: String,
     /// What to do, if there is more to say than the message does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub help: Option<String>,
-    /// The source line, or the part of it around the place.
+    /// The source line, or the part of it around the place; empty in a scene made in code.
     pub excerpt: String,
     /// Which characters of the excerpt are meant.
     #[serde(skip)]
@@ -33,14 +36,27 @@ pub struct Mistake {
 ///    12 | model = { kind = "shape-based", stifness = 1e4 }
 ///       |                                 ^^^^^^^^ did you mean `stiffness`?
 /// ```
+///
+/// Those of a scene made in code print with the name of the scene and of the setting, each in one line:
+///
+/// ```text
+/// drop: `run[0].model.stiffness` is -1.0; expected a number greater than 0
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mistakes {
-    /// The file, as named by the caller.
+    /// The file, as named by the caller; the name of a scene made in code.
     pub file: String,
     /// The mistakes, up to a thousand.
     pub found: Vec<Mistake>,
     /// How many there are in all.
     pub total: usize,
+}
+
+impl Mistake {
+    /// The same without the text in which it stands, which nobody has written.
+    pub(crate) fn without_text(self) -> Self {
+        Self { line: 0, column: 0, excerpt: String::new(), marked: 0..0, ..self }
+    }
 }
 
 /// How many mistakes are printed: what fits on a screen or two. More usually have the same cause.
@@ -52,7 +68,16 @@ impl fmt::Display for Mistakes {
             if number > 0 {
                 writeln!(f)?;
             }
-            let Mistake { line, column, message, help, excerpt, marked } = mistake;
+            let Mistake { line, column, place, message, help, excerpt, marked } = mistake;
+            if *line == 0 {
+                write!(f, "{}: ", self.file)?;
+                if !message.contains(&format!("`{place}")) {
+                    write!(f, "`{place}`: ")?;
+                }
+                f.write_str(message)?;
+                help.iter().try_for_each(|help| write!(f, "; {help}"))?;
+                continue;
+            }
             writeln!(f, "{}:{line}:{column}: {message}", self.file)?;
             let gutter = line.to_string().len() + 2;
             writeln!(f, "{line:>gutter$} | {excerpt}")?;

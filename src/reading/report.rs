@@ -65,17 +65,17 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// A mistake at a span of the text.
-    pub(crate) fn at_span(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+    /// A mistake at a span of the text, in the value at `path`.
+    pub(crate) fn at_span(&mut self, span: Range<usize>, path: &[Way<'_>], message: String, help: Option<String>) {
         self.total += 1;
         if self.found.len() < KEPT {
-            self.found.push(mistake(self.source, span, message.into(), help));
+            self.found.push(mistake(self.source, span, path, message, help));
         }
     }
 
     /// A mistake in the value at `path`, or in the nearest table or array that exists.
     pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.at_span(span_of(self.root, path), message, help.into());
+        self.at_span(span_of(self.root, path), path, message.into(), help.into());
     }
 
     /// A mistake about the key at the end of `path`, or about where it is missing.
@@ -85,12 +85,12 @@ impl<'t> Report<'t> {
             _ => (None, ""),
         };
         let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
-        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), message, help.into());
+        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.into());
     }
 
     /// A warning about the value at `path`, or about the nearest one that exists: it is allowed and probably not meant.
     pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
-        self.warned.push(mistake(self.source, span_of(self.root, path), message, Some(help)));
+        self.warned.push(mistake(self.source, span_of(self.root, path), path, message, Some(help)));
     }
 
     /// All warnings, in the order of the text.
@@ -107,11 +107,17 @@ impl<'t> Report<'t> {
     }
 }
 
-/// A mistake at a span of a text.
-pub(crate) fn mistake(source: &Source<'_>, span: Range<usize>, message: String, help: Option<String>) -> Mistake {
+/// A mistake at a span of a text, in the value at `path`.
+pub(crate) fn mistake(
+    source: &Source<'_>,
+    span: Range<usize>,
+    path: &[Way<'_>],
+    message: String,
+    help: Option<String>,
+) -> Mistake {
     let (line, column) = source.position(span.start);
     let (excerpt, marked) = source.excerpt(&span);
-    Mistake { line, column, message, help, excerpt, marked }
+    Mistake { line, column, place: written(path), message, help, excerpt, marked }
 }
 
 /// The span of the value at `path`, or of its innermost ancestor that exists.

@@ -76,7 +76,7 @@ pub enum SceneError {
 
 impl SceneError {
     /// Whether the system refused to read the file, so that nothing is known of what is in it.
-    pub fn is_unreadable(&self) -> bool {
+    pub(crate) fn is_unreadable(&self) -> bool {
         matches!(self, Self::Unreadable { .. })
     }
 

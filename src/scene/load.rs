@@ -2,7 +2,7 @@
 
 use super::error::SceneError;
 use super::limits::Limits;
-use super::resolve::{self, Parts};
+use super::resolve::{self, Parts, Unwritten};
 use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Scene, digest, structure};
@@ -24,7 +24,7 @@ impl Scene {
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let text = text_of(path, limits)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let scene = Self::read(&text, &path.display().to_string(), folder, limits)?;
+        let scene = Self::read(&text, &path.display().to_string(), folder, limits, Unwritten::default())?;
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
@@ -52,14 +52,22 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
-        Self::read(text, name, Path::new(""), limits)
+        Self::read(text, name, Path::new(""), limits, Unwritten::default())
     }
 
     /// Reads a scene from a text; a body's own file and fonts are searched in `folder`.
-    fn read(text: &str, name: &str, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
+    pub(super) fn read(
+        text: &str,
+        name: &str,
+        folder: &Path,
+        limits: &Limits,
+        unwritten: Unwritten,
+    ) -> Result<Self, SceneError> {
         checked(text, name, &SCHEMA, FIGURE, |checked, report| {
-            let parts = Parts::new(&checked, folder, limits, report);
-            let digest = if report.total() == 0 { digest::digest(&parts) } else { String::new() };
+            let mut parts = Parts::new(&checked, folder, limits, report);
+            parts.put_back(unwritten, report);
+            let has_digest = report.total() == 0 && !parts.has_own_models();
+            let digest = if has_digest { digest::digest(&parts) } else { String::new() };
             let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
             let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
             Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))
@@ -156,7 +164,7 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
                 }
                 _ => None,
             };
-            mistake(source, span, message, help)
+            mistake(source, span, &[], message, help)
         })
         .collect();
     found.sort_by_key(|mistake| (mistake.line, mistake.column));

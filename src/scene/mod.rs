@@ -9,10 +9,10 @@
 //! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font`
 //! reads, lie beside it, too.
 
-mod code;
+mod builder;
 mod digest;
 mod error;
-pub mod figure;
+pub(crate) mod figure;
 mod file;
 mod generate;
 mod limits;
@@ -28,12 +28,13 @@ mod summary;
 pub(crate) use generate::random;
 
 pub use crate::reading::{Mistake, Mistakes};
+pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, SceneBuilder};
 pub use error::SceneError;
+pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Start, StartShape, Swing};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use schema::schema;
-pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
@@ -104,7 +105,7 @@ pub struct Run {
 
 impl Run {
     /// Its line in pictures of a palette.
-    pub fn line(&self, palette: &Palette) -> LineStyle {
+    pub(crate) fn line(&self, palette: &Palette) -> LineStyle {
         palette.line(self.place, self.colour)
     }
 }

@@ -8,7 +8,7 @@ const NONE: u32 = u32::MAX;
 /// Lists hang in chains by the sum of their indices. Neighbours in a body have neighbouring sums, so that the chains of
 /// a large body stay in the cache; sorted or hashed keys took several times as long for a million elements.
 #[derive(Clone, Debug)]
-pub struct Alike {
+pub(crate) struct Alike {
     /// The list last put into each chain; their number is a power of two.
     last: Vec<u32>,
     /// The one before each list in its chain.
@@ -17,7 +17,7 @@ pub struct Alike {
 
 impl Alike {
     /// For about so many lists at a time.
-    pub fn new(lists: usize) -> Self {
+    pub(crate) fn new(lists: usize) -> Self {
         Self { last: vec![NONE; lists.max(1).next_power_of_two()], before: Vec::new() }
     }
 
@@ -26,7 +26,7 @@ impl Alike {
     }
 
     /// Puts a list in under its number, which is below 2³² − 1 and in use no more than once.
-    pub fn put(&mut self, number: usize, list: &[u32]) {
+    pub(crate) fn put(&mut self, number: usize, list: &[u32]) {
         let chain = self.chain(list);
         if self.before.len() <= number {
             self.before.resize(number + 1, NONE);
@@ -36,7 +36,7 @@ impl Alike {
 
     /// The number of the list last put in that has the same indices; `known` is what each was put in with. Indices are
     /// different from each other within each list.
-    pub fn find<'l>(&self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
+    pub(crate) fn find<'l>(&self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
         let mut number = self.last[self.chain(list)];
         while number != NONE && !have_the_same(known(number as usize), list) {
             number = self.before[number as usize];
@@ -45,7 +45,7 @@ impl Alike {
     }
 
     /// The same list, which is taken out.
-    pub fn take<'l>(&mut self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
+    pub(crate) fn take<'l>(&mut self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
         let chain = self.chain(list);
         let (mut after, mut number) = (NONE, self.last[chain]);
         while number != NONE && !have_the_same(known(number as usize), list) {

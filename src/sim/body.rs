@@ -1,11 +1,11 @@
 //! What is simulated: a [`Body`], which never changes.
 
-pub use super::element::{Dimension, ElementKind, Solids};
+pub(crate) use super::element::{Dimension, ElementKind, Solids};
 use super::element::{around, kind};
 use super::hull::Hulls;
-pub use super::hull::bounds;
-pub use super::lists::IndexLists;
-pub use super::topology::Faces;
+pub(crate) use super::hull::bounds;
+pub(crate) use super::lists::IndexLists;
+pub(crate) use super::topology::Faces;
 use super::topology::{Elements, assign_faces};
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ pub struct Body {
     /// What each element is.
     pub kinds: Vec<ElementKind>,
     /// The faces at rest of those elements that are of no particular kind.
-    pub hulls: Hulls,
+    pub(crate) hulls: Hulls,
     /// What can be drawn.
     pub faces: Faces,
 }
@@ -37,7 +37,7 @@ impl Body {
     ///
     /// # Panics
     /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has checked its input.
-    pub fn new(
+    pub(crate) fn new(
         dimension: Dimension,
         rest: Vec<DVec3>,
         mass: Vec<f64>,

@@ -17,7 +17,7 @@ use std::sync::Arc;
 const CHUNK: usize = 1024;
 
 /// What is known of a body beforehand.
-pub struct Diagnose {
+pub(crate) struct Diagnose {
     body: Arc<Body>,
     /// Signed volume of each element at rest (m³, in the plane m²). A segment, a triangle in space or anything else that is
     /// flat there has none and never turns over.
@@ -44,7 +44,7 @@ struct Affine {
 
 impl Diagnose {
     /// Measures the body at rest.
-    pub fn new(body: &Arc<Body>) -> Self {
+    pub(crate) fn new(body: &Arc<Body>) -> Self {
         let affine: Vec<_> = (0..body.elements.len()).filter_map(|element| Affine::new(body, element)).collect();
         let mut volumes_at_rest = volumes_by_faces(body, &body.rest);
         for Affine { element, .. } in &affine {
@@ -57,14 +57,19 @@ impl Diagnose {
     }
 
     /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
-    pub fn state(&self, state: Nodes<'_>, gravity: DVec3, report: &Report) -> (Diagnostics, Vec<bool>, Placement) {
+    pub(crate) fn state(
+        &self,
+        state: Nodes<'_>,
+        gravity: DVec3,
+        report: &Report,
+    ) -> (Diagnostics, Vec<bool>, Placement) {
         let facts = self.facts(state, gravity, || report.clone());
         let all = Diagnostics::of(&facts, |_| true);
         (all, facts.turned_over().collect(), *facts.placement)
     }
 
     /// Some diagnostics of a state; the others are zero. What no one of them needs is not computed.
-    pub fn some(
+    pub(crate) fn some(
         &self,
         state: Nodes<'_>,
         gravity: DVec3,

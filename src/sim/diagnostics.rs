@@ -62,7 +62,7 @@ impl Facts<'_> {
 
 /// The value of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
+pub(crate) enum Value {
     /// How many.
     Count(usize),
     /// A number; NaN where a model or a body has none.
@@ -73,7 +73,7 @@ pub enum Value {
 
 impl Value {
     /// As one number.
-    pub fn size(self) -> f64 {
+    pub(crate) fn size(self) -> f64 {
         match self {
             Self::Count(count) => count as f64,
             Self::Number(number) => number,
@@ -102,7 +102,7 @@ impl From<DVec3> for Value {
 
 /// How far a diagnostic gets, besides `diagnostics.csv` and whatever shows it over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reach {
+pub(crate) enum Reach {
     /// No farther.
     Frames,
     /// Into goldens. One more there is another format of theirs.
@@ -146,7 +146,7 @@ macro_rules! diagnostics {
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
             /// Its value.
-            pub fn value(self, all: &Diagnostics) -> Value {
+            pub(crate) fn value(self, all: &Diagnostics) -> Value {
                 match self {
                     $(Self::$variant => all.$key.into(),)+
                 }
@@ -181,7 +181,7 @@ macro_rules! diagnostics {
             }
 
             /// How far it gets.
-            pub fn reach(self) -> Reach {
+            pub(crate) fn reach(self) -> Reach {
                 match self {
                     $(Self::$variant => Reach::$reach,)+
                 }
@@ -233,23 +233,23 @@ impl Diagnostic {
     }
 
     /// Those that get at least so far.
-    pub fn within(reach: Reach) -> impl Iterator<Item = Self> {
+    pub(crate) fn within(reach: Reach) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.reach() >= reach)
     }
 }
 
 /// Some diagnostics of a state. It is written as a table from keys to numbers.
 #[derive(Clone, PartialEq)]
-pub struct Chosen(Vec<(Diagnostic, Value)>);
+pub(crate) struct Chosen(Vec<(Diagnostic, Value)>);
 
 impl Chosen {
     /// Those that get at least so far.
-    pub fn within(reach: Reach, all: &Diagnostics) -> Self {
+    pub(crate) fn within(reach: Reach, all: &Diagnostics) -> Self {
         Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
     }
 
     /// The same, each from a text; `None` where one is no number, or a count that is not whole.
-    pub fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
+    pub(crate) fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
         let read = |(at, diagnostic): (usize, Diagnostic)| {
             let text = text_of(at, diagnostic)?;
             let value = match diagnostic.value(&Diagnostics::default()) {
@@ -263,12 +263,12 @@ impl Chosen {
     }
 
     /// Each with its value.
-    pub fn iter(&self) -> impl Iterator<Item = (Diagnostic, Value)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Diagnostic, Value)> {
         self.0.iter().copied()
     }
 
     /// The value of one of them as one number; NaN if it is not among them.
-    pub fn get(&self, diagnostic: Diagnostic) -> f64 {
+    pub(crate) fn get(&self, diagnostic: Diagnostic) -> f64 {
         self.iter().find(|&(one, _)| one == diagnostic).map_or(f64::NAN, |(_, value)| value.size())
     }
 }

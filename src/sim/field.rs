@@ -26,7 +26,7 @@ pub enum Field {
 
 /// To what the numbers of a field belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
+pub(crate) enum Support {
     /// One for each node.
     Nodes,
     /// One for each element.
@@ -35,7 +35,7 @@ pub enum Support {
 
 impl Field {
     /// To what its numbers belong.
-    pub fn support(self) -> Support {
+    pub(crate) fn support(self) -> Support {
         match self {
             Self::Strain => Support::Elements,
             Self::Displacement | Self::Speed | Self::ElasticEnergy => Support::Nodes,

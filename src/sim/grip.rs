@@ -20,13 +20,13 @@ pub struct Grip {
 
 impl Grip {
     /// The displacement since the nodes were gripped, at a time (s), about the mean of the nodes then.
-    pub fn way(&self, time: f64) -> Pose {
+    pub(crate) fn way(&self, time: f64) -> Pose {
         let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
         Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
     }
 
     /// Whether the nodes follow the path at a time (s).
-    pub fn holds(&self, time: f64) -> bool {
+    pub(crate) fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until
     }
 }

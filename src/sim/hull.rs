@@ -59,7 +59,7 @@ impl Hulls {
 }
 
 /// The corners of the box around `points`, low and high; zero for no points.
-pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+pub(crate) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
 }
@@ -72,7 +72,7 @@ pub fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
 ///
 /// Faces are found one beside the other by turning a plane about each edge ("gift wrapping"), which takes the product
 /// of the numbers of points and faces.
-pub fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
+pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
     let (low, high) = bounds(points);
     let size = (high - low).max_element();
     if size <= 0.0 || !size.is_finite() {

@@ -31,12 +31,12 @@ impl IndexLists {
     }
 
     /// Where list `at` stands in [`Self::indices`].
-    pub fn range(&self, at: usize) -> std::ops::Range<usize> {
+    pub(crate) fn range(&self, at: usize) -> std::ops::Range<usize> {
         self.offsets[at]..self.offsets[at + 1]
     }
 
     /// All indices, list after list.
-    pub fn indices(&self) -> &[u32] {
+    pub(crate) fn indices(&self) -> &[u32] {
         &self.indices
     }
 

@@ -22,7 +22,7 @@ impl Pose {
     }
 
     /// The point (m) of the thing that the displacement has brought to `point`.
-    pub fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
+    pub(crate) fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
         pivot + self.rotation.conjugate() * (point - pivot - self.shift)
     }
 }
@@ -48,7 +48,7 @@ impl Offset {
 
 /// One step in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// When it begins (s).
     pub begin: f64,
     /// When it ends (s).
@@ -143,7 +143,7 @@ impl Motion {
 
     /// The longest way (m) from one point of the path to another, at a distance from the pivot (m). A grip may stretch a
     /// body as far, and when it lets go nodes fly back at a speed that no bound by the size of the body at rest allows.
-    pub fn longest_way(&self, distance: f64) -> f64 {
+    pub(crate) fn longest_way(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length().min(PI) * distance;
         match self {
             Self::Still => 0.0,
@@ -153,7 +153,7 @@ impl Motion {
     }
 
     /// The greatest speed (m/s) at a distance from the pivot (m).
-    pub fn greatest_speed(&self, distance: f64) -> f64 {
+    pub(crate) fn greatest_speed(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length() * distance;
         match self {
             Self::Still => 0.0,

@@ -1,6 +1,7 @@
 //! What one run looks like at one moment: all that drawing, diagnostics and files ever see of a simulation.
 
-pub use super::diagnostics::{Diagnostic, Diagnostics};
+pub(crate) use super::diagnostics::Diagnostic;
+pub use super::diagnostics::Diagnostics;
 use glam::{DMat3, DVec3};
 
 /// Where and when a run blew up. That is a result, not an error.

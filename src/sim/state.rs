@@ -6,7 +6,7 @@ use glam::DVec3;
 /// All that persists from one step to the next. A run goes on from a copy of its state, also from one that was written
 /// and read back, with the same bits as if it had never stopped.
 ///
-/// As a start it has positions and velocities alone; [`World::new`](super::World::new) adds the rest.
+/// As a start it has positions and velocities alone; a [`World`](super::World) adds the rest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
     /// Position of each node (m), part after part.

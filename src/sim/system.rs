@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// What acts on bodies from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
+pub(crate) struct Surroundings {
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,
     /// Obstacles, in the order in which they act.

@@ -34,7 +34,7 @@ pub struct Elements<'a> {
 
 impl Elements<'_> {
     /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside.
-    pub fn for_each_face(&self, element: usize, visit: impl FnMut(&[u32])) {
+    pub(crate) fn for_each_face(&self, element: usize, visit: impl FnMut(&[u32])) {
         match self.kinds[element] {
             ElementKind::Other => self.hulls.of(element).for_each(visit),
             kind => for_each_face(kind, &self.nodes[element], visit),
@@ -71,7 +71,7 @@ impl Elements<'_> {
     }
 
     /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
-    pub fn shared_faces(&self) -> Faces {
+    pub(crate) fn shared_faces(&self) -> Faces {
         let mut faces = Faces::default();
         // Those that wait for their other side. Elements that are faces themselves stay single.
         let mut waiting = Alike::new(self.rest.len());
@@ -180,7 +180,11 @@ fn every_pair(nodes: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
 
 /// Faces given by hand, each with the elements that hold all its nodes: the first one out of which it looks, and the
 /// first one into which it looks. `looks_out` says which of them an element is.
-pub fn assign_faces(given: &IndexLists, elements: &IndexLists, looks_out: impl Fn(&[u32], u32) -> bool) -> Faces {
+pub(crate) fn assign_faces(
+    given: &IndexLists,
+    elements: &IndexLists,
+    looks_out: impl Fn(&[u32], u32) -> bool,
+) -> Faces {
     let mut elements_of_node: HashMap<u32, Vec<u32>> = HashMap::new();
     for (element, nodes) in (0u32..).zip(elements.iter()) {
         for &node in nodes {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// How many elements of each kind a body has, and what a reader calls that many: polygons by the number of their sides,
 /// cubes when all hexahedra are ones, and squares when all quadrilaterals are.
-pub fn elements(body: &Body) -> Vec<(usize, &'static str)> {
+pub(crate) fn elements(body: &Body) -> Vec<(usize, &'static str)> {
     use ElementKind::*;
     // A polygon by its sides, whatever is beyond hexagons being one; others by their kind alone.
     let group = |nodes: &[u32], kind| if kind == Polygon { (kind, nodes.len().min(7)) } else { (kind, 0) };
@@ -81,7 +81,7 @@ pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
 }
 
 /// A number with so many significant digits.
-pub fn rounded(value: f64, digits: usize) -> f64 {
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 

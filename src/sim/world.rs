@@ -12,7 +12,7 @@ use super::model::{ElasticModel, Report, Share};
 use super::part::Part;
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
-pub use super::system::Surroundings;
+pub(crate) use super::system::Surroundings;
 use super::system::System;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// How a run is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stepping {
+pub(crate) struct Stepping {
     /// The way of stepping.
     pub integrator: Integrator,
     /// Time step ΔT (s).
@@ -32,7 +32,8 @@ pub struct Stepping {
 
 impl Stepping {
     /// In the fastest way.
-    pub fn new(integrator: Integrator, step: f64) -> Self {
+    #[cfg(test)]
+    pub(crate) fn new(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, kernel: Kernel::default() }
     }
 }
@@ -96,7 +97,7 @@ impl World {
     ///
     /// # Panics
     /// If `initial` has not one position and one velocity per node.
-    pub fn new(
+    pub(crate) fn new(
         body: &Arc<Body>,
         initial: State,
         model: &dyn ElasticModel,
@@ -111,7 +112,7 @@ impl World {
     ///
     /// # Panics
     /// If `initial` has not one position and one velocity per node.
-    pub fn of_parts(
+    pub(crate) fn of_parts(
         bodies: &[(Arc<Body>, &dyn ElasticModel)],
         initial: State,
         surroundings: Surroundings,
@@ -169,7 +170,7 @@ impl World {
     }
 
     /// Makes snapshots show a field from now on, or none.
-    pub fn show(&mut self, field: Option<Field>) {
+    pub(crate) fn show(&mut self, field: Option<Field>) {
         self.field = field;
     }
 
@@ -197,7 +198,7 @@ impl World {
     }
 
     /// How many steps have been taken at a moment.
-    pub fn steps_at(&self, moment: Moment) -> u64 {
+    pub(crate) fn steps_at(&self, moment: Moment) -> u64 {
         moment.step(self.system.step)
     }
 
@@ -260,7 +261,7 @@ impl World {
     ///
     /// # Panics
     /// If there is no such part.
-    pub fn report(&self, part: usize) -> Report {
+    pub(crate) fn report(&self, part: usize) -> Report {
         self.report_with(&self.system.parts[part], &mut |_, _, _| {})
     }
 
@@ -283,7 +284,7 @@ impl World {
     }
 
     /// Some of them; the others are zero. What none of them needs is not computed.
-    pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
+    pub(crate) fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
         let part = &self.system.parts[0];
         part.diagnose.some(part.nodes_of(self.state.nodes()), self.system.gravity, || self.report(0), wanted)
     }
@@ -297,7 +298,7 @@ impl World {
     ///
     /// # Panics
     /// If there is no such part.
-    pub fn snapshot_of(&self, part: usize) -> Snapshot {
+    pub(crate) fn snapshot_of(&self, part: usize) -> Snapshot {
         let part = &self.system.parts[part];
         let nodes = part.nodes_of(self.state.nodes());
         let mut energies = vec![0.0; if self.field == Some(Field::ElasticEnergy) { part.body.len() } else { 0 }];

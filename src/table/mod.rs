@@ -10,16 +10,16 @@ mod printed;
 pub mod ratio;
 mod sheet;
 mod spread;
-pub mod table1;
+pub(crate) mod table1;
 mod table1_text;
 
-pub use sheet::Sheet;
-pub use spread::Spread;
+pub(crate) use sheet::Sheet;
+pub(crate) use spread::Spread;
 
 use crate::scene::{Limits, Scene};
 
 /// Told how much work was just done; `false` stops the measurement. Called from any thread.
-pub type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
+pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// A scene of our own, which has no mistakes.
 fn scene(text: &str, name: &str) -> Scene {

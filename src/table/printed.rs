@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` where the paper says that it was too small to
 /// be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Printed {
+pub(crate) struct Printed {
     /// μ(α).
     pub mean: Option<f64>,
     /// σ(α).
@@ -16,7 +16,7 @@ pub struct Printed {
 
 /// One row of the paper's Table 1 for all its k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// Its letter.
     pub name: &'static str,
     /// "Number of iteration": how often Eq. (15) is solved at each evaluation.
@@ -26,10 +26,10 @@ pub struct Row {
 }
 
 /// The ratios k/m of the paper (1/s²), in its order.
-pub const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
+pub(crate) const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
 
 /// The paper's Table 1 as printed.
-pub const ROWS: [Row; 4] = {
+pub(crate) const ROWS: [Row; 4] = {
     const fn printed(mean: f64, deviation: f64, maximum: f64) -> Printed {
         const fn measured(number: f64) -> Option<f64> {
             if number > 0.0 { Some(number) } else { None }

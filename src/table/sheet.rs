@@ -2,7 +2,7 @@
 
 /// A table of texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Sheet {
+pub(crate) struct Sheet {
     /// What stands over the columns.
     pub heads: Vec<&'static str>,
     /// The rows.
@@ -11,7 +11,7 @@ pub struct Sheet {
 
 impl Sheet {
     /// The table of rows of which each cell stands beside the head of its column.
-    pub fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, String); N]>) -> Self {
+    pub(crate) fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, String); N]>) -> Self {
         let mut sheet = Self::default();
         for row in rows {
             sheet.heads = row.iter().map(|(head, _)| *head).collect();
@@ -21,7 +21,7 @@ impl Sheet {
     }
 
     /// As CSV (RFC 4180, with line feeds).
-    pub fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(&self.heads).expect("memory takes all");
         self.rows.iter().for_each(|row| writer.write_record(row).expect("rows of equal length"));
@@ -30,7 +30,7 @@ impl Sheet {
     }
 
     /// As Markdown, its first `left` columns to the left and the others, numbers, to the right.
-    pub fn markdown(&self, left: usize) -> String {
+    pub(crate) fn markdown(&self, left: usize) -> String {
         let escaped = |cell: &str| cell.replace('|', "\\|");
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let rule = |column| if column < left { "---" } else { "---:" }.to_owned();

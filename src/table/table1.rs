@@ -6,7 +6,7 @@
 //! friction. The paper tells neither how the cube was turned nor how often this was done, and the motion is chaotic:
 //! so there are many starts at rest, turned at random. The cubes of several starts are simulated together.
 
-pub use super::printed::{Printed, ROWS, Row, STIFFNESSES};
+pub(crate) use super::printed::{Printed, ROWS, Row, STIFFNESSES};
 use super::{Spread, Watch, scene};
 use crate::scene::{Scene, random};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
@@ -18,11 +18,11 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The names of the table's files: itself, the same as CSV, and each start as CSV.
-pub const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
+pub(crate) const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
 
 /// A way to find the rotation of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Solver {
+pub(crate) struct Solver {
     /// What scenes call it: `rotation = "…"` in a shape-based model.
     pub name: &'static str,
     /// In words.
@@ -32,7 +32,7 @@ pub struct Solver {
 }
 
 /// The paper's solver as read here, then better ones.
-pub const SOLVERS: [Solver; 3] = [
+pub(crate) const SOLVERS: [Solver; 3] = [
     Solver { name: "arctangent", words: "Eq. (15)", has_passes: true },
     Solver { name: "symmetric", words: "Eq. (15) with the symmetric part of its matrix", has_passes: true },
     Solver { name: "exact", words: "exact rotation", has_passes: false },
@@ -40,7 +40,7 @@ pub const SOLVERS: [Solver; 3] = [
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Protocol {
+pub(crate) struct Protocol {
     /// How many starts, turned at random: each is the same in any number of them, on every machine.
     pub orientations: u32,
     /// Time measured from the first contact on (s).
@@ -58,7 +58,7 @@ impl Default for Protocol {
 
 /// One solver in one row at one k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Case {
+pub(crate) struct Case {
     /// How rotations are found.
     pub solver: Solver,
     /// The row.
@@ -69,22 +69,22 @@ pub struct Case {
 
 impl Case {
     /// k/m (1/s²).
-    pub fn stiffness_over_mass(&self) -> f64 {
+    pub(crate) fn stiffness_over_mass(&self) -> f64 {
         STIFFNESSES[self.stiffness]
     }
 
     /// ΔT (s).
-    pub fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         self.row.cases[self.stiffness].0
     }
 
     /// What the paper found, if this is its solver.
-    pub fn printed(&self) -> Option<Printed> {
+    pub(crate) fn printed(&self) -> Option<Printed> {
         (self.solver == SOLVERS[0]).then_some(self.row.cases[self.stiffness].1)
     }
 
     /// How often Eq. (15) is solved; `None` for solvers that do without.
-    pub fn passes(&self) -> Option<u32> {
+    pub(crate) fn passes(&self) -> Option<u32> {
         self.solver.has_passes.then_some(self.row.passes)
     }
 
@@ -96,7 +96,7 @@ impl Case {
 
 impl Protocol {
     /// Everything that is measured for each start, solver by solver, k/m by k/m, row by row.
-    pub fn cases(&self) -> Vec<Case> {
+    pub(crate) fn cases(&self) -> Vec<Case> {
         let wanted = |stiffness: &usize| STIFFNESSES[*stiffness] <= self.stiffest;
         let mut cases = Vec::new();
         for solver in SOLVERS {
@@ -114,19 +114,19 @@ impl Protocol {
     }
 
     /// How often α is taken in all: what [`measure`] tells its watch comes to this.
-    pub fn work(&self) -> u64 {
+    pub(crate) fn work(&self) -> u64 {
         u64::from(self.orientations) * self.cases().iter().map(|case| self.evaluations(case)).sum::<u64>()
     }
 
     /// The mark of the Markdown file, by which it is known again: how it is made.
-    pub fn mark(&self) -> String {
+    pub(crate) fn mark(&self) -> String {
         format!("localshape table table1 --orientations {}", self.orientations)
     }
 }
 
 /// How the cube is turned at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Orientation {
+pub(crate) struct Orientation {
     /// The axis, a unit vector.
     pub axis: DVec3,
     /// The angle (rad).
@@ -136,7 +136,7 @@ pub struct Orientation {
 impl Orientation {
     /// One of endlessly many, evenly spread over all rotations: the first of the points hashed for its number that lies
     /// in the unit ball of four dimensions, as a quaternion.
-    pub fn random(number: u32) -> Self {
+    pub(crate) fn random(number: u32) -> Self {
         const SEED: u32 = 1;
         let coordinate = |usage: u64| 2.0 * random::unit(SEED, u64::from(number), usage) - 1.0;
         let point = |attempt: u64| DVec4::from_array([0, 1, 2, 3].map(|axis| coordinate(4 * attempt + axis)));
@@ -150,7 +150,7 @@ impl Orientation {
 
 /// What one start came to in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
+pub(crate) struct Course {
     /// How often α was taken; fewer than wanted if it blew up. If never, all that follows is not-a-number.
     pub evaluations: u64,
     /// Its mean (rad/s²).
@@ -165,7 +165,7 @@ pub struct Course {
 
 /// Table 1, measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table1 {
+pub(crate) struct Table1 {
     pub(super) protocol: Protocol,
     pub(super) cases: Vec<Case>,
     pub(super) orientations: Vec<Orientation>,
@@ -175,7 +175,7 @@ pub struct Table1 {
 
 /// What all starts came to in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// The case.
     pub case: Case,
     /// The means of all starts (rad/s²).
@@ -190,7 +190,7 @@ pub struct Summary {
 
 /// Measures Table 1 on the pool of threads that it is called on; `None` if `watch`, which is told how many more times α
 /// was taken, stops it. The result has the same bits for any number of threads.
-pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> {
+pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> {
     let cases = protocol.cases();
     let orientations: Vec<_> = (0..protocol.orientations).map(Orientation::random).collect();
     let starts = orientations.par_iter().map(|orientation| watch(0).then(|| start(orientation, &cases)));
@@ -352,7 +352,7 @@ impl Residuals {
 
 impl Table1 {
     /// What all starts came to, case by case in the order of [`Protocol::cases`].
-    pub fn summaries(&self) -> Vec<Summary> {
+    pub(crate) fn summaries(&self) -> Vec<Summary> {
         let summary = |(at, &case): (usize, &Case)| {
             let courses = || self.courses.iter().skip(at).step_by(self.cases.len());
             Summary {

@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 
 impl Table1 {
     /// The contents of [`FILES`](super::table1::FILES).
-    pub fn files(&self) -> [String; 3] {
+    pub(crate) fn files(&self) -> [String; 3] {
         [self.markdown(), self.summary_sheet().csv(), self.course_sheet().csv()]
     }
 
     /// The table for people.
-    pub fn markdown(&self) -> String {
+    pub(crate) fn markdown(&self) -> String {
         let Protocol { orientations, duration, .. } = self.protocol;
         let plural = if orientations == 1 { "" } else { "s" };
         let mut text = format!(
@@ -132,7 +132,7 @@ impl Table1 {
     }
 
     /// The table as one document.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let row = |summary: &Summary| {
             let Summary { case, mean, deviation, maximum, diverged } = summary;
             json!({

@@ -128,6 +128,19 @@ fn every_equation_can_be_found() {
     }
 }
 
+/// The front page of the documentation shows `examples/from_code.rs`, but for lines that it hides.
+#[test]
+fn the_front_page_shows_the_example() {
+    let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
+    let (front, example) = (read("src/lib.rs"), read("examples/from_code.rs"));
+    let page = front.split("//! # From code to a picture").nth(1).and_then(|rest| rest.split("//! ```\n").next());
+    let lines =
+        page.expect("the section").lines().filter_map(|line| line.strip_prefix("//! ").or(line.strip_prefix("//!")));
+    let shown: Vec<_> = lines.skip(1).filter(|line| !line.starts_with('#')).collect();
+    let code: Vec<_> = example.lines().skip_while(|line| !line.starts_with("use ")).collect();
+    assert_eq!(shown, code);
+}
+
 /// The dependency table of `CONTRIBUTING.md` names what the manifest has, and nothing else.
 #[test]
 fn every_dependency_has_its_reason() {

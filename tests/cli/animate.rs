@@ -2,7 +2,7 @@
 
 use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, has_ffmpeg, lasting, python, run};
 use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
-use localshape::output::{Shown, Tags};
+use localshape::internals::{Shown, Tags};
 use std::path::Path;
 use std::process::Command;
 
@@ -90,7 +90,7 @@ fn decode_gif(path: &Path) -> (Vec<(Vec<u8>, u16)>, gif::Repeat) {
 
 /// The mean difference of two pictures (CIEDE2000).
 fn difference(one: &[u8], other: &[u8]) -> f64 {
-    use localshape::colour::{ciede2000, lab, linear};
+    use localshape::internals::{ciede2000, lab, linear};
     let of = |pixel: &[u8]| lab(linear([pixel[0], pixel[1], pixel[2]]));
     let pairs = one.chunks_exact(3).zip(other.chunks_exact(3));
     pairs.map(|(one, other)| ciede2000(of(one), of(other))).sum::<f64>() / (one.len() / 3) as f64
@@ -252,7 +252,7 @@ fn rendering_makes_sheets_meanwhile() {
     assert!(ran.out.contains("a.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
     let ran = place.run("animate output/long -o b.png").good();
     assert!(ran.out.contains("b.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
-    let pixels = |name: &str| localshape::golden::Pixels::read(&place.path(name)).unwrap().bytes;
+    let pixels = |name: &str| localshape::internals::Pixels::read(&place.path(name)).unwrap().bytes;
     assert!(pixels("a.png") == pixels("b.png"), "the same frames with the same times");
     let ran = place.run("render long.toml --samples 1 --animate c.png --frames 0-13 --no-frames -o c").good();
     assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);

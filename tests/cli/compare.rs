@@ -1,7 +1,7 @@
 //! `compare`: verdicts on pictures and folders of them.
 
 use crate::support::{Place, SMALL, frame_file, run};
-use localshape::output::{Shown, Tags};
+use localshape::internals::{Shown, Tags};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 

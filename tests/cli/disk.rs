@@ -71,7 +71,7 @@ fn frames_on_a_full_disk() {
 #[cfg(feature = "render")]
 #[test]
 fn animations_on_a_full_disk() {
-    use localshape::output::{Shown, Tags};
+    use localshape::internals::{Shown, Tags};
     let place = Place::new();
     for number in 0..4 {
         // Noise, which takes room.

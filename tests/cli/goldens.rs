@@ -1,8 +1,8 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
 use crate::support::{Place, SMALL, frame_file, run, skip};
-use localshape::golden::Pixels;
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::internals::Pixels;
 
 /// A place with `small.toml`, if there is anything to draw with.
 fn place() -> Option<Place> {

@@ -1,7 +1,7 @@
 //! `render`: frames and what they say about themselves.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
-use localshape::output::{Shown, Tags, read_tags};
+use localshape::internals::{Shown, Tags, read_tags};
 use std::path::Path;
 
 /// Whether something can be drawn here; says so if not. Machines that must be able to say `LOCALSHAPE_REQUIRE_GPU=1`.

@@ -1,10 +1,10 @@
 //! `simulate`: diagnostics, summary and states.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting};
-use localshape::output::{Shown, Spent, Tags, Timings};
+use localshape::internals::{Shown, Spent, Tags, Timings};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::diagnostics::Diagnostic;
+use localshape::sim::Diagnostic;
 use serde_json::Value;
 use std::io::Read;
 

@@ -1,6 +1,6 @@
 //! A place to run the program in, and what comes out of it.
 
-use localshape::output::{Compression, Tags, encode};
+use localshape::internals::{Compression, Tags, encode};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs::{self, File};

@@ -1,7 +1,7 @@
 //! `table`: the paper's numbers beside ours, as files and on standard output.
 
 use crate::support::{Place, documented};
-use localshape::table::ratio;
+use localshape::internals::ratio;
 
 const FILES: [&str; 3] = ["table1-orientations.csv", "table1.csv", "table1.md"];
 

@@ -1,6 +1,6 @@
 //! Motions whose result is known in closed form.
 
-use crate::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
+use super::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
 use localshape::sim::body::{Body, Dimension, IndexLists, Solids};
 use localshape::sim::state::State;

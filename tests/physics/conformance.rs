@@ -1,8 +1,8 @@
 //! What any elastic model must do, whatever it is made of, on elements of every kind. A new model or reading joins by
 //! one line in [`cases`].
 
-use crate::example_model::Rods;
-use crate::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
+use super::example_model::Rods;
+use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::sim::body::{Body, Dimension, ElementKind, IndexLists, Solids};
 use localshape::sim::model::ElasticModel;

@@ -1,6 +1,6 @@
 //! Rebound and friction against closed forms, at obstacles of every shape, still and moving.
 
-use crate::support::Noise;
+use super::support::Noise;
 use glam::{DQuat, DVec3};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::motion::{Ease, Key, Offset};

@@ -1,6 +1,6 @@
 //! Starts from which the shape model must come back and mass-spring need not (paper, section 3).
 
-use crate::support::{Noise, body, free, lattice, mass_spring, shape_based};
+use super::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::sim::body::Dimension;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
@@ -56,7 +56,7 @@ fn mass_spring_stays_inverted() {
 #[test]
 fn a_half_turn_at_the_start_has_no_force() {
     let half_turn = start(|r| r * DVec3::new(-1.0, -1.0, 1.0), 0.0);
-    let force = crate::support::forces(&lattice(1, 1.0), &shape_based(1e4, 0.0), &half_turn);
+    let force = super::support::forces(&lattice(1, 1.0), &shape_based(1e4, 0.0), &half_turn);
     assert!(force.iter().all(|f| f.length() < 1e-10));
 }
 

@@ -1,8 +1,6 @@
 use glam::DVec3;
 use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
-use localshape::sim::state::Nodes;
-use localshape::sim::topology::Springs;
-use localshape::sim::{Body, words};
+use localshape::sim::{Body, Nodes, Springs};
 use std::sync::Arc;
 
 /// The model with its parameters.
@@ -18,7 +16,7 @@ impl ElasticModel for Rods {
     }
 
     fn describe(&self, body: &Body) -> String {
-        format!("{} nodes with rods, k = {} N/m", body.len(), words::rounded(self.stiffness, 3))
+        format!("{} nodes with rods, k = {} N/m", body.len(), self.stiffness)
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {

@@ -1,6 +1,6 @@
 //! Fig. 4(a): six triangles in the plane fall on a floor, by the scene that ships.
 
-use crate::support::{after, shipped};
+use super::support::{after, shipped};
 use localshape::scene::Scene;
 use localshape::sim::Snapshot;
 

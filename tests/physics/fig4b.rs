@@ -1,6 +1,6 @@
 //! Fig. 4(b): 3×3×3 cubes hit the floor with the speed of a fall of 5 m, by the scene that ships.
 
-use crate::support::{after, shipped};
+use super::support::{after, shipped};
 use localshape::sim::snapshot::Status;
 
 #[test]

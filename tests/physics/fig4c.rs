@@ -1,6 +1,6 @@
 //! Fig. 4(c): a plate presses 3×3×3 cubes ten times, by the scene that ships.
 
-use crate::support::{after, shipped};
+use super::support::{after, shipped};
 
 #[test]
 fn springs_fold_up_at_the_first_press_and_the_shape_model_comes_back_from_all_ten() {

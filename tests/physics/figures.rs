@@ -1,7 +1,7 @@
 //! The forces of Figs. 1 and 2, with `k = 1`, against an independent implementation's: the seven rows of the table in
 //! `docs/paper.md`.
 
-use crate::support::{body, forces, shape_based};
+use super::support::{body, forces, shape_based};
 use glam::DVec3;
 use localshape::sim::body::Dimension;
 use localshape::sim::model::ElasticModel;

@@ -1,6 +1,6 @@
 //! The paper's concluding claim: free-form bodies of irregular elements keep their shape, by the scenes that ship.
 
-use crate::support::{after, shipped};
+use super::support::{after, shipped};
 use localshape::sim::body::ElementKind;
 
 #[test]

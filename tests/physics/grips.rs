@@ -1,6 +1,6 @@
 //! Nodes that are held, grabbed, dragged and let go.
 
-use crate::support::{after, lattice, shape_based, shipped, world};
+use super::support::{after, lattice, shape_based, shipped, world};
 use glam::{DQuat, DVec3};
 use localshape::sim::grip::Grip;
 use localshape::sim::motion::{Ease, Key, Motion, Offset};

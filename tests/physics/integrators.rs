@@ -1,7 +1,7 @@
 //! What each integrator does, against closed forms.
 
-use crate::conformance::{bodies, cases};
-use crate::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
+use super::conformance::{bodies, cases};
+use super::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
 use localshape::sim::body::{Body, Dimension, Solids};
 use localshape::sim::grip::Grip;

@@ -1,6 +1,6 @@
 //! Bodies whose nodes have different masses.
 
-use crate::support::{Noise, lattice, shape_based};
+use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::body::{Body, Dimension, Solids};

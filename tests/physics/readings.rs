@@ -1,6 +1,6 @@
 //! The paper's readings, each by what it does.
 
-use crate::support::{after, free, lattice, shape_based, shipped};
+use super::support::{after, free, lattice, shape_based, shipped};
 use glam::DVec3;
 use localshape::sim::body::Body;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};

@@ -1,6 +1,6 @@
 //! Starts from which a body of the shape model comes back and one of springs does not: the figure `restore`.
 
-use crate::support::{after, shipped};
+use super::support::{after, shipped};
 use localshape::sim::snapshot::Status;
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is fast is no divergence as long as something makes it fast: a small, soft body falls for long, is hit by a fast
 //! plate, is dragged by a fast hand. By itself it would never move faster than some metres a second.
 
-use crate::support::{lattice, shape_based};
+use super::support::{lattice, shape_based};
 use glam::DVec3;
 use localshape::sim::contact::{Obstacle, Shape};
 use localshape::sim::grip::Grip;

@@ -1,7 +1,7 @@
 //! All that persists is in the state, and nothing else is.
 
-use crate::conformance::{bodies, cases};
-use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
+use super::conformance::{bodies, cases};
+use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::grip::Grip;

@@ -1,6 +1,6 @@
 //! The same bits for any number of threads.
 
-use crate::support::{Noise, floor, lattice, mass_spring, shape_based};
+use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::crew::Crew;

@@ -297,7 +297,7 @@ fn nodes_are_marked_only_while_they_are_held() {
 fn scenes_without_obstacles_pay_nothing() {
     let (scene, frame) = fig4b(4);
     let picture = compose(&scene, &frame);
-    assert!(picture.panels.iter().all(|panel| panel.obstacles.is_empty()));
+    assert!(picture.panels.iter().all(|panel| panel.obstacles == Obstacles::default()));
     assert!(picture.panels.iter().flat_map(|panel| &panel.lines).all(|line| (line.kind as u32) < 4));
 }
 

@@ -7,8 +7,8 @@ mod players;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use browser::{Browser, PLAIN, SHIFT};
-use localshape::golden::report::{PicturePair, Report};
-use localshape::golden::{Displacement, FrameDifference, RunDifference};
+use localshape::internals::{Displacement, FrameDifference, RunDifference};
+use localshape::internals::{PicturePair, Report};
 use serde_json::{Value, json};
 
 /// Pictures are so large (px). A square of `INK` lies at the left of the expected ones, at the right of the actual ones.

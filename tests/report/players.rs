@@ -1,7 +1,7 @@
 //! Animations in the browser's own players: what they show first and last.
 
 use crate::browser::Browser;
-use localshape::output::{Compression, Shown, Tags, encode};
+use localshape::internals::{Compression, Shown, Tags, encode};
 use serde_json::json;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -30,7 +30,7 @@ use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
-pub use figure::{NoRoom, compose_figure};
+pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 /// The names of the figures that come with the program, in the paper's order.
-pub const NAMES: [&str; 7] = ["fig1", "fig2", "fig3", "fig4a", "fig4b", "fig4c", "restore"];
+pub(crate) const NAMES: [&str; 7] = ["fig1", "fig2", "fig3", "fig4a", "fig4b", "fig4c", "restore"];
 
 /// Makes the list of texts by their paths.
 macro_rules! texts {

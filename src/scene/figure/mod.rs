@@ -5,7 +5,7 @@ mod built_in;
 mod file;
 mod resolve;
 
-pub use built_in::NAMES;
+pub(crate) use built_in::NAMES;
 
 use super::Scene;
 use super::error::SceneError;
@@ -167,7 +167,7 @@ impl Figure {
 /// let schema = localshape::scene::figure::schema();
 /// assert_eq!(schema["properties"]["title"]["type"], "string");
 /// ```
-pub fn schema() -> Value {
+pub(crate) fn schema() -> Value {
     SCHEMA.clone()
 }
 

@@ -3,6 +3,7 @@
 use super::{Coordinates, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::mem::swap;
 
 /// The body: exactly one of `lattice`, `polygon`, `fan`, `disc` or `bars`, or explicit `nodes` and `elements`, here or in
 /// a `file`.
@@ -29,7 +30,7 @@ pub(in crate::scene) struct BodyFile {
     /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the plane. It
     /// stands on y = 0, with its middle at x = 0 and z = 0: six cells of 0.1 m along x reach from -0.3 m to 0.3 m. Nodes are
     /// numbered with x fastest, then y, then z.
-    pub(in crate::scene) lattice: Option<LatticeFile>,
+    pub(in crate::scene) lattice: Option<Lattice>,
     /// One regular polygon in the plane as a single element: `{ sides = 6, radius = 1.0 }`. It stands with a side on y = 0, its
     /// centre above the origin. Corners are numbered counter-clockwise from the left end of that side.
     pub(in crate::scene) polygon: Option<PolygonFile>,
@@ -61,7 +62,7 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
     /// A degenerate, inverted or random shape in which the body starts, such as `{ shape = "cloud", seed = 1 }`. Default: its
     /// rest shape.
-    pub(in crate::scene) start: Option<StartFile>,
+    pub(in crate::scene) start: Option<Start>,
     /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not rotated by `rotation`.
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass` for all.
@@ -81,7 +82,7 @@ pub(in crate::scene) struct BodyFile {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
     /// A rotation about the mean of the nodes at the start. Default: none.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
     /// A translation after the rotation (m). Default: none.
     pub(in crate::scene) offset: Option<Coordinates>,
     /// Height (m) at which the lowest node starts, along y, after rotation and translation. Default: unchanged.
@@ -92,25 +93,58 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) spin: Option<SpinFile>,
 }
 
+impl BodyFile {
+    /// Exchanges all lists with those of another body.
+    pub(in crate::scene) fn swap_lists(&mut self, other: &mut Self) {
+        swap(&mut self.nodes, &mut other.nodes);
+        swap(&mut self.elements, &mut other.elements);
+        swap(&mut self.springs, &mut other.springs);
+        swap(&mut self.faces, &mut other.faces);
+        swap(&mut self.positions, &mut other.positions);
+        swap(&mut self.velocities, &mut other.velocities);
+        swap(&mut self.masses, &mut other.masses);
+    }
+
+    /// Takes all lists out. A single valid entry stands for each that has any.
+    pub(in crate::scene) fn take_lists(&mut self) -> Self {
+        fn short<T>(list: &Option<Vec<T>>, entry: T) -> Option<Vec<T>> {
+            list.as_ref().map(|list| list.first().map(|_| entry).into_iter().collect())
+        }
+        let point = || Coordinates(vec![0.0; 2]);
+        let mut lists = Self {
+            nodes: short(&self.nodes, point()),
+            elements: short(&self.elements, vec![0; 2]),
+            springs: short(&self.springs, [0; 2]),
+            faces: short(&self.faces, vec![0; 3]),
+            positions: short(&self.positions, point()),
+            velocities: short(&self.velocities, point()),
+            masses: short(&self.masses, Positive(1.0)),
+            ..Self::default()
+        };
+        self.swap_lists(&mut lists);
+        lists
+    }
+}
+
 /// A degenerate, inverted or random start, around the mean of the nodes at rest.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct StartFile {
+pub struct Start {
     /// What the body becomes at its start.
     pub(in crate::scene) shape: StartShape,
     /// Direction of the line, or normal of the plane or mirror, of any length but zero. Points and clouds have none.
     /// Default: along x.
     pub(in crate::scene) direction: Option<Coordinates>,
     /// Seed of a random cloud, which is the same on every machine. Other shapes have none.
-    #[serde(default = "first")]
-    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+    #[serde(default = "first", skip_serializing_if = "is_first")]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32), extend("default" = 1))]
     pub(in crate::scene) seed: u32,
 }
 
 /// What a body becomes at its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub(in crate::scene) enum StartShape {
+pub enum StartShape {
     /// All nodes at one point.
     Point,
     /// All nodes projected to a straight line.
@@ -148,7 +182,7 @@ pub(in crate::scene) struct SpinFile {
 /// A block of equal cells.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct LatticeFile {
+pub struct Lattice {
     /// Number of cells along x, y and z; two numbers make squares in the plane.
     #[schemars(length(min = 2, max = 3), inner(range(min = 1, max = 4_000_000_000_u32)))]
     pub(in crate::scene) cells: Vec<u32>,
@@ -156,7 +190,7 @@ pub(in crate::scene) struct LatticeFile {
     pub(in crate::scene) side: SideFile,
     /// Into which elements the cells are divided.
     #[serde(default)]
-    pub(in crate::scene) elements: CellsFile,
+    pub(in crate::scene) elements: Cells,
     /// Random displacement of nodes, in parts of a cell's shortest side. Nodes on the surface move only along it and corners
     /// not at all, so that the block keeps its outer shape. Displacements are reduced where an element would be flattened or
     /// turned inside out.
@@ -173,6 +207,10 @@ fn first() -> u32 {
     1
 }
 
+fn is_first(seed: &u32) -> bool {
+    *seed == first()
+}
+
 /// The sides of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
@@ -186,7 +224,7 @@ pub(in crate::scene) enum SideFile {
 /// Into which elements the cells of a block are divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum CellsFile {
+pub enum Cells {
     /// Each cell is one element.
     #[default]
     Cells,
@@ -240,7 +278,7 @@ pub(in crate::scene) struct BarsFile {
 /// A rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct RotationFile {
+pub struct Rotation {
     /// The axis, of any length but zero; the rotation is counter-clockwise when the axis points at the viewer. Not in the
     /// plane.
     pub(in crate::scene) axis: Option<Coordinates>,

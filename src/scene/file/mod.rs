@@ -8,21 +8,22 @@ mod body;
 mod motion;
 mod obstacle;
 
-pub(in crate::scene) use body::{
-    BarsFile, BodyFile, CellsFile, DiscFile, LatticeFile, PolygonFile, RotationFile, SideFile, StartShape,
-};
-pub(in crate::scene) use motion::{GrabFile, HoldFile, MotionFile, NodesFile, RegionFile, SwingFile};
-pub(in crate::scene) use obstacle::ObstacleFile;
+pub(in crate::scene) use body::{BarsFile, BodyFile, DiscFile, PolygonFile, SideFile, SpinFile};
+pub use body::{Cells, Lattice, Rotation, Start, StartShape};
+pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
+pub use motion::{MotionPath, Swing};
+pub(in crate::scene) use obstacle::{BoxFile, CapsuleFile, FloorFile, ObstacleFile, PlateFile, SphereFile};
 
 use super::step::FractionOfCycle;
 use crate::look::file::ViewFile;
 use crate::look::typed::TypedColour;
-pub(in crate::scene) use crate::reading::coordinates::Coordinates;
+pub use crate::reading::coordinates::Coordinates;
 use crate::sim::integrate::Integrator;
-use crate::sim::model::ModelParameters;
+use crate::sim::model::{ElasticModel, ModelParameters};
 use crate::sim::world::Kernel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A scene: one body, one world and several runs, each of which is one elastic model on that body.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -120,4 +121,8 @@ pub(in crate::scene) struct RunFile {
     /// at least 20 (CIEDE2000), also with colour blindness. Default: a different colour for each of the first eight runs,
     /// which also differs from colours chosen for other runs. Dashes always differ, so several runs may share a colour.
     pub(in crate::scene) colour: Option<TypedColour>,
+    /// A model of the caller's own, which takes the place of `model` in scenes made in code.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub(in crate::scene) own: Option<Arc<dyn ElasticModel>>,
 }

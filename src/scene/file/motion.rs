@@ -1,6 +1,6 @@
 //! Paths and kinematic constraints as typed.
 
-use super::{Coordinates, RotationFile};
+use super::{Coordinates, Rotation};
 use crate::sim::motion::Ease;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A path of keyframes.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct MotionFile {
+pub struct MotionPath {
     /// Keyframes with rising times, such as `[{ time = 0.2 }, { time = 0.5, shift = [0, -0.2, 0] }]`. Before the first key the
     /// pose is that of the first, after the last that of the last.
     #[schemars(length(min = 1))]
@@ -32,13 +32,13 @@ pub(in crate::scene) struct KeyFile {
     pub(in crate::scene) shift: Option<Coordinates>,
     /// Rotation, about the centre unless `about` is given. Angles beyond 2π are several turns. Default: none, whatever the
     /// previous key has.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
 }
 
 /// An oscillation: `sin(2π t / period + phase)` times a translation and a rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct SwingFile {
+pub struct Swing {
     /// Period (s).
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) period: f64,
@@ -48,7 +48,7 @@ pub(in crate::scene) struct SwingFile {
     /// Amplitude of the translation (m). Default: none.
     pub(in crate::scene) shift: Option<Coordinates>,
     /// Amplitude of the rotation, about the centre unless `about` is given. Default: none.
-    pub(in crate::scene) rotation: Option<RotationFile>,
+    pub(in crate::scene) rotation: Option<Rotation>,
 }
 
 /// Nodes that are held in place.
@@ -76,7 +76,7 @@ pub(in crate::scene) struct GrabFile {
     pub(in crate::scene) nodes: NodesFile,
     /// The path along which they are dragged. At the time of the first key the nodes are grabbed wherever they are. They
     /// then follow the path's motion since that key, rotating about their centre, and are released at the last key.
-    pub(in crate::scene) path: MotionFile,
+    pub(in crate::scene) path: MotionPath,
 }
 
 /// Some nodes of a body.

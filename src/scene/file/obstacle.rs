@@ -1,6 +1,6 @@
 //! Obstacles as typed.
 
-use super::{Coordinates, MotionFile, RotationFile, SwingFile};
+use super::{Coordinates, MotionPath, Rotation, Swing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -26,8 +26,18 @@ pub(in crate::scene) struct Common<'a> {
     pub(in crate::scene) restitution: f64,
     pub(in crate::scene) friction: f64,
     pub(in crate::scene) about: Option<&'a Coordinates>,
-    pub(in crate::scene) path: Option<&'a MotionFile>,
-    pub(in crate::scene) swing: Option<&'a SwingFile>,
+    pub(in crate::scene) path: Option<&'a MotionPath>,
+    pub(in crate::scene) swing: Option<&'a Swing>,
+}
+
+/// The same, to be set.
+#[derive(Debug)]
+pub(in crate::scene) struct CommonMut<'a> {
+    pub(in crate::scene) restitution: &'a mut f64,
+    pub(in crate::scene) friction: &'a mut f64,
+    pub(in crate::scene) about: &'a mut Option<Coordinates>,
+    pub(in crate::scene) path: &'a mut Option<MotionPath>,
+    pub(in crate::scene) swing: &'a mut Option<Swing>,
 }
 
 /// Defines the tables of the kinds: their own keys, and those that all have.
@@ -52,13 +62,31 @@ macro_rules! kinds {
                 /// it. Default: as said for this kind.
                 about: Option<Coordinates>,
                 /// A path of keyframes along which it moves. Not together with `swing`.
-                path: Option<MotionFile>,
+                path: Option<MotionPath>,
                 /// An oscillation, such as `{ period = 1.2, shift = [0.1, 0, 0] }`. Not together with `path`.
-                swing: Option<SwingFile>,
+                swing: Option<Swing>,
+            }
+
+            impl $table {
+                /// One that stays where it is, without rebound and friction.
+                #[expect(clippy::new_ret_no_self, reason = "it is wanted as one of all kinds")]
+                pub(in crate::scene) fn new($($key: $type),*) -> ObstacleFile {
+                    let (about, path, swing) = (None, None, None);
+                    ObstacleFile::$kind(Self { $($key,)* restitution: 0.0, friction: 0.0, about, path, swing })
+                }
             }
         )*
 
         impl ObstacleFile {
+            /// What a kind has besides its shape, to be set.
+            pub(in crate::scene) fn common_mut(&mut self) -> CommonMut<'_> {
+                match self {
+                    $(Self::$kind($table { restitution, friction, about, path, swing, .. }) => {
+                        CommonMut { restitution, friction, about, path, swing }
+                    })*
+                }
+            }
+
             pub(in crate::scene) fn common(&self) -> Common<'_> {
                 match self {
                     $(Self::$kind($table { restitution, friction, about, path, swing, .. }) => Common {
@@ -116,6 +144,6 @@ kinds! {
         #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
         size: Coordinates,
         /// Orientation of its sides. Default: along the axes.
-        rotation: Option<RotationFile>,
+        rotation: Option<Rotation>,
     }
 }

@@ -1,6 +1,6 @@
 //! The cells of a block and their nodes, whatever is made of them.
 
-use crate::scene::file::{LatticeFile, SideFile};
+use crate::scene::file::{Lattice, SideFile};
 use glam::DVec3;
 
 /// The cells of a block and the nodes at their corners.
@@ -13,7 +13,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn new(typed: &LatticeFile) -> Self {
+    pub(super) fn new(typed: &Lattice) -> Self {
         let axis = |axis: usize| match &typed.side {
             SideFile::Equal(side) => *side,
             SideFile::PerAxis(sides) => sides.get(axis).map_or(1.0, |side| side.0),

@@ -2,40 +2,40 @@
 
 use super::grid::Grid;
 use super::{Made, irregular, mixed};
-use crate::scene::file::{CellsFile, LatticeFile};
+use crate::scene::file::{Cells, Lattice};
 use crate::scene::limits::BodySize;
 use crate::sim::body::IndexLists;
 
 /// How large a block will be. One of mixed elements may come out smaller, with a middle in fewer of its cells.
-pub(super) fn size(typed: &LatticeFile) -> BodySize {
+pub(super) fn size(typed: &Lattice) -> BodySize {
     let product = |extra: u128| typed.cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
     let (cells, is_flat) = (product(0), typed.cells.len() == 2);
     let (corners, pieces) = match typed.elements {
-        CellsFile::Cells if is_flat => (4, 1),
-        CellsFile::Cells => (8, 1),
-        CellsFile::Triangles => (3, 2),
-        CellsFile::Tetrahedra => (4, 5),
-        CellsFile::Mixed if is_flat => (4, 2),
+        Cells::Cells if is_flat => (4, 1),
+        Cells::Cells => (8, 1),
+        Cells::Triangles => (3, 2),
+        Cells::Tetrahedra => (4, 5),
+        Cells::Mixed if is_flat => (4, 2),
         // Twelve tetrahedra around the middle of each cube.
-        CellsFile::Mixed => (4, 12),
+        Cells::Mixed => (4, 12),
     };
-    let middles = if typed.elements == CellsFile::Mixed && !is_flat { cells } else { 0 };
+    let middles = if typed.elements == Cells::Mixed && !is_flat { cells } else { 0 };
     BodySize::new(product(1).saturating_add(middles), [(corners, cells.saturating_mul(pieces))])
 }
 
 /// A lattice. In the plane its cells are squares or triangles, in space cubes or tetrahedra.
-pub(super) fn make(typed: &LatticeFile) -> Made {
+pub(super) fn make(typed: &Lattice) -> Made {
     let grid = Grid::new(typed);
     let mut elements = IndexLists::default();
     // The corners of cells that have a node in their middle; these nodes follow those at the corners.
     let mut middles = Vec::new();
     match typed.elements {
-        CellsFile::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
-        CellsFile::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
-        CellsFile::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
-        CellsFile::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
-        CellsFile::Mixed if grid.is_flat() => mixed::cut_squares(&grid, typed.seed, &mut elements),
-        CellsFile::Mixed => middles = mixed::cut_cubes(&grid, typed.seed, &mut elements),
+        Cells::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
+        Cells::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
+        Cells::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
+        Cells::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
+        Cells::Mixed if grid.is_flat() => mixed::cut_squares(&grid, typed.seed, &mut elements),
+        Cells::Mixed => middles = mixed::cut_cubes(&grid, typed.seed, &mut elements),
     }
     let mut nodes = grid.nodes();
     irregular::extend_to_middles(&mut nodes, &middles);
@@ -73,12 +73,12 @@ mod tests {
     use glam::DVec3;
     use std::collections::BTreeMap;
 
-    fn typed(cells: &[u32], elements: CellsFile, irregular: f64, seed: u32) -> LatticeFile {
-        LatticeFile { cells: cells.to_vec(), side: SideFile::Equal(0.5), elements, irregular, seed }
+    fn typed(cells: &[u32], elements: Cells, irregular: f64, seed: u32) -> Lattice {
+        Lattice { cells: cells.to_vec(), side: SideFile::Equal(0.5), elements, irregular, seed }
     }
 
     fn plain(cells: &[u32]) -> Made {
-        make(&typed(cells, CellsFile::Cells, 0.0, 1))
+        make(&typed(cells, Cells::Cells, 0.0, 1))
     }
 
     #[test]
@@ -102,30 +102,30 @@ mod tests {
     #[test]
     fn each_axis_may_have_its_own_side() {
         let sides = SideFile::PerAxis([0.1, 0.2, 0.4].map(Positive).to_vec());
-        let made = make(&LatticeFile { side: sides, ..typed(&[3, 2, 1], CellsFile::Cells, 0.0, 1) });
+        let made = make(&Lattice { side: sides, ..typed(&[3, 2, 1], Cells::Cells, 0.0, 1) });
         let (low, high) = bounds(&made.nodes);
         assert!((low - DVec3::new(-0.15, 0.0, -0.2)).length() < 1e-15 && (high.y - 0.4).abs() < 1e-15);
     }
 
     /// Blocks of all kinds of pieces, even and uneven.
-    fn blocks() -> Vec<LatticeFile> {
+    fn blocks() -> Vec<Lattice> {
         let mut blocks = Vec::new();
         for irregular in [0.0, 0.1, 0.4] {
             for seed in [1, 2, 77] {
                 for cells in [&[1, 1][..], &[2, 1], &[7, 4], &[1, 9]] {
-                    for elements in [CellsFile::Cells, CellsFile::Triangles, CellsFile::Mixed] {
+                    for elements in [Cells::Cells, Cells::Triangles, Cells::Mixed] {
                         blocks.push(typed(cells, elements, irregular, seed));
                     }
                 }
                 for cells in [&[1, 1, 1][..], &[2, 1, 1], &[5, 4, 3], &[8, 8, 8]] {
-                    for elements in [CellsFile::Cells, CellsFile::Tetrahedra, CellsFile::Mixed] {
+                    for elements in [Cells::Cells, Cells::Tetrahedra, Cells::Mixed] {
                         blocks.push(typed(cells, elements, irregular, seed));
                     }
                 }
             }
         }
         let thin = SideFile::PerAxis([1.0, 0.01, 0.1].map(Positive).to_vec());
-        blocks.push(LatticeFile { side: thin, ..typed(&[6, 6, 6], CellsFile::Mixed, 0.4, 5) });
+        blocks.push(Lattice { side: thin, ..typed(&[6, 6, 6], Cells::Mixed, 0.4, 5) });
         blocks
     }
 
@@ -199,7 +199,7 @@ mod tests {
         for typed in blocks() {
             let Made { nodes, elements } = make(&typed);
             let (said, made) = (size(&typed), BodySize::new(nodes.len() as u128, count_by_nodes(&elements)));
-            if typed.elements == CellsFile::Mixed {
+            if typed.elements == Cells::Mixed {
                 assert!(made.nodes <= said.nodes && made.count() <= said.count(), "{typed:?}");
                 assert!(made.corners() <= said.corners(), "{typed:?}");
             } else {
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn mixed_blocks_have_elements_of_every_kind() {
-        let kinds = |cells: &[u32]| count_by_nodes(&make(&typed(cells, CellsFile::Mixed, 0.0, 1)).elements);
+        let kinds = |cells: &[u32]| count_by_nodes(&make(&typed(cells, Cells::Mixed, 0.0, 1)).elements);
         let plane = kinds(&[12, 12]);
         assert!((3..=6).all(|corners| plane[&corners] >= 8), "{plane:?}");
         let space = kinds(&[6, 6, 6]);
@@ -222,7 +222,7 @@ mod tests {
         for cells in [&[9, 9][..], &[9, 9, 9]] {
             let flat = plain(cells).nodes;
             let distances = |seed| -> Vec<f64> {
-                let moved = make(&typed(cells, CellsFile::Cells, 0.2, seed)).nodes;
+                let moved = make(&typed(cells, Cells::Cells, 0.2, seed)).nodes;
                 moved.iter().zip(&flat).map(|(a, b)| a.distance(*b) / 0.5).collect()
             };
             let one = distances(1);

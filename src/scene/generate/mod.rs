@@ -13,7 +13,7 @@ mod start;
 pub(super) use start::brought_to_start;
 
 use super::file::BodyFile;
-use super::file::{BarsFile, CellsFile, DiscFile, LatticeFile, PolygonFile, SideFile};
+use super::file::{BarsFile, Cells, DiscFile, Lattice, PolygonFile, SideFile};
 use super::limits::BodySize;
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
@@ -22,7 +22,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Generator<'a> {
     /// A block of cells.
-    Lattice(&'a LatticeFile),
+    Lattice(&'a Lattice),
     /// One regular polygon.
     Polygon(&'a PolygonFile),
     /// Triangles around a middle node.
@@ -86,7 +86,7 @@ impl<'a> Generator<'a> {
     /// The length of all edges (m), if it was typed.
     pub(super) fn side(self) -> Option<f64> {
         match self {
-            Self::Lattice(LatticeFile { side: SideFile::Equal(side), elements: CellsFile::Cells, .. }) => Some(*side),
+            Self::Lattice(Lattice { side: SideFile::Equal(side), elements: Cells::Cells, .. }) => Some(*side),
             _ => None,
         }
     }

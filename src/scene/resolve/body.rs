@@ -5,7 +5,7 @@ use super::motion::axis;
 use super::{direction, elements, vector};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::quoted;
-use crate::scene::file::{BodyFile, CellsFile, Coordinates, LatticeFile, RunFile, SideFile, StartShape};
+use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{BodySize, Excess, Limits};
 use crate::sim::body::{Body, Dimension, Solids};
@@ -101,11 +101,11 @@ fn generated(
 fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
     let at = |key, inner| [Way::Key("body"), Way::Key(key), Way::Key(inner)];
     match generator {
-        Generator::Lattice(LatticeFile { cells, side, elements, .. }) => {
+        Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
             let wrong = match elements {
-                CellsFile::Triangles if axes == 3 => Some(("triangles", "in space", "tetrahedra")),
-                CellsFile::Tetrahedra if axes == 2 => Some(("tetrahedra", "in the plane", "triangles")),
+                Cells::Triangles if axes == 3 => Some(("triangles", "in space", "tetrahedra")),
+                Cells::Tetrahedra if axes == 2 => Some(("tetrahedra", "in the plane", "triangles")),
                 _ => None,
             };
             if let Some((typed, place, other)) = wrong {

@@ -187,6 +187,35 @@ impl Lists {
     }
 }
 
+/// What is wrong with a number that is not finite or too large.
+fn beyond(number: f64) -> Option<String> {
+    let expected = if number.is_finite() { format!("a magnitude up to {LARGEST:e}") } else { "a finite number".into() };
+    (number.is_nan() || number.abs() > LARGEST).then(|| format!("is {number}; expected {expected}"))
+}
+
+/// Reports of lists that were made in code what the schema says of those in files: numbers out of range, lists too short.
+pub(super) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
+    let mut say = |key: &str, at: &[usize], message: String| {
+        ListSource::Scene.tell(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
+    };
+    for (key, points) in [("nodes", &file.nodes), ("positions", &file.positions), ("velocities", &file.velocities)] {
+        for (row, Coordinates(point)) in points.iter().flatten().enumerate() {
+            let wrong = point.iter().enumerate().filter_map(|(axis, &number)| Some((axis, beyond(number)?)));
+            wrong.for_each(|(axis, message)| say(key, &[row, axis], message));
+        }
+    }
+    for (row, &Positive(mass)) in file.masses.iter().flatten().enumerate() {
+        let too_small = || (mass <= 0.0).then(|| format!("is {mass}; expected a number greater than 0"));
+        beyond(mass).or_else(too_small).into_iter().for_each(|message| say("masses", &[row], message));
+    }
+    for (key, lists, least) in [("elements", &file.elements, 2), ("faces", &file.faces, 3)] {
+        for (row, list) in lists.iter().flatten().enumerate().filter(|(_, list)| list.len() < least) {
+            let nodes = if list.len() == 1 { "node" } else { "nodes" };
+            say(key, &[row], format!("has {} {nodes}; expected at least {least}", list.len()));
+        }
+    }
+}
+
 /// Extensions of mesh files.
 const MESHES: [&str; 15] =
     ["obj", "stl", "ply", "off", "msh", "mesh", "vtk", "vtu", "gltf", "glb", "node", "ele", "inp", "fbx", "3mf"];
@@ -310,12 +339,8 @@ impl Reader<'_, '_> {
     /// A number that is finite and not too large; zero after a mistake.
     fn number(&mut self, key: &str, values: &Values, at: &[usize]) -> f64 {
         let number = values.double(at[0], at.get(1).copied().unwrap_or(0));
-        if number.abs() <= LARGEST {
-            return number;
-        }
-        let expected =
-            if number.is_finite() { format!("a magnitude up to {LARGEST:e}") } else { "a finite number".into() };
-        self.say(key, at, &format!("is {number}; expected {expected}"));
+        let Some(message) = beyond(number) else { return number };
+        self.say(key, at, &message);
         0.0
     }
 

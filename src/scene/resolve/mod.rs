@@ -15,15 +15,15 @@ use super::generate::Generator;
 use super::limits::Limits;
 use super::structure::Checked;
 use super::{Run, Scene};
-use crate::look::file::{CameraFile, ViewFile};
-use crate::look::{self, Camera, FontFiles, View, font};
+use crate::look::file::ViewFile;
+use crate::look::{self, FontFiles, View, font};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{count, short};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
+use crate::sim::model::ElasticModel;
 use body::ResolvedBody;
-pub(super) use elements::mean_edge;
 use glam::DVec3;
 use lists::Lists;
 use serde::Serialize;
@@ -96,6 +96,24 @@ impl Parts {
         }
     }
 
+    /// Puts back what the text of a scene made in code leaves out.
+    pub(super) fn put_back(&mut self, unwritten: Unwritten, report: &mut Report<'_>) {
+        if let (Some(body), Some(mut lists)) = (&mut self.body, unwritten.lists) {
+            body.swap_lists(&mut lists);
+            let before = report.total();
+            lists::check_unwritten(body, report);
+            self.flawed.extend((report.total() > before).then(|| "body".to_owned()));
+        }
+        for (run, model) in self.runs.iter_mut().zip(unwritten.models) {
+            run.iter_mut().for_each(|run| run.own = model.clone());
+        }
+    }
+
+    /// Whether a run has a model that no text describes.
+    pub(super) fn has_own_models(&self) -> bool {
+        self.runs.iter().flatten().any(|run| run.own.is_some())
+    }
+
     /// Digests of the files in the scene's folder.
     pub(super) fn digests_of_files(&self) -> FileDigests {
         let [regular, semi_bold] = match &self.font {
@@ -104,6 +122,14 @@ impl Parts {
         };
         FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold }
     }
+}
+
+/// What of a scene made in code is not written as text: lists that may be long, and models that have no name.
+#[derive(Debug, Default)]
+pub(super) struct Unwritten {
+    pub(super) lists: Option<BodyFile>,
+    /// One for each run.
+    pub(super) models: Vec<Option<Arc<dyn ElasticModel>>>,
 }
 
 fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Option<T> {
@@ -256,22 +282,6 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
         report.warn(&[Way::Key("time"), Way::Key("duration")], message, help);
     }
-}
-
-/// The default camera of a scene.
-pub(super) fn camera(scene: &Scene) -> Camera {
-    let around = look::Subject {
-        body: &scene.body,
-        initial: &scene.initial,
-        side: scene.view.side,
-        has_cells: scene.view.has_cells,
-        gravity: scene.gravity,
-        obstacles: &scene.obstacles,
-        grips: &scene.grips,
-        duration: scene.duration,
-        models: scene.runs.iter().map(|run| &*run.model).collect(),
-    };
-    look::camera(&CameraFile::default(), None, scene.view.explode, &around)
 }
 
 fn check_frames(time: &TimeFile, report: &mut Report<'_>) {

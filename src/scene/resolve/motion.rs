@@ -2,7 +2,7 @@
 
 use super::{direction, vector};
 use crate::reading::report::{Report, Way, written};
-use crate::scene::file::{Coordinates, MotionFile, RotationFile, SwingFile};
+use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Offset};
 use glam::DVec3;
@@ -37,7 +37,7 @@ pub(super) fn axis(
 /// A translation and a rotation.
 fn offset(
     shift: Option<&Coordinates>,
-    rotation: Option<&RotationFile>,
+    rotation: Option<&Rotation>,
     dimension: Dimension,
     path: &[Way<'_>],
     report: &mut Report<'_>,
@@ -58,7 +58,7 @@ fn offset(
 
 /// A path of keyframes. With a single key it is constant.
 pub(super) fn keys(
-    typed: &MotionFile,
+    typed: &MotionPath,
     dimension: Dimension,
     path: &[Way<'_>],
     report: &mut Report<'_>,
@@ -111,12 +111,7 @@ fn same(one: Offset, other: Offset) -> bool {
 }
 
 /// An oscillation.
-pub(super) fn swing(
-    typed: &SwingFile,
-    dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
-) -> Option<Motion> {
+pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
         let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
         report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
@@ -127,7 +122,7 @@ pub(super) fn swing(
 }
 
 /// Reports keys that are closer to each other than a time step (s).
-pub(super) fn check_steps(typed: &MotionFile, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
+pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;
         if apart > 0.0 && apart < step {

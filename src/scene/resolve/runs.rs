@@ -24,7 +24,9 @@ pub(super) fn resolve(
     let models: Vec<_> = (0..)
         .zip(typed)
         .map(|(at, run)| {
-            let model = run.as_ref()?.model.resolve(&body.body, body.springs.as_deref());
+            let run = run.as_ref()?;
+            let typed = || run.model.resolve(&body.body, body.springs.as_deref());
+            let model = run.own.clone().map_or_else(typed, Ok);
             let path = |key| [Way::Key("run"), Way::Index(at), Way::Key("model"), Way::Key(key)];
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })

@@ -72,7 +72,7 @@ struct Walk<'r, 't, 'p> {
 
 impl<'p> Walk<'_, '_, 'p> {
     fn mistake(&mut self, span: Range<usize>, message: String, help: Option<String>) {
-        self.report.at_span(span, message, help);
+        self.report.at_span(span, &self.path, message, help);
     }
 
     fn here(&self) -> String {

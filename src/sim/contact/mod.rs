@@ -3,10 +3,11 @@
 mod bound;
 mod shape;
 
-pub use super::motion::{Motion, Pose};
+pub(crate) use super::motion::{Motion, Pose};
 pub(super) use bound::{Bound, Floor};
+pub(crate) use shape::Contact;
 pub(super) use shape::ROUND_OFF;
-pub use shape::{Contact, Shape};
+pub use shape::Shape;
 
 use super::motion::Interval;
 use super::part::Part;
@@ -29,7 +30,7 @@ pub struct Obstacle {
 }
 
 /// A way to treat contact at the end of each step.
-pub trait ContactStage: Send + Sync {
+pub(crate) trait ContactStage: Send + Sync {
     /// Corrects the positions (m) and velocities (m/s) of all nodes after a step, which were at `before` when it began.
     /// `acceleration` (m/s²) is that with which each node has moved in the step; `None` if it has moved at constant velocity.
     fn resolve(
@@ -71,7 +72,7 @@ impl ContactStage for Vec<Obstacle> {
 
 /// What a body can stand on at a time (s): unit normal and distance from the origin (m) of the first floor that faces
 /// upwards.
-pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
+pub(crate) fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
     // A wall is no place to stand on; a slope of some 60° still is.
     const LEAST_RISE: f64 = 0.5;
     let mut floors = obstacles.iter().filter_map(|obstacle| obstacle.floor(time));
@@ -80,17 +81,17 @@ pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
 
 impl Obstacle {
     /// Whether it stays where it is.
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.motion == Motion::Still
     }
 
     /// Where it is at a time (s).
-    pub fn pose(&self, time: f64) -> Pose {
+    pub(crate) fn pose(&self, time: f64) -> Pose {
         self.motion.pose(time)
     }
 
     /// Unit normal and distance from the origin (m) of a floor at a time (s); `None` for other obstacles.
-    pub fn floor(&self, time: f64) -> Option<(DVec3, f64)> {
+    pub(crate) fn floor(&self, time: f64) -> Option<(DVec3, f64)> {
         let Shape::Floor { normal, height } = self.shape else { return None };
         if self.motion == Motion::Still {
             return Some((normal, height));
@@ -101,7 +102,7 @@ impl Obstacle {
     }
 
     /// The obstacle as nodes meet it at the end of a step (s) that ends at a time (s).
-    pub fn at(&self, time: f64, step: f64) -> Placed<'_> {
+    pub(crate) fn at(&self, time: f64, step: f64) -> Placed<'_> {
         let moving = (self.motion != Motion::Still).then(|| Moving {
             pivot: self.pivot,
             now: self.pose(time),
@@ -115,7 +116,7 @@ impl Obstacle {
 
 /// An obstacle at one moment.
 #[derive(Clone, Debug)]
-pub struct Placed<'a> {
+pub(crate) struct Placed<'a> {
     obstacle: &'a Obstacle,
     moving: Option<Moving>,
 }
@@ -134,7 +135,7 @@ impl Placed<'_> {
     ///
     /// The velocity is the way that the obstacle's own point has gone in the last step, over the step: what the steps
     /// of the nodes call velocity, too.
-    pub fn contact(&self, point: DVec3) -> Option<(Contact, DVec3)> {
+    pub(crate) fn contact(&self, point: DVec3) -> Option<(Contact, DVec3)> {
         self.surface(point).filter(|(contact, _)| contact.depth > 0.0)
     }
 
@@ -204,7 +205,7 @@ impl Placed<'_> {
 
     /// The rebound of one node that has moved in the step with an acceleration (m/s²): mirrored out with restitution, its
     /// slip braked by friction. A node on the surface, to round-off, rebounds if it approaches.
-    pub fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
+    pub(crate) fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
         if let Some((contact, own)) = self.surface(*position) {
             self.obstacle.push_out(contact, own, acceleration, position, velocity);
         }

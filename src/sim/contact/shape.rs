@@ -53,7 +53,7 @@ pub(in crate::sim) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// How a point lies in an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub(crate) struct Contact {
     /// Distance to the surface (m), positive inside, negative outside.
     pub depth: f64,
     /// Unit vector out of the obstacle, at right angles to the surface.
@@ -62,7 +62,8 @@ pub struct Contact {
 
 impl Shape {
     /// The depth of a point below the surface; `None` outside and on it.
-    pub fn contact(&self, point: DVec3) -> Option<Contact> {
+    #[cfg(test)]
+    fn contact(&self, point: DVec3) -> Option<Contact> {
         Some(self.surface(point)).filter(|contact| contact.depth > 0.0)
     }
 
@@ -103,7 +104,7 @@ impl Shape {
     }
 
     /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.
-    pub fn middle(&self) -> DVec3 {
+    pub(crate) fn middle(&self) -> DVec3 {
         match *self {
             Self::Floor { normal, height } => normal * height,
             Self::Plate { point, .. } => point,
@@ -113,7 +114,7 @@ impl Shape {
     }
 
     /// How far the obstacle reaches from its middle (m); infinite for half-spaces.
-    pub fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         match *self {
             Self::Floor { .. } | Self::Plate { .. } => f64::INFINITY,
             Self::Sphere { radius, .. } => radius,

@@ -6,7 +6,7 @@
 #![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 mod drive;
-pub mod floor;
+pub(crate) mod floor;
 pub(in crate::sim) mod general;
 mod lanes;
 pub(in crate::sim) mod lattice;

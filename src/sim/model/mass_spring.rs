@@ -48,6 +48,13 @@ pub struct MassSpring {
     pub springs: Vec<[u32; 2]>,
 }
 
+impl Parameters {
+    /// With an elastic constant (N/m), and all else as it is by default.
+    pub fn new(stiffness: f64) -> Self {
+        Self { stiffness, damping: None, damping_ratio: None, springs: None }
+    }
+}
+
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
         let mut springs = match (self.springs, listed) {

@@ -27,6 +27,14 @@ macro_rules! models {
             $($(#[$doc])* $name($module::Parameters),)*
         }
 
+        $(
+            impl From<$module::Parameters> for ModelParameters {
+                fn from(parameters: $module::Parameters) -> Self {
+                    Self::$name(parameters)
+                }
+            }
+        )*
+
         impl ModelParameters {
             fn typed(&self) -> &dyn TypedModel {
                 match self {
@@ -50,7 +58,7 @@ impl ModelParameters {
     ///
     /// # Errors
     /// Parameters that contradict each other or do not fit the body.
-    pub fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+    pub(crate) fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
         self.typed().resolve(body, springs)
     }
 
@@ -75,7 +83,7 @@ trait TypedModel {
 /// A parameter that does not fit, said about one key of the model's table.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
-pub struct Misfit {
+pub(crate) struct Misfit {
     /// The key, as typed in the scene.
     pub key: &'static str,
     /// What was found, what was expected and what to do.
@@ -103,6 +111,7 @@ pub trait ElasticModel: Debug + Send + Sync {
     }
 
     /// Which model it is, for vectorised steps; `None` for one that has the plain code alone.
+    #[doc(hidden)]
     fn known(&self) -> Option<Known<'_>> {
         None
     }
@@ -123,6 +132,7 @@ impl dyn ElasticModel + '_ {
 }
 
 /// Models that vectorised steps know.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub enum Known<'a> {
     /// Section 3 of the paper.
@@ -138,16 +148,15 @@ pub enum Known<'a> {
 /// A whole model: between any two nodes of an element a rod with the energy `k/(8 L²) (|p|² − L²)²`.
 /// ```
 #[doc = include_str!("../../../tests/physics/example_model.rs")]
-/// # use localshape::sim::{State, World, body::{Dimension, IndexLists, Solids}, world::{Stepping, Surroundings}};
-/// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
-/// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
-/// let stretched = State::at_rest(body.rest.iter().map(|&rest| rest * 1.1).collect());
-/// let stepping = Stepping::new(Default::default(), 1e-3);
-/// let mut world = World::new(&body, stretched, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
+/// # use localshape::scene::{BodyBuilder, Limits, Scene};
+/// let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let body = BodyBuilder::arrays(rest, [[0, 1, 2, 3]]).positions(rest.map(|node| node * 1.1));
+/// let scene = Scene::builder("tetrahedron", body).step(1e-3).own_run("Rods", Arc::new(Rods { stiffness: 100.0 }));
+/// let mut world = scene.build(&Limits::default())?.world(0);
 /// let energy = world.diagnostics().elastic;
 /// world.advance(1000);
 /// assert!(world.diagnostics().energy < energy * 1.01);
+/// # Ok::<(), localshape::scene::SceneError>(())
 /// ```
 pub trait ForceModel: Send + Sync {
     /// The memory at the start, with the nodes at `position` (m); its length stays as it is.

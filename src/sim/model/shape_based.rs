@@ -98,6 +98,13 @@ pub struct ShapeBased {
     pub damping_of: DampingReading,
 }
 
+impl Parameters {
+    /// With an elastic constant (N/m), and all else as it is by default.
+    pub fn new(stiffness: f64) -> Self {
+        Self { stiffness, damping: None, damping_ratio: None, passes: None, rotation: None, damping_of: None }
+    }
+}
+
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
         if body.dimension == Dimension::Plane {

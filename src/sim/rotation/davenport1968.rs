@@ -16,7 +16,7 @@ const EQUAL: f64 = 1e-12;
 ///
 /// `at_rest` is `Σ R0 rᵀ`. Where there are many (corners on a line or at a point, or turned inside out)
 /// the one nearest to `last`. Never NaN: what cannot be decided keeps `last`.
-pub fn optimum(at_rest: DMat3, last: DQuat) -> DQuat {
+pub(crate) fn optimum(at_rest: DMat3, last: DQuat) -> DQuat {
     let size = at_rest.to_cols_array().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
     if !(size > 0.0 && at_rest.is_finite()) {
         return last;

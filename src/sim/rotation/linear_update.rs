@@ -15,7 +15,7 @@ const SINGULAR: f64 = 1e-12;
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) has no solution (corners at a point or on a line) the last matrix is kept.
 #[doc(alias = "Eq. 16")]
 #[doc(alias = "Eq. 12")]
-pub fn update(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
+pub(crate) fn update(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
     let mut matrix = last;
     for _ in 0..passes {
         let a = matrix * at_rest;

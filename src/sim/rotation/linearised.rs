@@ -7,7 +7,7 @@ use glam::{DMat3, DQuat, DVec3};
 ///
 /// The matrix must not be singular; [`is_well_posed`] makes sure of that.
 #[doc(alias = "Eq. 15")]
-pub fn solve(a: DMat3) -> DVec3 {
+pub(crate) fn solve(a: DMat3) -> DVec3 {
     cramer(columns(a), -torque(a))
 }
 
@@ -16,7 +16,7 @@ pub fn solve(a: DMat3) -> DVec3 {
 /// That is the Hessian of the element's energy, and so Newton's method: with the angle of [`rotation_by_arctangent`] each pass takes the
 /// error to its third power, where the printed matrix takes it to its second. Not in the paper. [`is_well_posed`] is
 /// about this matrix, too.
-pub fn solve_symmetric(a: DMat3) -> DVec3 {
+pub(crate) fn solve_symmetric(a: DMat3) -> DVec3 {
     cramer(columns((a + a.transpose()) * 0.5), -torque(a))
 }
 
@@ -28,7 +28,7 @@ fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
 }
 
 /// The determinant of Eq. (15)'s matrix.
-pub fn determinant(a: DMat3) -> f64 {
+pub(crate) fn determinant(a: DMat3) -> f64 {
     let [c0, c1, c2] = columns(a);
     c0.dot(c1.cross(c2))
 }
@@ -44,13 +44,13 @@ fn columns(a: DMat3) -> [DVec3; 3] {
 /// `tan(θ/2) = |w| / (1 + √(1 + w²))` makes it a quaternion without any trigonometric function. The quaternion is not
 /// normalised.
 #[doc(alias = "Eq. 10")]
-pub fn rotation_by_arctangent(w: DVec3) -> DQuat {
+pub(crate) fn rotation_by_arctangent(w: DVec3) -> DQuat {
     DQuat::from_xyzw(w.x, w.y, w.z, 1.0 + (1.0 + w.length_squared()).sqrt())
 }
 
 /// The rotation with axis `u = w/|w|` and angle `θ = |w|`, the other reading of the paper. It overshoots and can spin a
 /// free body up; here for study.
-pub fn rotation_by_length(w: DVec3) -> DQuat {
+pub(crate) fn rotation_by_length(w: DVec3) -> DQuat {
     let angle = w.length();
     if angle == 0.0 {
         return DQuat::IDENTITY;
@@ -72,7 +72,7 @@ const WELL_POSED: f64 = 1e-9;
 /// `H = tr(A) I − (A + Aᵀ)/2` of the element's energy is positive definite (its leading minors are positive).
 ///
 /// Then the matrix of Eq. (15), whose symmetric part is `H`, is not singular either.
-pub fn is_well_posed(a: DMat3) -> bool {
+pub(crate) fn is_well_posed(a: DMat3) -> bool {
     let (xx, yy, zz) = (a.x_axis.x, a.y_axis.y, a.z_axis.z);
     let xy = -0.5 * (a.y_axis.x + a.x_axis.y);
     let xz = -0.5 * (a.z_axis.x + a.x_axis.z);
@@ -90,7 +90,7 @@ pub fn is_well_posed(a: DMat3) -> bool {
 ///
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) is no guide (turned inside out, flattened to a line or a point, more than
 /// a quarter turn away) the exact optimum nearest to `last` is taken instead.
-pub fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> DQuat {
+pub(crate) fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> DQuat {
     let mut rotation = last;
     for _ in 0..passes {
         let a = DMat3::from_quat(rotation) * at_rest;

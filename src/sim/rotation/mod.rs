@@ -12,17 +12,17 @@
 //! Eq. (15) is solved. But for one reading kept for study no function here uses a sine, a cosine or an arctangent:
 //! square roots and divisions alone are rounded alike on every machine.
 
-pub mod davenport1968;
-pub mod linear_update;
-pub mod linearised;
-pub mod planar;
+pub(crate) mod davenport1968;
+pub(crate) mod linear_update;
+pub(crate) mod linearised;
+pub(crate) mod planar;
 
 use super::body::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// `A = Σ R rᵀ` of an element: `shape` its equilibrium (or rest) corners, `now` its present ones (m), both relative
 /// to their own mean.
-pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
+pub(crate) fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
     let mut a = DMat3::ZERO;
     for (shape, now) in shape.iter().zip(now) {
         a.x_axis += *shape * now.x;
@@ -34,7 +34,7 @@ pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
 
 /// The rotation that minimises `Σ |r − M R0|²`, exactly, for `at_rest` = `Σ R0 rᵀ`; where there are many, the one
 /// nearest to none.
-pub fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
+pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
     match dimension {
         Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
         Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
@@ -43,7 +43,7 @@ pub fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
 
 /// Eq. (5): `Σ r × R`, the torque of the elastic forces over `k` (m²). It is zero at an equilibrium shape.
 #[doc(alias = "Eq. 5")]
-pub fn torque(a: DMat3) -> DVec3 {
+pub(crate) fn torque(a: DMat3) -> DVec3 {
     // A[i][j] = Σ R_i r_j; glam stores columns: a.y_axis.z is row z, column y.
     DVec3::new(a.y_axis.z - a.z_axis.y, a.z_axis.x - a.x_axis.z, a.x_axis.y - a.y_axis.x)
 }

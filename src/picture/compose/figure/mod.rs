@@ -12,7 +12,7 @@ use crate::scene::figure::{Content, Figure};
 /// There is no room for a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no room for what the figure shows; draw it larger or with fewer scenes")]
-pub struct NoRoom;
+pub(crate) struct NoRoom;
 
 /// Composes a figure from what was simulated for it.
 ///
@@ -21,7 +21,7 @@ pub struct NoRoom;
 ///
 /// # Panics
 /// If `moments` are those of another figure.
-pub fn compose_figure(figure: &Figure, moments: &Moments) -> Result<Picture, NoRoom> {
+pub(crate) fn compose_figure(figure: &Figure, moments: &Moments) -> Result<Picture, NoRoom> {
     match &figure.content {
         Content::Sheet(sheet) => Ok(sheet::compose(figure, sheet, moments)),
         Content::Forces(forces) => forces::compose(figure, forces, moments),

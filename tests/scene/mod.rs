@@ -2,7 +2,6 @@
 
 mod archives;
 mod bodies;
-mod code;
 mod digest;
 mod figures;
 mod good;

@@ -1,7 +1,6 @@
 //! What only a device can tell: that pictures come out, the same every time, in every size.
 //!
 //! Without a graphics adapter these tests say that they are skipped. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
-#![cfg(feature = "render")]
 
 mod fields;
 mod fine;

@@ -1,0 +1,294 @@
+//! Scenes made in code, as the author of another crate would make them.
+
+use localshape::glam::DVec3;
+use localshape::look::Theme;
+use localshape::scene::{
+    BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, Scene, SceneBuilder, Start,
+    StartShape, Swing,
+};
+use localshape::sim::model::{mass_spring, shape_based};
+use localshape::sim::{Diagnostic, Ease, Field, Integrator, Springs};
+
+fn springs(stiffness: f64) -> mass_spring::Parameters {
+    mass_spring::Parameters::new(stiffness)
+}
+
+fn shape(stiffness: f64) -> shape_based::Parameters {
+    shape_based::Parameters::new(stiffness)
+}
+
+/// A scene in code and the same one in a file are the same in everything, also in the digest that names their meaning.
+fn assert_same(made: SceneBuilder, file: &str) {
+    let parsed = Scene::parse(file, "scene.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
+    let made = made.build(&Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
+    assert!(!made.digest.is_empty());
+    // Titles are compared by their digest; names, which a file's own name gives, are not.
+    let [made, parsed] = [made, parsed].map(|scene| format!("{:#?}", Scene { name: String::new(), ..scene }));
+    assert_eq!(made, parsed, "{file}");
+}
+
+#[test]
+fn code_and_files_make_the_same_scenes() {
+    let run = "[[run]]\nname = 'One'\nmodel = { kind = 'shape-based', stiffness = 1.0 }\n";
+    let head = |body: &str| format!("title = 'scene'\ntime.duration = 1\n[body]\n{body}\n{run}");
+    let one = |body: BodyBuilder| Scene::builder("scene", body).run("One", shape(1.0));
+
+    let rest = [[0.0, 0.0, 0.0], [1e3, 0.0, 0.0], [0.0, 1e3, 0.0], [0.0, 0.0, 1e3]];
+    let body = || BodyBuilder::arrays(rest, [[0, 1, 2, 3]]);
+    let space = "nodes = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]\nelements = [[0, 1, 2, 3]]";
+    assert_same(one(body()), &head(space));
+    let ball = "[[obstacle]]\nkind = 'sphere'\ncentre = [1.5e3, 0, 0]\nradius = 300.0\n";
+    assert_same(one(body()).obstacle(ObstacleBuilder::sphere([1.5e3, 0.0, 0.0], 300.0)), &(head(space) + ball));
+
+    let vectors = rest.map(DVec3::from_array);
+    let body = BodyBuilder::arrays(vectors, vec![vec![3, 2, 1, 0]]).convex().springs([[0, 1], [1, 2]]);
+    let body = body.faces([[0, 1, 2]]).masses([1.0, 2.0, 3.0, 4.0]).positions(vectors).velocities([DVec3::X; 4]);
+    let lists = "nodes = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]\nelements = [[3, 2, 1, 0]]\nconvex = true
+        springs = [[0, 1], [1, 2]]\nfaces = [[0, 1, 2]]\nmasses = [1, 2, 3, 4]
+        positions = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]
+        velocities = [[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0]]";
+    assert_same(one(body), &head(lists));
+
+    let cloud = Start::new(StartShape::Cloud).seed(3);
+    let lattice = |cells: &[u32]| Lattice::new(cells, 0.1);
+    for (body, typed) in [
+        (BodyBuilder::lattice(lattice(&[3, 2])), "lattice = { cells = [3, 2], side = 0.1 }"),
+        (
+            BodyBuilder::lattice(lattice(&[3, 2, 1]).elements(Cells::Mixed).irregular(0.2).seed(7)),
+            "lattice = { cells = [3, 2, 1], side = 0.1, elements = 'mixed', irregular = 0.2, seed = 7 }",
+        ),
+        (BodyBuilder::lattice(lattice(&[2, 2]).sides([0.1, 0.3])), "lattice = { cells = [2, 2], side = [0.1, 0.3] }"),
+        (BodyBuilder::polygon(6, 0.5), "polygon = { sides = 6, radius = 0.5 }"),
+        (BodyBuilder::fan(6, 0.5).mass(0.1), "fan = { sides = 6, radius = 0.5 }\nmass = 0.1"),
+        (BodyBuilder::disc(1.0, 3, 12), "disc = { radius = 1, rings = 3, sectors = 12 }"),
+        (BodyBuilder::bars(4, 0.5, [1.0, 1.0, 0.0]), "bars = { count = 4, length = 0.5, direction = [1, 1, 0] }"),
+        (
+            BodyBuilder::polygon(4, 0.5)
+                .rotation(Rotation::in_plane(0.3))
+                .offset([1.0, 2.0])
+                .lowest(0.25)
+                .velocity([0.5, 0.0])
+                .spin(Rotation::in_plane(2.0)),
+            "polygon = { sides = 4, radius = 0.5 }\nrotation.angle = 0.3\noffset = [1, 2]\nlowest = 0.25
+             velocity = [0.5, 0]\nspin.rate = 2",
+        ),
+        (
+            BodyBuilder::fan(6, 0.5).start(Start::new(StartShape::Line).direction([0.0, 1.0])),
+            "fan = { sides = 6, radius = 0.5 }\nstart = { shape = 'line', direction = [0, 1] }",
+        ),
+        (
+            BodyBuilder::fan(6, 0.5).start(cloud),
+            "fan = { sides = 6, radius = 0.5 }\nstart = { shape = 'cloud', seed = 3 }",
+        ),
+    ] {
+        assert_same(one(body), &head(typed));
+    }
+}
+
+#[test]
+fn a_builder_says_all_that_a_file_can_say_of_physics() {
+    let path = |to: f64| MotionPath::new().key(0.5, [0.0, 0.0, 0.0]).key(1.0, [0.0, to, 0.0]);
+    let turned = Rotation::about([0.0, 1.0, 0.0], 1.5);
+    let made = Scene::builder("scene", BodyBuilder::lattice(Lattice::new([2, 2, 2], 0.1)).lowest(1.0))
+        .gravity([0.0, -9.8, 0.0])
+        .duration(2.0)
+        .steps_per_cycle(80.0)
+        .integrator(Integrator::VelocityVerlet)
+        .frames_per_second(30.0)
+        .run("One", shape_based::Parameters { damping_ratio: Some(0.1), ..shape(1e4) })
+        .run("Two", mass_spring::Parameters { springs: Some(Springs::All), ..springs(1e3) })
+        .obstacle(ObstacleBuilder::floor(-1.0).restitution(0.5).friction(0.3))
+        .obstacle(ObstacleBuilder::wall([-1.0, 0.0, 0.0], -3.0))
+        .obstacle(ObstacleBuilder::plate([0.0, 3.0, 0.0], [0.0, -1.0, 0.0]).path(path(-0.5).ease(Ease::Linear)))
+        .obstacle(
+            ObstacleBuilder::capsule([2.0, 0.0, 0.0], [2.0, 1.0, 0.0], 0.1)
+                .about([2.0, 2.0, 0.0])
+                .swing(Swing::new(1.5).phase(0.5).shift([0.1, 0.0, 0.0]).rotation(turned.clone())),
+        )
+        .obstacle(ObstacleBuilder::cuboid([0.0, 0.0, 2.0], [0.1, 0.2, 0.3]))
+        .obstacle(
+            ObstacleBuilder::turned_cuboid([0.0, 0.0, -2.0], [0.1, 0.2, 0.3], turned.clone())
+                .path(path(0.0).turned_key(1.5, [0.0, 0.0, 0.0], Rotation::about([0.0, 1.0, 0.0], 0.0)).repeating()),
+        )
+        .hold(NodeSet::list([0, 1]), ..)
+        .hold(NodeSet::ball([0.1, 1.2, 0.1], 0.01), 0.25..0.5)
+        .grab(NodeSet::cuboid([-0.1, 1.15, -0.1], [0.0, 1.3, -0.05]), path(0.5))
+        .size([640, 360])
+        .theme(Theme::Dark)
+        .colour_by(Field::Strain)
+        .opacity(0.5)
+        .strip(Diagnostic::Energy)
+        .camera(0.2, 0.3);
+    let text = "
+        title = 'scene'
+        gravity = [0, -9.8, 0]
+        time = { duration = 2, step = 'T/80', integrator = 'velocity-verlet', frames_per_second = 30 }
+        body = { lattice = { cells = [2, 2, 2], side = 0.1 }, lowest = 1 }
+        run = [
+            { name = 'One', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 } },
+            { name = 'Two', model = { kind = 'mass-spring', stiffness = 1e3, springs = 'all' } },
+        ]
+        hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
+        view = { size = [640, 360], theme = 'dark', colour.by = 'strain', opacity = 0.5, strip = 'energy',
+            camera = { azimuth = 0.2, elevation = 0.3 } }
+        [[obstacle]]
+        kind = 'floor'
+        height = -1
+        restitution = 0.5
+        friction = 0.3
+        [[obstacle]]
+        kind = 'floor'
+        normal = [-1, 0, 0]
+        height = -3
+        [[obstacle]]
+        kind = 'plate'
+        point = [0, 3, 0]
+        normal = [0, -1, 0]
+        path = { keys = [{ time = 0.5, shift = [0, 0, 0] }, { time = 1, shift = [0, -0.5, 0] }], ease = 'linear' }
+        [[obstacle]]
+        kind = 'capsule'
+        from = [2, 0, 0]
+        to = [2, 1, 0]
+        radius = 0.1
+        about = [2, 2, 0]
+        swing = { period = 1.5, phase = 0.5, shift = [0.1, 0, 0], rotation = { axis = [0, 1, 0], angle = 1.5 } }
+        [[obstacle]]
+        kind = 'box'
+        centre = [0, 0, 2]
+        size = [0.1, 0.2, 0.3]
+        [[obstacle]]
+        kind = 'box'
+        centre = [0, 0, -2]
+        size = [0.1, 0.2, 0.3]
+        rotation = { axis = [0, 1, 0], angle = 1.5 }
+        path.repeat = true
+        path.keys = [
+            { time = 0.5, shift = [0, 0, 0] },
+            { time = 1, shift = [0, 0, 0] },
+            { time = 1.5, shift = [0, 0, 0], rotation = { axis = [0, 1, 0], angle = 0 } },
+        ]
+        [[grab]]
+        nodes = { low = [-0.1, 1.15, -0.1], high = [0, 1.3, -0.05] }
+        path.keys = [{ time = 0.5, shift = [0, 0, 0] }, { time = 1, shift = [0, 0.5, 0] }]
+    ";
+    assert_same(made, text);
+    let made = Scene::builder("scene", BodyBuilder::polygon(3, 1.0)).step(1e-3).run("One", shape(1.0));
+    let text = "title = 'scene'\ntime = { duration = 1, step = 1e-3 }\nbody.polygon = { sides = 3, radius = 1 }
+        run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1 } }]";
+    assert_same(made, text);
+}
+
+/// Where, what was found, what was expected, what to do: as of a file, without lines of a text that nobody has written.
+#[test]
+fn mistakes_in_code_are_told_as_those_in_files() {
+    let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let arrays = || BodyBuilder::arrays(triangle, [[0, 1, 2]]);
+    let scene = |body| Scene::builder("drop", body);
+    let with = |body| scene(body).run("One", shape(1e4));
+    let tetrahedron = || BodyBuilder::arrays([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], [[0, 1, 2, 3]]);
+    let none: [[f64; 2]; 0] = [];
+    let mut differences: Vec<String> = Vec::new();
+    for (wrong, expected) in [
+        (scene(arrays()), "`run` is empty; expected 1 to 256"),
+        (with(BodyBuilder::arrays(none, [[0, 1, 2]])), "`body.nodes` is empty; expected at least 1"),
+        (with(BodyBuilder::arrays(triangle, [[0; 0]; 0])), "`body.elements` is empty; expected at least 1"),
+        (
+            with(BodyBuilder::arrays(triangle, [[0, 1, 3]])),
+            "`body.elements[0][2]`: there is no node 3; the body has nodes 0 to 2; nodes are counted from 0",
+        ),
+        (
+            with(BodyBuilder::arrays(triangle, [vec![0, 1, 2], vec![2]])),
+            "`body.elements[1]` has 1 node; expected at least 2",
+        ),
+        (
+            with(BodyBuilder::arrays(triangle, [[0, 2, 1]])),
+            "`body.elements[0]` is clockwise; expected counter-clockwise; write [1, 2, 0]",
+        ),
+        (
+            with(BodyBuilder::arrays([[0.0, f64::NAN], [1.0, 0.0], [0.0, 1.0]], [[0, 1, 2]])),
+            "`body.nodes[0][1]` is NaN; expected a finite number",
+        ),
+        (
+            with(BodyBuilder::arrays([[0.0, 1e31], [1.0, 0.0], [0.0, 1.0]], [[0, 1, 2]])),
+            "`body.nodes[0][1]` is 10000000000000000000000000000000; expected a magnitude up to 1e30",
+        ),
+        (
+            with(BodyBuilder::arrays([[0.0; 4], [1.0; 4]], [[0, 1]])),
+            "`body.nodes[0]` has 4 coordinates; expected 3, because the body is in space",
+        ),
+        (with(arrays().masses([1.0, 0.0, 1.0])), "`body.masses[1]` is 0; expected a number greater than 0"),
+        (with(arrays().masses([1.0])), "`body.masses` has 1 entry, and the body has 3 nodes; expected one for each"),
+        (
+            with(arrays().mass(1.0).masses([1.0; 3])),
+            "`body` has both `mass` and `masses`, which exclude each other; keep one",
+        ),
+        (
+            with(arrays().velocities([DVec3::X; 3])),
+            "`body.velocities[0]` has 3 coordinates; expected 2, because the body is in the plane",
+        ),
+        (with(BodyBuilder::polygon(3, 1.0).masses([1.0; 3])), "`body.masses` needs `nodes`"),
+        (
+            with(BodyBuilder::polygon(2, 1.0)),
+            "`body.polygon.sides` is 2; expected a whole number from 3 to 4000000000; Number of sides",
+        ),
+        (
+            with(BodyBuilder::lattice(Lattice::new([3, 0, 3], 0.1))),
+            "`body.lattice.cells[1]` is 0; expected a whole number from 1 to 4000000000",
+        ),
+        (
+            with(BodyBuilder::lattice(Lattice::new([3, 3, 3], -0.1))),
+            "`body.lattice.side` is -0.1; expected a number greater than 0",
+        ),
+        (with(BodyBuilder::lattice(Lattice::new([1000; 3], 0.1))), "this makes 1 003 003 001 nodes"),
+        (
+            with(tetrahedron().rotation(Rotation::in_plane(1.0))),
+            "`body.rotation.axis`: `body.rotation` has no `axis`, which a rotation in space needs; such as axis = [0, 0, 1]",
+        ),
+        (with(arrays()).duration(f64::INFINITY), "`time.duration` is inf; expected a finite number"),
+        (with(arrays()).step(0.0), "`time.step` is 0.0; expected a number greater than 0"),
+        (
+            with(arrays()).run("One", shape(1.0)),
+            "`run[1].name`: two runs are called \"One\": `run[0]` and `run[1]`; give each run a unique name",
+        ),
+        (scene(arrays()).run("", shape(1.0)), "`run[0].name` is empty; expected 1 to 80"),
+        (
+            with(arrays()).run("Two", shape_based::Parameters { passes: Some(3), ..shape(1.0) }),
+            "`run[1].model.passes`: `passes` is about Eq. (15), but the body is in the plane, where Eq. (9) is exact; take it out",
+        ),
+        (
+            with(arrays()).obstacle(ObstacleBuilder::floor(0.5)),
+            "`obstacle[0]`: the body starts inside this floor: node 0 lies 5.000e-1 m below its surface",
+        ),
+        (
+            with(arrays()).obstacle(ObstacleBuilder::floor(0.0).restitution(2.0)),
+            "`obstacle[0].restitution` is 2.0; expected a number from 0 to 1",
+        ),
+        (
+            with(arrays()).obstacle(ObstacleBuilder::floor(-1.0).path(MotionPath::new())),
+            "`obstacle[0].path.keys` is empty; expected at least 1",
+        ),
+        (with(arrays()).hold(NodeSet::ball([5.0, 5.0], 0.1), ..), "`hold[0].nodes`"),
+        (with(arrays()).size([0, 5]), "`view.size[0]` is 0; expected a whole number from 16 to 16384"),
+        (
+            with(arrays()).colour_by(Field::Strain).opacity(0.0),
+            "`view.opacity` is 0.0; expected a number from 0.1 to 1",
+        ),
+    ] {
+        let error = wrong.build(&Limits::default()).expect_err(expected);
+        let (message, first) = (error.to_string(), &error.mistakes()[0]);
+        if !(message.starts_with("drop: ") && message.contains(expected)) {
+            differences.push(format!("{message}\n  expected: {expected}"));
+        }
+        assert_eq!((first.line, first.column, first.excerpt.as_str()), (0, 0, ""), "{message}");
+    }
+    assert!(differences.is_empty(), "{}", differences.join("\n"));
+}
+
+/// What is not forbidden and probably not meant is said, too.
+#[test]
+fn warnings_name_the_setting() {
+    let scene = Scene::builder("drop", BodyBuilder::polygon(3, 1.0)).run("One", shape(1.0)).frames_per_second(0.1);
+    let warnings = scene.build(&Limits::default()).unwrap().warnings;
+    assert_eq!(warnings.len(), 1);
+    assert_eq!((warnings[0].line, warnings[0].place.as_str()), (0, "time.frames_per_second"));
+}
