@@ -208,30 +208,9 @@ const DARK: Palette = Palette {
 };
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::colour::{Lab, Vision, cie76, ciede2000, encoded, lab, linear, seen_by};
-
-    const WHITE: Colour = [255; 3];
-
-    /// Each colour of words with each colour of their ground.
-    pub(in crate::look) fn words(palette: &Palette) -> Vec<(Colour, Colour)> {
-        let texts = [palette.text, palette.second_text, palette.alarm_text];
-        let grounds = [palette.background, palette.floor];
-        let mut pairs: Vec<_> = texts.iter().flat_map(|&text| grounds.map(|ground| (text, ground))).collect();
-        pairs.push((palette.alarm_on_white, WHITE));
-        pairs
-    }
-
-    #[test]
-    fn words_can_be_read_on_whatever_they_stand_on() {
-        for theme in [LIGHT, DARK] {
-            for (text, ground) in words(&theme) {
-                let found = contrast(text, ground);
-                assert!(found >= LEAST_CONTRAST, "{text:x?} on {ground:x?} has a contrast of {found:.2}");
-            }
-        }
-    }
 
     /// The light that falls on faces, as `shaders/surface.wgsl` has it: on all sides of the key light, facing up, level
     /// and down, standing on the floor and in the air.

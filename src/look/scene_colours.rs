@@ -135,11 +135,29 @@ fn share(from: Colour, to: Colour, colour: Colour) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::palette::tests::words;
     use super::*;
 
     fn typed(text: &str) -> Option<TypedColour> {
         Some(text.parse().unwrap_or_else(|error| panic!("{text}: {error}")))
+    }
+
+    /// Each colour of words with each colour of their ground.
+    fn words(palette: &Palette) -> Vec<(Colour, Colour)> {
+        let texts = [palette.text, palette.second_text, palette.alarm_text];
+        let grounds = [palette.background, palette.floor];
+        let mut pairs: Vec<_> = texts.iter().flat_map(|&text| grounds.map(|ground| (text, ground))).collect();
+        pairs.push((palette.alarm_on_white, [255; 3]));
+        pairs
+    }
+
+    #[test]
+    fn words_can_be_read_on_whatever_they_stand_on() {
+        for theme in [Theme::Light, Theme::Dark].map(Palette::of) {
+            for (text, ground) in words(&theme) {
+                let found = contrast(text, ground);
+                assert!(found >= LEAST_CONTRAST, "{text:x?} on {ground:x?} has a contrast of {found:.2}");
+            }
+        }
     }
 
     #[test]
