@@ -3,16 +3,6 @@
 //! Frames have digests of the states that they show. A golden, a folder with a few small pictures and a record of all states
 //! of its scene, also has rounded positions of nodes. So states are compared first, and then pixels.
 //!
-//! Two pictures, or two folders of them:
-//!
-//! ```no_run
-//! use localshape::golden::Comparison;
-//!
-//! let comparison = Comparison::of("expected".as_ref(), "actual".as_ref())?;
-//! assert!(comparison.passes(), "{comparison}");
-//! # Ok::<(), localshape::golden::ComparisonError>(())
-//! ```
-//!
 //! `Suite` tests scenes against goldens in `cargo test` (with the feature `render`).
 
 mod archive;

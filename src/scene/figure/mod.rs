@@ -162,11 +162,6 @@ impl Figure {
 }
 
 /// The JSON Schema of figure files.
-///
-/// ```
-/// let schema = localshape::scene::figure::schema();
-/// assert_eq!(schema["properties"]["title"]["type"], "string");
-/// ```
 pub(crate) fn schema() -> Value {
     SCHEMA.clone()
 }
