@@ -1,9 +1,7 @@
 //! The course of a scene: what its diagnostics do from its start to its end, for those who show a moment among all
 //! others. It depends on the scene alone and not on the frames asked for.
 
-use crate::runner::Runner;
 use crate::scene::Scene;
-use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 
@@ -33,21 +31,6 @@ pub struct Course {
     pub diagnostics: Vec<Diagnostics>,
     /// Where the run blew up, if it did.
     pub divergence: Option<Divergence>,
-}
-
-impl History {
-    /// Simulates runs of a scene from start to end.
-    ///
-    /// It takes about as long as simulating for pictures does. It works on the rayon pool it is called from; the result has
-    /// the same bits for any number of threads.
-    ///
-    /// # Panics
-    /// If the scene has no such run.
-    pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
-        runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
-        runner.history()
-    }
 }
 
 impl Course {

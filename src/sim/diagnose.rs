@@ -3,7 +3,7 @@
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
 use super::element;
-use super::kernel::{Lanes, MOST, Set, Work};
+use super::lanes::{Lanes, MOST, Set, Work};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -112,17 +112,6 @@ impl Diagnose {
         let turn = rotation::best(self.body.dimension, at_rest);
         Placement { rest_centre: self.rest_centre, centre, turn }
     }
-}
-
-/// An element has turned over when its signed volume is below minus this part of that at rest.
-///
-/// Of one pressed exactly flat, round-off leaves some 1e-16 of either sign, or 1e-12 where the body lies ten thousand times
-/// its size away from the origin: it would be told as sound and as turned over by turns. One that truly turns over passes
-/// this bound a billionth of its height later.
-const ROUND_OFF: f64 = 1e-9;
-
-pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
-    now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
 
 /// Corners whose second moments have a determinant below this part of what it would be in a ball lie in a plane.
@@ -326,6 +315,7 @@ fn mean(points: &[DVec3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::diagnostics::is_turned_over;
     use super::*;
     use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;

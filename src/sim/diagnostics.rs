@@ -1,7 +1,6 @@
 //! The diagnostics: numbers that describe a state. One table says of each what it is called, its unit, what it means and
 //! how it is computed; files, strips, figures, goldens and the schema follow from it.
 
-use super::diagnose::is_turned_over;
 use super::model::Report;
 use super::snapshot::Placement;
 use super::state::Nodes;
@@ -33,6 +32,17 @@ pub(super) struct Facts<'a> {
     pub(super) placement: Lazy<'a, Placement>,
     /// Rest positions relative to their mean (m).
     pub(super) centred: &'a [DVec3],
+}
+
+/// An element counts as turned over when its signed volume is below minus this fraction of that at rest.
+///
+/// Of an element pressed exactly flat, round-off leaves about 1e-16 of either sign, or 1e-12 where the body is ten thousand times
+/// its size away from the origin: it would flicker between turned over and not. An element that really turns over passes
+/// this bound a billionth of its height later.
+const ROUND_OFF: f64 = 1e-9;
+
+pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
+    now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
 
 impl Facts<'_> {

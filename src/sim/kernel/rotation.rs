@@ -4,7 +4,7 @@
 //! of Eq. (15)'s matrix, seen in the axes of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque over `k`,
 //! and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and of unit length.
 
-use super::lanes::{Lanes, MOST, each};
+use crate::sim::lanes::{Lanes, MOST, each};
 use crate::sim::rotation::davenport1968;
 use glam::{DMat3, DQuat};
 
@@ -336,8 +336,8 @@ fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::{Set, Work};
     use super::*;
+    use crate::sim::lanes::{Set, Work};
     use crate::sim::rotation::linearised;
     use glam::DVec3;
 

@@ -70,7 +70,7 @@ macro_rules! each {
         [a, b, c, d, e, f, g, h]
     }};
 }
-pub(super) use each;
+pub(in crate::sim) use each;
 
 /// A loop over 0, 1, 2, written out: a compiler that keeps it a loop keeps its lanes in memory.
 macro_rules! thrice {
@@ -89,7 +89,7 @@ macro_rules! thrice {
         }
     }};
 }
-pub(super) use thrice;
+pub(in crate::sim) use thrice;
 
 /// The most lanes that any set has. Arrays padded to a multiple of it suit all.
 pub(in crate::sim) const MOST: usize = 8;
