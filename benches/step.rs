@@ -27,6 +27,7 @@ struct Case {
     /// Elements of the body.
     count: u64,
     steps: u64,
+    threads: usize,
     /// Nanoseconds per element and step.
     times: Vec<f64>,
 }
@@ -36,11 +37,15 @@ impl Case {
         let count = scene.body.elements.len() as u64;
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
-        Self { name, world, count, steps: (WORK / count).max(LEAST), times: Vec::new() }
+        Self { name, world, count, steps: (WORK / count).max(LEAST), threads, times: Vec::new() }
     }
 
     fn sample(&mut self) {
         let Self { world, steps, .. } = self;
+        if self.threads > 1 {
+            // Threads that have slept need some milliseconds until each has a processor to itself.
+            world.advance(*steps);
+        }
         let start = Instant::now();
         world.advance(*steps);
         self.times.push(start.elapsed().as_secs_f64() * 1e9 / (self.steps * self.count) as f64);

@@ -70,7 +70,9 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runner::Runner;
     use crate::scene::Limits;
+    use crate::sim::diagnostics::Diagnostic;
 
     fn scene(duration: &str, rate: &str, step: &str) -> Scene {
         let text = format!(
@@ -124,7 +126,7 @@ mod tests {
                 assert!(runner.steps() < runner.steps_at(end));
             }
             assert_eq!(runner.steps(), runner.steps_at(end));
-            assert_eq!(format!("{:?}", runner.history()), whole);
+            assert_eq!(format!("{:?}", runner.take_history()), whole);
         }
         assert_eq!(History::new(&scene, &[1]).courses[0].run, 1);
     }
@@ -153,7 +155,7 @@ mod tests {
         let mut runner =
             Runner::new(&scene, &[0, 1]).with_closer_course(Diagnostic::ALL, Some([0.0, 0.1]), &[1.2345, 9.0]);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
-        let closer = runner.history();
+        let closer = runner.take_history();
         for (usual, closer) in usual.courses.iter().zip(&closer.courses) {
             assert!(closer.times.windows(2).all(|two| two[0] < two[1]));
             let step = scene.runs[closer.run].step;

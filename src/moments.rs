@@ -177,7 +177,7 @@ impl<'a> Taking<'a> {
     ///
     /// # Panics
     /// If the simulations are not at their end.
-    pub(crate) fn finish(self) -> Moments {
+    pub(crate) fn finish(mut self) -> Moments {
         match &self.figure.content {
             Content::Sheet(sheet) => {
                 let mut cells: Vec<Option<RunFrame>> = vec![None; sheet.rows.len() * sheet.columns.len()];
@@ -190,7 +190,7 @@ impl<'a> Taking<'a> {
                 let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
                 let rows = cells.chunks(sheet.columns.len().max(1)).map(<[RunFrame]>::to_vec).collect();
                 let history = self.courses.map(|courses| {
-                    let mut all = courses.into_iter().map(|part| self.parts[part].runner.history());
+                    let mut all = courses.into_iter().map(|part| self.parts[part].runner.take_history());
                     let mut history = all.next().unwrap_or_default();
                     history.courses.extend(all.flat_map(|one| one.courses));
                     history

@@ -137,9 +137,14 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// What was noted down until now.
-    pub(crate) fn history(&self) -> History {
-        let courses = self.runs.iter().map(|running| running.course.clone()).collect();
+    /// What was noted down until now. From then on nothing is.
+    pub(crate) fn take_history(&mut self) -> History {
+        let take = |running: &mut Running| {
+            running.notes.clear();
+            let run = running.course.run;
+            std::mem::replace(&mut running.course, Course::new(run))
+        };
+        let courses = self.runs.iter_mut().map(take).collect();
         History { end: self.scene.frame_time(self.scene.last_frame()), courses }
     }
 }
@@ -238,7 +243,7 @@ impl<'a> Frames<'a> {
                 return Ok(Next::Working);
             }
             waiting.is_known = true;
-            return Ok(Next::Course(runner.history()));
+            return Ok(Next::Course(runner.take_history()));
         }
         let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
         if let Some(waiting) = waiting {
@@ -328,16 +333,17 @@ impl Scene {
     }
 }
 
-#[cfg(test)]
 impl History {
-    /// The time series of runs of a scene from start to end.
+    /// Simulates runs of a scene from start to end: what strips show, see [`Composer::set_history`].
+    ///
+    /// [`Composer::set_history`]: crate::picture::Composer::set_history
     ///
     /// # Panics
     /// If the scene has no such run.
-    pub(crate) fn new(scene: &Scene, runs: &[usize]) -> Self {
+    pub fn new(scene: &Scene, runs: &[usize]) -> Self {
         let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
-        runner.history()
+        runner.take_history()
     }
 }
 

@@ -11,7 +11,7 @@ pub struct Limits {
     pub nodes: u64,
     /// Nodes of all elements together, counted once for each run.
     pub corners: u64,
-    /// Springs of all runs together, at most.
+    /// Springs of all runs together, those of neighbouring elements counted as if they shared none.
     pub springs: u64,
     /// Length of the scene file (bytes).
     pub file: u64,
@@ -22,7 +22,7 @@ impl Default for Limits {
     /// its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three counts is
     /// beyond it. A scene file may have 256 MiB, some four million listed nodes.
     fn default() -> Self {
-        Self { nodes: 8_200_000, corners: 200_000_000, springs: 250_000_000, file: 256 << 20 }
+        Self { nodes: 8_200_000, corners: 200_000_000, springs: 700_000_000, file: 256 << 20 }
     }
 }
 
@@ -36,6 +36,8 @@ impl Limits {
 pub(super) struct BodySize {
     /// Nodes.
     pub(super) nodes: u128,
+    /// Whether it may come out smaller.
+    pub(super) is_bound: bool,
     /// How many elements there are of each number of nodes.
     pub(super) elements: BTreeMap<usize, u128>,
     /// Springs listed by hand.
@@ -57,7 +59,7 @@ impl BodySize {
     /// A body of some nodes with so many elements of each number of nodes, which lists no springs.
     pub(super) fn new(nodes: u128, elements: impl IntoIterator<Item = (usize, u128)>) -> Self {
         let elements = elements.into_iter().filter(|&(_, count)| count > 0).collect();
-        Self { nodes, elements, springs: None }
+        Self { nodes, is_bound: false, elements, springs: None }
     }
 
     /// The number of elements.
@@ -87,16 +89,18 @@ impl BodySize {
             0 => format!("{nodes} and {elements}"),
             _ => format!("{nodes}, {elements} and up to {}", several(springs, "spring")),
         };
-        let asked = format!("this makes {parts}, at least {} of memory", size(memory));
-        let allow = |less: &str| format!("{less}, or allow it with --allow-large");
+        let makes = if self.is_bound { "makes up to" } else { "makes" };
+        let asked = format!("this {makes} {parts}, at least {} of memory", size(memory));
+        let allow = |less: &str| format!("{less}, or allow it with --allow-large (in code, `Limits::NONE`)");
         let excess = |message, help| Some(Excess { message, help, run: None });
         if self.nodes.max(self.count()) > u128::from(u32::MAX) {
             excess(format!("{asked}: more nodes or elements than 32-bit indices can count"), less.to_owned())
         } else if self.nodes > limits.nodes.into() {
             excess(format!("{asked}; the limit is {} nodes", count(limits.nodes.into())), allow(less))
         } else if corners > limits.corners.into() {
-            let limit = count(limits.corners.into());
-            excess(format!("{asked}; the limit is {limit} nodes of all elements of all runs"), allow(less))
+            let [found, limit] = [corners, limits.corners.into()].map(count);
+            let message = format!("{asked}; the elements of all runs have {found} nodes, and the limit is {limit}");
+            excess(message, allow(less))
         } else if springs > limits.springs.into() {
             let message = format!("{asked}; the limit is {} springs", count(limits.springs.into()));
             let help = allow("put fewer springs on each element, such as springs = \"edges\"");

@@ -43,7 +43,8 @@ pub(super) struct Runaway {
 /// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
 ///
 /// Swinging through its whole extent, a body moves at 2π extents per cycle. The factor leaves a wide margin above that,
-/// and keeps the last state within some extents. What it had at the start and what gravity, obstacles and hands add
+/// and keeps the last state within some extents. What it had at the start and what gravity, obstacles and kinematic
+/// constraints add
 /// comes on top.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SpeedLimit {
@@ -77,7 +78,7 @@ impl SpeedLimit {
             let way = motion.longest_way(distance);
             (way, motion.greatest_speed(distance).min(way / step))
         });
-        // A hand may draw a body out to many times its size.
+        // A kinematic constraint may stretch a body to many times its size.
         let (farthest, fastest) =
             moving.fold((0.0, start), |(far, fast), (way, speed)| (way.max(far), speed.max(fast)));
         let extent = extent + farthest;

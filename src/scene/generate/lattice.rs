@@ -20,7 +20,8 @@ pub(super) fn size(typed: &Lattice) -> BodySize {
         Cells::Mixed => (4, 12),
     };
     let middles = if typed.elements == Cells::Mixed && !is_flat { cells } else { 0 };
-    BodySize::new(product(1).saturating_add(middles), [(corners, cells.saturating_mul(pieces))])
+    let size = BodySize::new(product(1).saturating_add(middles), [(corners, cells.saturating_mul(pieces))]);
+    BodySize { is_bound: typed.elements == Cells::Mixed, ..size }
 }
 
 /// A lattice. In the plane its cells are squares or triangles, in space cubes or tetrahedra.

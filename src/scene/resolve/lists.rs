@@ -324,7 +324,12 @@ impl Reader<'_, '_> {
         if length > limit {
             let (name, length, limit) = (self.source.name(key, &[]), count(length.into()), count(limit.into()));
             let message = format!("`{name}` has {length} {what}; the limit is {limit}");
-            self.tell(key, &[], message, Some("use fewer nodes, or allow it with --allow-large".into()));
+            self.tell(
+                key,
+                &[],
+                message,
+                Some("use fewer nodes, or allow it with --allow-large (in code, `Limits::NONE`)".into()),
+            );
             return None;
         }
         match self.npz.values(array) {

@@ -5,7 +5,7 @@
 //! velocity that came out, which is what makes the method stable as far as `c ΔT < 2` for `dV/dt = −c V`; the
 //! prediction would halve that.
 //!
-//! Collisions and hands act on the new place and the predicted velocity `V + A ΔT`, before `A'` is evaluated, so that no
+//! Collisions and kinematic constraints act on the new place and the predicted velocity `V + A ΔT`, before `A'` is evaluated, so that no
 //! force is ever evaluated inside an obstacle.
 //!
 //! W. Swope, H. Andersen, P. Berens, K. Wilson, J. Chem. Phys. 76, 637 (1982).

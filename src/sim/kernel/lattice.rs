@@ -392,10 +392,10 @@ impl Stepper for Lattice {
                     }
                 };
             }
-            if damping == 0.0 {
-                run!(false)
-            } else {
+            if damping > 0.0 {
                 run!(true)
+            } else {
+                run!(false)
             }
             if let Some(found) = found {
                 *lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
