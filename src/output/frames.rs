@@ -1,4 +1,4 @@
-//! Compressing and writing frames on threads of their own, so that drawing need not wait.
+//! Compresses and writes frames on separate threads, in parallel to drawing.
 
 use super::{Clock, Compression, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
 use std::path::Path;
@@ -15,14 +15,14 @@ pub(crate) struct PixelFrame {
     pub pixels: Vec<u8>,
     /// The number of the frame.
     pub frame: u64,
-    /// What it says about itself.
+    /// The text chunks of the file.
     pub tags: Tags,
 }
 
-/// Who is handed the files of frames besides the disk: their numbers and bytes, in any order.
+/// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
 pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
 
-/// Threads that compress and write frames. Memory is bounded: when they are all behind, [`Self::write`] waits.
+/// Threads that compress and write frames. Memory is bounded: while all threads are busy, [`Self::write`] blocks.
 #[derive(Debug)]
 pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
@@ -30,7 +30,7 @@ pub(crate) struct FrameWriter {
     written: Written,
 }
 
-/// What was written, by one thread or all.
+/// The result of one thread or of all.
 #[derive(Debug, Default)]
 struct Written {
     frames: usize,
@@ -39,10 +39,10 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// Starts `threads` (at least one) threads that write into `folder`, which exists, and hand each file to `tap` with the
-    /// number of its frame; without a folder only that.
+    /// Starts `threads` (at least one) threads that write to `folder`, which exists, and pass each file with the number
+    /// of its frame to `tap`; without a folder they only pass it.
     pub(crate) fn start(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
-        // Nothing waits in between: a frame goes to a thread that is free, or stays where it was drawn until one is.
+        // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
         let thread = |_| {
@@ -53,10 +53,10 @@ impl FrameWriter {
         Self { queue: Some(queue), threads, written: Written::default() }
     }
 
-    /// Hands over one frame.
+    /// Passes one frame to a thread.
     ///
     /// # Errors
-    /// If a frame handed over earlier could not be written. Then this one and all that follow are not taken.
+    /// If an earlier frame could not be written. Then this frame and all later ones are dropped.
     pub(crate) fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
         match &self.queue {
             Some(queue) if queue.send(frame).is_ok() => Ok(()),
@@ -64,8 +64,7 @@ impl FrameWriter {
         }
     }
 
-    /// Waits for all frames handed over. Returns how many were written in all and the time that took, summed over
-    /// threads.
+    /// Waits until all frames are written. Returns their number and the time spent, summed over threads.
     ///
     /// # Errors
     /// If one could not be written and [`Self::write`] did not report it.
@@ -87,7 +86,7 @@ impl FrameWriter {
     }
 }
 
-/// Writes frames until there are no more or one fails. After a failure the queue is gone: nobody waits for it.
+/// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
 fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>>>, tap: Option<&Tap>) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = Written::default();
