@@ -53,7 +53,7 @@ fn says_where_the_body_starts() {
     assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
 }
 
-/// Runs that are not vectorised are reported, except if they cannot be.
+/// Runs with the reference kernel are reported, and `kernel = "fast"` is refused where there are no vectorised steps.
 #[test]
 fn says_which_runs_take_the_plain_code() {
     let place = Place::with_small();
@@ -90,8 +90,7 @@ fn warns_of_what_is_probably_not_meant() {
     assert_eq!(document["scenes"][0]["warnings"][0]["help"], "use at least 10 to show the end");
 }
 
-/// The example of `docs/bodies.md` makes the documented body, with NumPy if it exists, else by an equivalent
-/// computation.
+/// The example of `docs/bodies.md` makes the documented body: a stored archive of it, and a new one if there is NumPy.
 #[test]
 fn a_mesh_written_with_numpy() {
     let text = include_str!("../../docs/bodies.md");
