@@ -250,7 +250,7 @@ impl Recording<'_> {
 }
 
 /// Steps of each run after which the user is listened to: some milliseconds' worth, at some 2 ns for each corner of an
-/// element, and ten times that by the plain code. A frame seldom takes more.
+/// element, and ten times that with the reference code. A frame seldom takes more.
 pub(super) fn slice(body: &Body) -> u64 {
     const CORNERS: usize = 2_500_000;
     (CORNERS / body.elements.indices().len().max(1)).max(1) as u64
