@@ -1,9 +1,7 @@
 //! The time series of a scene: its diagnostics from start to end, for strips and other charts. They depend on the scene
 //! only and not on the requested frames.
 
-use crate::runner::Runner;
 use crate::scene::Scene;
-use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 
@@ -33,20 +31,6 @@ pub struct Course {
     pub diagnostics: Vec<Diagnostics>,
     /// Where the run diverged, if it did.
     pub divergence: Option<Divergence>,
-}
-
-impl History {
-    /// Simulates runs of a scene from start to end.
-    /// This takes about as long as the simulation of all frames. It uses the rayon thread pool of the caller; the
-    /// result has the same bits for any number of threads.
-    ///
-    /// # Panics
-    /// If the scene has no such run.
-    pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
-        runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
-        runner.history()
-    }
 }
 
 impl Course {

@@ -329,6 +329,19 @@ impl Scene {
 }
 
 #[cfg(test)]
+impl History {
+    /// The time series of runs of a scene from start to end.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub(crate) fn new(scene: &Scene, runs: &[usize]) -> Self {
+        let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
+        runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+        runner.history()
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Limits;

@@ -262,7 +262,7 @@ impl Studio for Device {
         Ok(Box::new(Drawing {
             scene,
             artist: Artist::new(&self.gpu, scene, self.samples)?,
-            writer: FrameWriter::start(self.keep.then_some(folder), self.writers, tap),
+            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap),
             films,
             keep: self.keep,
             adapter: self.gpu.description().to_string(),

@@ -1,8 +1,8 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
 use super::{Clock, Compression, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
-use std::path::Path;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
@@ -22,10 +22,15 @@ pub(crate) struct PixelFrame {
 /// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
 pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
 
-/// Threads that compress and write frames. Memory is bounded: while all threads are busy, [`Self::write`] blocks.
-#[derive(Debug)]
+/// Threads that compress and write frames, started as needed, up to a bound. Memory is bounded: while all threads are
+/// busy, [`Self::write`] blocks.
 pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
+    frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
+    folder: Option<PathBuf>,
+    tap: Option<Tap>,
+    /// Greatest number of threads.
+    most: usize,
     threads: Vec<JoinHandle<Written>>,
     written: Written,
 }
@@ -39,18 +44,22 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// Starts `threads` (at least one) threads that write to `folder`, which exists, and pass each file with the number
-    /// of its frame to `tap`; without a folder they only pass it.
-    pub(crate) fn start(folder: Option<&Path>, threads: usize, tap: Option<Tap>) -> Self {
+    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists, and pass each file with
+    /// the number of its frame to `tap`; without a folder they only pass it.
+    pub(crate) fn new(folder: Option<&Path>, most: usize, tap: Option<Tap>) -> Self {
         // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
-        let thread = |_| {
-            let (folder, frames, tap) = (folder.map(Path::to_owned), Arc::clone(&frames), tap.clone());
-            std::thread::spawn(move || write_frames(folder.as_deref(), &frames, tap.as_ref()))
-        };
-        let threads = (0..threads.max(1)).map(thread).collect();
-        Self { queue: Some(queue), threads, written: Written::default() }
+        let folder = folder.map(Path::to_owned);
+        Self {
+            queue: Some(queue),
+            frames,
+            folder,
+            tap,
+            most: most.max(1),
+            threads: Vec::new(),
+            written: Written::default(),
+        }
     }
 
     /// Passes one frame to a thread.
@@ -58,10 +67,17 @@ impl FrameWriter {
     /// # Errors
     /// If an earlier frame could not be written. Then this frame and all later ones are dropped.
     pub(crate) fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
-        match &self.queue {
-            Some(queue) if queue.send(frame).is_ok() => Ok(()),
-            _ => self.wait(),
+        let Some(queue) = &self.queue else { return self.wait() };
+        let frame = match queue.try_send(frame) {
+            Ok(()) => return Ok(()),
+            Err(TrySendError::Full(frame) | TrySendError::Disconnected(frame)) => frame,
+        };
+        // A thread costs buffers of its own, so another one starts only when none is free.
+        if self.threads.len() < self.most {
+            let (folder, frames, tap) = (self.folder.clone(), Arc::clone(&self.frames), self.tap.clone());
+            self.threads.push(std::thread::spawn(move || write_frames(folder.as_deref(), &frames, tap.as_ref())));
         }
+        if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
     }
 
     /// Waits until all frames are written. Returns their number and the time spent, summed over threads.
@@ -124,7 +140,7 @@ mod tests {
     #[test]
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::start(Some(folder.path()), 3, None);
+        let mut writer = FrameWriter::new(Some(folder.path()), 3, None);
         (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
@@ -136,7 +152,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::start(Some(&folder.path().join("absent")), 2, None);
+        let mut writer = FrameWriter::new(Some(&folder.path().join("absent")), 2, None);
         let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
         assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();

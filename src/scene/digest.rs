@@ -1,7 +1,7 @@
 //! The digest of a scene's meaning.
 
-use super::resolve::Parts;
 use super::schema::{SCHEMA, variants, without_nulls};
+use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -24,10 +24,9 @@ pub(super) struct FileDigests {
 /// describes only in words, such as `passes = 2`, do count when they are typed.
 ///
 /// The name of a file is replaced by the digest of its content.
-pub(super) fn digest(parts: &Parts) -> String {
+pub(super) fn digest(typed: &impl Serialize, files: FileDigests) -> String {
     // The types have only finite numbers and text keys, which JSON can represent.
-    let mut value = serde_json::to_value(parts).unwrap_or_default();
-    let files = parts.digests_of_files();
+    let mut value = serde_json::to_value(typed).unwrap_or_default();
     if let Some(body) = files.body {
         value["body"]["file"] = body.into();
     }

@@ -176,7 +176,7 @@ mod tests {
     fn what_no_machine_gives_is_said_beforehand() {
         let enormous = BodySize::new(8, [(usize::MAX, 1)]);
         let message = beyond(&enormous, &runs(["'shape-based'"]), &Limits::NONE).unwrap().message;
-        assert!(message.contains("which this machine does not have"), "{message}");
+        assert!(message.contains("which this machine does not give"), "{message}");
         assert_eq!(beyond(&block(1), &runs(["'shape-based'"]), &Limits::NONE), None);
     }
 

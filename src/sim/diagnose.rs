@@ -3,7 +3,7 @@
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
 use super::element;
-use super::kernel::{Lanes, MOST, Set, Work};
+use super::lanes::{Lanes, MOST, Set, Work};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -112,17 +112,6 @@ impl Diagnose {
         let turn = rotation::best(self.body.dimension, at_rest);
         Placement { rest_centre: self.rest_centre, centre, turn }
     }
-}
-
-/// An element has turned over if its signed volume is below minus this fraction of that at rest.
-///
-/// For an element pressed exactly flat, round-off gives about 1e-16 with either sign, or 1e-12 if the body is ten
-/// thousand times its size away from the origin. Without the margin its classification would be random. For an element
-/// that really turns over the margin is only a billionth of its height.
-const ROUND_OFF: f64 = 1e-9;
-
-pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
-    now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
 
 /// Corners are taken to lie in a plane if the determinant of their second moments, relative to that of a ball, is below
@@ -328,6 +317,7 @@ fn mean(points: &[DVec3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::diagnostics::is_turned_over;
     use super::*;
     use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;

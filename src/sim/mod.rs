@@ -15,6 +15,7 @@ pub(crate) mod grip;
 pub(crate) mod hull;
 pub(crate) mod integrate;
 mod kernel;
+mod lanes;
 pub(crate) mod lists;
 pub mod model;
 pub(crate) mod motion;

@@ -1,6 +1,6 @@
 //! The peak arithmetic performance of the machine: how fast it multiplies and adds.
 
-use super::lanes::{Lanes, Set, WIDEST, Work};
+use crate::sim::lanes::{Lanes, Set, WIDEST, Work};
 use std::sync::atomic::Ordering;
 
 /// The number of doubles in the widest vectors of this processor, of those that [`limit_lanes`] allows.

@@ -11,7 +11,6 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 
-use super::lanes::{Lanes, MOST, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Motion, Nodes, Stage};
 use super::rotation::{self, Solver};
@@ -19,6 +18,7 @@ use super::stepper::{Pass, Passes, Stepper};
 use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, bounds};
 use crate::sim::crew::Crew;
+use crate::sim::lanes::{Lanes, MOST, Set, Work, each};
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};

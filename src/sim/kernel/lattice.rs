@@ -16,7 +16,6 @@
 
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
-use super::lanes::{Lanes, MOST, Set, Work, each, thrice};
 use super::memory::Aligned;
 use super::motion::{Motion, Nodes, Stage};
 use super::rotation::{Arctangent, Optimum, Solver, choose, matrix, turn, turned_back};
@@ -24,6 +23,7 @@ use super::stepper::{Pass, Passes, Scheme, Stepper};
 use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::crew::{Crew, wait_until};
+use crate::sim::lanes::{Lanes, MOST, Set, Work, each, thrice};
 use glam::DVec3;
 use std::mem::MaybeUninit;
 use std::ops::Range;

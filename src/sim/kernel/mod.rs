@@ -8,7 +8,6 @@
 mod drive;
 pub(crate) mod floor;
 pub(in crate::sim) mod general;
-mod lanes;
 pub(in crate::sim) mod lattice;
 mod memory;
 pub(in crate::sim) mod motion;
@@ -20,7 +19,6 @@ pub(in crate::sim) mod stepper;
 mod tests;
 
 pub(in crate::sim) use drive::ByKernel;
-pub(in crate::sim) use lanes::{Lanes, MOST, Set, Work};
 
 use crate::sim::contact::{Bound, Floor};
 use glam::DVec3;

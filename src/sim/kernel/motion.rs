@@ -1,9 +1,9 @@
 //! The motion of nodes in lanes, with known forces: Eqs. (2) and (3) and alternatives, the test of the speed limit, and
 //! contact.
 
-use super::lanes::{Lanes, MOST, each};
 use super::{Around, Resolve};
 use crate::sim::contact::{Bound, Floor, ROUND_OFF};
+use crate::sim::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
 /// What a pass computes from the forces of one evaluation.
@@ -254,9 +254,9 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::{Set, Work};
     use super::*;
     use crate::sim::contact::{Motion as Path, Obstacle, Shape};
+    use crate::sim::lanes::{Set, Work};
 
     struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
 

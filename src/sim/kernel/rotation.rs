@@ -4,7 +4,7 @@
 //! of the matrix of Eq. (15) in the frame of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque divided
 //! by `k`, and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and normalised.
 
-use super::lanes::{Lanes, MOST, each};
+use crate::sim::lanes::{Lanes, MOST, each};
 use crate::sim::rotation::davenport1968;
 use glam::{DMat3, DQuat};
 
@@ -339,8 +339,8 @@ fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::{Set, Work};
     use super::*;
+    use crate::sim::lanes::{Set, Work};
     use crate::sim::rotation::linearised;
     use glam::DVec3;
 

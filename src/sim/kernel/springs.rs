@@ -14,12 +14,12 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
 use super::general::{Constants, NONE, first_of};
-use super::lanes::{Lanes, Set, Work, each};
 use super::memory::Aligned;
 use super::motion::{Motion, Nodes, Stage};
 use super::stepper::{Pass, Passes, Stepper};
 use super::{Around, Lost};
 use crate::sim::crew::Crew;
+use crate::sim::lanes::{Lanes, Set, Work, each};
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};

@@ -3,13 +3,14 @@
 use super::general::{Constants, General};
 use super::springs::Stencil;
 use super::stepper::{Scheme, Stepper, Way};
-use super::{Around, Rotation, Set};
+use super::{Around, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
 use crate::sim::contact::{Bound, Obstacle, Shape};
 use crate::sim::crew::Crew;
 use crate::sim::dynamics::Runaway;
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
+use crate::sim::lanes::Set;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};

@@ -70,7 +70,7 @@ macro_rules! each {
         [a, b, c, d, e, f, g, h]
     }};
 }
-pub(super) use each;
+pub(in crate::sim) use each;
 
 /// An unrolled loop over 0, 1, 2: if the compiler keeps a loop, it keeps its vectors in memory.
 macro_rules! thrice {
@@ -89,7 +89,7 @@ macro_rules! thrice {
         }
     }};
 }
-pub(super) use thrice;
+pub(in crate::sim) use thrice;
 
 /// The largest number of lanes of any set. Arrays padded to a multiple of it suit all sets.
 pub(in crate::sim) const MOST: usize = 8;
