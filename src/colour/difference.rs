@@ -62,7 +62,7 @@ pub(crate) fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
 
-/// The smallest difference of two colours to anybody (CIEDE2000).
+/// The smallest difference of two colours for any colour vision (CIEDE2000).
 pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
     Vision::ALL.into_iter().map(|vision| difference(one, other, vision)).fold(f64::INFINITY, f64::min)
 }
