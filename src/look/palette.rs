@@ -251,7 +251,7 @@ mod tests {
         })
     }
 
-    /// The smallest difference of two colours to anybody who does not see as most do.
+    /// The smallest difference of two colours for any colour-blind vision.
     fn apart(one: [f64; 3], other: [f64; 3], measure: fn(Lab, Lab) -> f64) -> f64 {
         let [one, other] = [one, other].map(|light| linear(encoded(light)));
         let visions = [Vision::Normal, Vision::Deuteranopia, Vision::Protanopia];

@@ -211,7 +211,7 @@ pub enum ColourMap {
 /// The appearance of a picture apart from its content: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// What the colours come from: the theme asked for, unless its text could not be read on the background.
+    /// The theme of the colours: the requested one, unless its text would be illegible on the background.
     pub theme: Theme,
     /// All colours.
     pub(crate) palette: Palette,
