@@ -1,4 +1,4 @@
-//! Makes images of frames and figures: composed, then drawn. Whoever needs pixels gets them here.
+//! Makes images of frames and figures: composes pictures, then draws them.
 
 use crate::gpu::Gpu;
 use crate::history::History;
@@ -12,7 +12,7 @@ use image::RgbImage;
 
 /// Draws frames of one scene.
 pub(crate) struct Artist<'a> {
-    /// On the scene's background, or on white and on black if it has none.
+    /// One for the scene's background, or two for white and black if it has none.
     composers: Vec<Composer<'a>>,
     renderer: Renderer,
 }
@@ -20,15 +20,15 @@ pub(crate) struct Artist<'a> {
 /// A frame that is composed and can be drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Composed {
-    /// One, or two on white and on black.
+    /// One picture, or two on white and on black.
     pictures: Vec<Picture>,
 }
 
 impl<'a> Artist<'a> {
-    /// For frames of a scene with so many samples of each pixel.
+    /// For frames of a scene, with so many samples per pixel.
     ///
     /// # Errors
-    /// If the device refuses.
+    /// If the device fails.
     pub(crate) fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
         let composers = match scene.view.look.transparent {
             false => vec![Composer::new(scene)],
@@ -37,7 +37,7 @@ impl<'a> Artist<'a> {
         Ok(Self { composers, renderer: Renderer::new(gpu, scene.view.size, samples)? })
     }
 
-    /// Takes note of the scene's course, which strips show; see [`Composer::set_history`].
+    /// Sets the time series of the scene, which strips show; see [`Composer::set_history`].
     pub(crate) fn set_history(&mut self, history: &History) {
         self.composers.iter_mut().for_each(|composer| composer.set_history(history));
     }
@@ -47,7 +47,7 @@ impl<'a> Artist<'a> {
         Composed { pictures: self.composers.iter().map(|composer| composer.compose(frame)).collect() }
     }
 
-    /// Draws a frame: its pixels row by row, red, green and blue, and alpha if the scene has no background.
+    /// Draws a frame: pixels in rows from the top left, red, green and blue, and alpha if the scene has no background.
     ///
     /// # Errors
     /// If the device fails.
@@ -59,21 +59,21 @@ impl<'a> Artist<'a> {
     }
 }
 
-/// Why a figure cannot be drawn.
+/// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FigureError {
-    /// It shows more than fits.
+    /// It is too small for its contents.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
-    /// The device stopped working or refused.
+    /// The device failed.
     #[error(transparent)]
     Render(#[from] RenderError),
 }
 
-/// Draws a figure from what was simulated for it, with so many samples of each pixel.
+/// Draws a figure from its simulated states, with so many samples per pixel.
 ///
 /// # Errors
-/// A figure that is too small for what it shows, or a device that fails.
+/// If the figure is too small for its contents, or the device fails.
 ///
 /// # Panics
 /// If `moments` are those of another figure.

@@ -1,48 +1,48 @@
-//! The course of a scene: what its diagnostics do from its start to its end, for those who show a moment among all
-//! others. It depends on the scene alone and not on the frames asked for.
+//! The time series of a scene: its diagnostics from start to end, for strips and other charts. They depend on the scene
+//! only and not on the requested frames.
 
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 
-/// So many moments at least, as long as there are so many steps: a curve as wide as a picture then has no corners.
+/// Least number of moments, if there are as many steps: a curve as wide as a picture then looks smooth.
 const FEWEST_MOMENTS: u64 = 600;
-/// And no more than this, however many frames there are: no curve shows more.
+/// Greatest number of moments for any number of frames: charts have no higher resolution.
 const MOST_MOMENTS: u64 = 2000;
 
-/// The course of runs of a scene.
+/// The time series of runs of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// Time of the scene's last frame (s).
     pub end: f64,
-    /// The runs asked for, in that order.
+    /// The requested runs, in that order.
     pub courses: Vec<Course>,
 }
 
-/// The course of one run.
+/// The time series of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// Index of the run in the scene.
     pub run: usize,
-    /// The times of steps of this run (s), rising from the start to the scene's last frame. Of a run that diverged, up
+    /// The times of steps of this run (s), rising from the start to the scene's last frame; for a run that diverged, up
     /// to its last finite state.
     pub times: Vec<f64>,
-    /// The state's numbers at each of these times: those that were asked for; the others are zero.
+    /// The diagnostics at each of these times: those that were requested; the others are zero.
     pub diagnostics: Vec<Diagnostics>,
-    /// Where the run blew up, if it did.
+    /// Where the run diverged, if it did.
     pub divergence: Option<Divergence>,
 }
 
 impl Course {
-    /// Of a run at its start, with nothing noted down.
+    /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
         Self { run, times: Vec::new(), diagnostics: Vec::new(), divergence: None }
     }
 }
 
-/// The moments of a run to note down, rising: those of all frames with some between them, or of evenly chosen frames. Of the
-/// time between two that are looked at `closer` (s) there are as many as usually of the whole scene, and the steps nearest
-/// to each of `shown` (s).
+/// The moments of the time series of a run, rising: all frames with moments between them, or evenly chosen frames. The
+/// interval `closer` (s) has as many moments as the whole scene usually has; the steps nearest to each of `shown` (s)
+/// are added.
 pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, shown: &[f64]) -> Vec<Moment> {
     let last = scene.last_frame();
     let rate = scene.frames_per_second;
@@ -53,7 +53,7 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
         (0..=MOST_MOMENTS).map(|at| scene.moment(frame(at))).collect()
     } else {
         let parts = FEWEST_MOMENTS.div_ceil(last);
-        // At whole frames that is the frame's own step, to the bit.
+        // At whole frames this is exactly the frame's own step.
         (0..=last * parts).map(|at| Moment { count: at as f64 / parts as f64, rate }).collect()
     };
     let end = world.steps_at(scene.moment(last));
@@ -101,7 +101,7 @@ mod tests {
             for (run, course) in runner.frame(index).runs.iter().zip(&history.courses) {
                 let at = course.times.iter().position(|time| time.to_bits() == run.snapshot.time.to_bits());
                 let at = at.unwrap_or_else(|| panic!("frame {index} is missing"));
-                // NaN equals nothing: compared as text.
+                // NaN is not equal to itself, so texts are compared.
                 assert_eq!(format!("{:?}", course.diagnostics[at]), format!("{:?}", run.snapshot.diagnostics));
             }
         }
@@ -141,7 +141,7 @@ mod tests {
         let sampled = steps(&long, 0);
         assert_eq!(sampled.len() as u64, MOST_MOMENTS + 1);
         assert_eq!((sampled[0], sampled[2000]), (0, long.frame_step(0, long.last_frame())));
-        // Fewer steps than moments: each of them once.
+        // Fewer steps than moments: each step once.
         let short = scene("0.01", "100", "T/70");
         assert_eq!(steps(&short, 1), (0..=short.frame_step(1, 1)).collect::<Vec<_>>());
         // A scene of one frame.
@@ -162,7 +162,7 @@ mod tests {
             let early = closer.times.iter().filter(|&&time| time < 0.1).count();
             assert!((early as f64 - 0.1 / step).abs() < 2.0, "every step of a few: {early}");
             assert!(closer.times.iter().any(|time| (time - 1.2345).abs() <= 0.5001 * step));
-            // All else is there, with the same bits.
+            // All other moments are there, with the same bits.
             for (at, time) in usual.times.iter().enumerate() {
                 let same = closer.times.iter().position(|other| other == time).expect("kept");
                 assert_eq!(format!("{:?}", usual.diagnostics[at]), format!("{:?}", closer.diagnostics[same]));

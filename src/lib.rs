@@ -43,7 +43,7 @@
 //! ```
 //!
 //! [`scene`] makes scenes, in code or from files: a body, models on it, and what acts on them. [`runner`] advances the runs
-//! of a scene side by side and hands out frames. [`sim`] is what it advances, in double precision: states, diagnostics, the
+//! of a scene side by side and returns frames. [`sim`] is what it advances, in double precision: states, diagnostics, the
 //! elastic models, and the traits for models of your own ([`sim::model`]). [`look`] says what pictures show, `picture`
 //! lays out a frame, `render` draws it on the device of `gpu`, and `animation` makes one file of many images. [`golden`]
 //! tests scenes of your own against stored results in `cargo test`. [`paper`] maps the paper's equations to this crate.

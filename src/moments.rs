@@ -1,4 +1,4 @@
-//! What figures need of their simulations: states of runs at chosen moments, and the course of a scene for strips.
+//! The simulations of figures: states of runs at chosen moments, and the time series of a scene for strips.
 
 use crate::history::History;
 use crate::runner::Runner;
@@ -9,14 +9,14 @@ use crate::sim::world::Moment;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// What a figure shows of its simulations.
+/// The states that a figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moments {
-    /// The cells of a contact sheet, row by row; empty for other figures. The index of each run is that in its scene.
+    /// The cells of a contact sheet, row by row; empty for other figures. The run index is that in its scene.
     pub cells: Vec<Vec<RunFrame>>,
-    /// The course of the first scene, if strips are shown.
+    /// The time series of the first scene, if strips are shown.
     pub history: Option<History>,
-    /// What a diagram of forces shows of each run of each scene; empty for other figures.
+    /// The forces of each run of each scene, for a diagram of forces; empty for other figures.
     pub forces: Vec<Vec<Forces>>,
 }
 
@@ -30,25 +30,25 @@ pub struct Forces {
 }
 
 impl Moments {
-    /// Simulates what a figure shows.
+    /// Simulates the states that a figure shows.
     ///
-    /// It works on the rayon pool it is called from; the result has the same bits for any number of threads.
+    /// It uses the rayon thread pool of the caller; the result has the same bits for any number of threads.
     pub fn new(figure: &Figure) -> Self {
         let mut taking = Taking::new(figure);
         while !taking.advance(u64::MAX) {}
         taking.finish()
     }
 
-    /// The states behind a figure, each with a name of its own: those of a contact sheet cell by cell; of a diagram of
-    /// forces those at the start of all runs of its scenes.
+    /// The states of a figure, each with a unique name: those of a contact sheet cell by cell; for a diagram of forces
+    /// the initial states of all runs of its scenes.
     pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, &'a Snapshot)> {
         self.runs_and_states(figure).into_iter().map(|(name, _, state)| (name, state)).collect()
     }
 
-    /// The same with the scene and the run in it that each is of.
+    /// The same, with the scene and the run of each state.
     pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, &'a Snapshot)> {
         let mut states = self.named_states(figure);
-        // Two scenes may have one title.
+        // Two scenes may have the same title.
         for at in 1..states.len() {
             let same = states[..at].iter().filter(|state| state.0 == states[at].0).count();
             if same > 0 {
@@ -85,23 +85,23 @@ impl Moments {
 /// A run of a scene.
 type OfRun<'a> = (&'a Scene, usize);
 
-/// A figure's simulations on their way, in slices.
+/// The simulations of a figure, advanced in slices.
 pub(crate) struct Taking<'a> {
     figure: &'a Figure,
     parts: Vec<Part<'a>>,
-    /// The parts with the courses of the first scene's runs, if strips are shown.
+    /// The parts with the time series of the first scene's runs, if strips are shown.
     courses: Option<Vec<usize>>,
 }
 
-/// One run on its way through the moments that are shown of it.
+/// One run, advanced through the moments of it that are shown.
 struct Part<'a> {
     /// Index of the scene, and of the run in it.
     of: [usize; 2],
     runner: Runner<'a>,
-    /// Moments to stop at, rising, with the cells (row by row) that show the state then.
+    /// Moments to stop at, rising, each with the cells (row by row) that show that state.
     stops: Vec<(Moment, Vec<usize>)>,
     taken: Vec<RunFrame>,
-    /// Where it ends.
+    /// The moment at which it ends.
     end: Moment,
 }
 
@@ -159,24 +159,24 @@ impl<'a> Taking<'a> {
         Self { figure, parts: parts.collect(), courses }
     }
 
-    /// Goes on, each run by `most_steps` at most, and returns whether all are at their end. However the way is cut up,
-    /// the result has the same bits.
+    /// Advances each run by at most `most_steps`, and returns whether all have reached their end. The result has the
+    /// same bits however the steps are divided into calls.
     pub(crate) fn advance(&mut self, most_steps: u64) -> bool {
         let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
-    /// Steps done with so far, and steps at the end, of all simulations together.
+    /// Steps taken so far, and steps at the end, of all simulations together.
     pub(crate) fn steps(&self) -> [u64; 2] {
         self.parts.iter().fold([0_u64; 2], |[done, all], part| {
             [done.saturating_add(part.runner.steps()), all.saturating_add(part.runner.steps_at(part.end))]
         })
     }
 
-    /// What was taken.
+    /// The states and time series.
     ///
     /// # Panics
-    /// If the simulations are not at their end.
+    /// If the simulations have not reached their end.
     pub(crate) fn finish(mut self) -> Moments {
         match &self.figure.content {
             Content::Sheet(sheet) => {
@@ -217,7 +217,7 @@ impl Part<'_> {
             if !self.runner.advance_towards(stop, left) {
                 return false;
             }
-            // What blew up only lets its clock go on.
+            // After a divergence only the clock advances.
             left = left.saturating_sub(self.runner.steps() - before);
             self.taken.extend(self.runner.snapshots());
         }
@@ -239,7 +239,7 @@ mod tests {
         while !taking.advance(17) {
             assert!(taking.steps()[0] < taking.steps()[1]);
         }
-        // A run without rotations has no residual, and NaN equals nothing: compared as text.
+        // A run without rotations has no residual. NaN is not equal to itself, so texts are compared.
         assert_eq!(format!("{:?}", taking.finish()), format!("{whole:?}"));
         let last = sheet.scenes[0].last_frame();
         let frame = Runner::new(&sheet.scenes[0], &[0, 1]).frame(last);

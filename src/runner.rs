@@ -1,5 +1,5 @@
-//! Advances runs of a scene, side by side, to the moments that are asked for: frames, the states of a figure, the course
-//! that strips show. Nothing else does.
+//! Advances runs of a scene, in parallel, to requested moments: frames, states of a figure, moments of a time series.
+//! All other code simulates through this one.
 
 pub use crate::history::{Course, History};
 use crate::scene::Scene;
@@ -13,23 +13,23 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Simulates runs of a scene and hands out frames in rising order.
+/// Simulates runs of a scene and returns frames in rising order.
 ///
-/// It works on the rayon pool it is called from; the frames have the same bits for any number of threads.
+/// It uses the rayon thread pool of the caller; the frames have the same bits for any number of threads.
 pub struct Runner<'a> {
     scene: &'a Scene,
     runs: Vec<Running>,
 }
 
-/// One run on its way.
+/// One run with its world and time series.
 struct Running {
     run: usize,
     world: World,
     /// Time step (s).
     step: f64,
-    /// Moments to be noted down in the course, rising.
+    /// Moments of the time series, rising.
     notes: Vec<Moment>,
-    /// What is noted down of them.
+    /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
     course: Course,
 }
@@ -43,9 +43,9 @@ impl<'a> Runner<'a> {
         Self::among(runs.len(), scene, runs)
     }
 
-    /// The same where so many runs share the threads in all.
+    /// The same, for `all` runs in total that share the threads.
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
-        /// Elements that pay for a thread more within a run.
+        /// Least number of elements for each additional thread within a run.
         const LEAST: usize = 2000;
         let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
@@ -63,19 +63,19 @@ impl<'a> Runner<'a> {
         Self { scene, runs: runs.iter().map(running).collect() }
     }
 
-    /// The same without the field that the scene colours its bodies by, for those who draw nothing.
+    /// The same without computing the field by which the scene is coloured, if nothing is drawn.
     pub(crate) fn without_field(mut self) -> Self {
         self.runs.iter_mut().for_each(|running| running.world.show(None));
         self
     }
 
-    /// The same noting down the course of some diagnostics of all runs on the way.
+    /// The same, recording time series of some diagnostics of all runs.
     pub(crate) fn with_course(self, wanted: &[Diagnostic]) -> Self {
         self.with_closer_course(wanted, None, &[])
     }
 
-    /// The same with more moments: as many as usually of the whole scene between two that are looked at `closer` (s), if
-    /// there are any, and the steps nearest to each of `shown` (s).
+    /// The same with more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually
+    /// has, and the steps nearest to each of `shown` (s) are added.
     pub(crate) fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
         for running in &mut self.runs {
             running.wanted = wanted.to_vec();
@@ -84,8 +84,8 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// Goes on towards a moment, each run by `most_steps` at most, and returns whether all runs are there. However the
-    /// way is cut up, the states have the same bits.
+    /// Advances each run towards a moment by at most `most_steps`, and returns whether all have reached it. The states
+    /// have the same bits however the steps are divided into calls.
     ///
     /// # Panics
     /// If the moment has passed.
@@ -94,7 +94,7 @@ impl<'a> Runner<'a> {
         arrived.reduce(|| true, |one, other| one && other)
     }
 
-    /// Steps taken so far, of all runs together.
+    /// Steps taken so far, summed over all runs.
     pub fn steps(&self) -> u64 {
         self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps()))
     }
@@ -110,23 +110,23 @@ impl<'a> Runner<'a> {
         runs.map(|running| RunFrame { run: running.run, snapshot: running.world.snapshot() }).collect()
     }
 
-    /// Goes on to a frame and takes it.
+    /// Advances to a frame and returns it.
     ///
     /// # Panics
-    /// If the frame lies before the last moment that was reached.
+    /// If the frame is before the last moment that was reached.
     pub fn frame(&mut self, index: u64) -> Frame {
         self.advance_towards(self.scene.moment(index), u64::MAX);
         self.taken(index)
     }
 
-    /// The present states as those of a frame.
+    /// The present states as a frame.
     fn taken(&self, index: u64) -> Frame {
         let runs = self.snapshots();
         let time = runs.first().map_or_else(|| self.scene.frame_time(index), |run| run.snapshot.time);
         Frame { index, time, runs }
     }
 
-    /// Calls `ask` on each thread that was lent to the runs.
+    /// Calls `ask` on each helper thread of the runs.
     pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
         for running in &mut self.runs {
             running.world.crew().run(&|number| {
@@ -137,7 +137,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// What was noted down until now. From then on nothing is.
+    /// The time series recorded so far. From then on nothing is.
     pub(crate) fn take_history(&mut self) -> History {
         let take = |running: &mut Running| {
             running.notes.clear();
@@ -159,7 +159,7 @@ impl Running {
             let before = self.world.steps();
             let is_there = self.world.advance_towards(note, left);
             if let Status::Diverged(divergence) = self.world.status() {
-                // The last finite state is that before the step which was given up.
+                // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.course.times.len());
                 if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
                     self.note(last);
@@ -175,38 +175,38 @@ impl Running {
         self.world.advance_towards(moment, left)
     }
 
-    /// Notes down the present state as that after a step.
+    /// Records the present state as that after a step.
     fn note(&mut self, step: u64) {
         self.course.times.push(step as f64 * self.step);
         self.course.diagnostics.push(self.world.some_diagnostics(&self.wanted));
     }
 }
 
-/// Frames of a scene in rising order, simulated once, also where the course of the whole scene must be known before the
-/// first of them is drawn.
+/// Frames of a scene in rising order, simulated once, also if the time series of the whole scene have to be known
+/// before the first frame is drawn.
 pub(crate) struct Frames<'a> {
     runner: Runner<'a>,
     frames: Vec<u64>,
-    /// How many were handed out.
+    /// Number of frames returned.
     taken: usize,
-    /// The states of frames that wait for the course.
+    /// The states of frames that wait until the time series are known.
     waiting: Option<Waiting>,
 }
 
-/// The states of frames, kept until they are drawn.
+/// The states of frames, stored until they are drawn.
 struct Waiting {
     states: Store,
-    /// How many frames have been reached.
+    /// Number of frames reached by the simulation.
     reached: usize,
     is_known: bool,
 }
 
-/// What comes next.
+/// The next result.
 #[derive(Debug)]
 pub(crate) enum Next {
     /// Some more steps were taken.
     Working,
-    /// The course of the scene from start to end, before the first frame.
+    /// The time series of the scene from start to end, before the first frame.
     Course(History),
     /// The next frame.
     Frame(Frame),
@@ -215,18 +215,18 @@ pub(crate) enum Next {
 }
 
 impl<'a> Frames<'a> {
-    /// Frames of a runner at its start, in rising order. With `whole_course`, which it must note down, all is simulated
-    /// before the first.
-    /// Their states wait in a file without a name in `folder`.
+    /// Frames of a runner at its start, in rising order. With `whole_course` the runner has to record time series;
+    /// everything is then simulated before the first frame is returned, and the states of the frames are stored in an
+    /// unnamed temporary file in `folder`.
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
         let waiting = whole_course.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
         Self { runner, frames: frames.to_vec(), taken: 0, waiting }
     }
 
-    /// Goes on, each run by `most_steps` at most.
+    /// Advances each run by at most `most_steps`.
     ///
     /// # Errors
-    /// If states that wait cannot be kept on disk.
+    /// If stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
         let Self { runner, frames, taken, waiting } = self;
         if let Some(waiting) = waiting
@@ -271,23 +271,23 @@ impl<'a> Frames<'a> {
         [if is_known { end } else { self.runner.steps() }, end]
     }
 
-    /// How many frames were handed out.
+    /// Number of frames returned.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
-    /// Calls `ask` on each thread that was lent to the runs, besides those of the pool.
+    /// Calls `ask` on each helper thread of the runs; these do not belong to the rayon pool.
     pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
         self.runner.ask_helpers(ask);
     }
 }
 
-/// Pieces of bytes in a file without a name, which goes with it.
+/// Blocks of bytes in an unnamed temporary file.
 struct Store {
     folder: PathBuf,
-    /// Made for the first piece.
+    /// Created with the first block.
     file: Option<File>,
-    /// Where each piece ends.
+    /// Where each block ends.
     ends: Vec<u64>,
 }
 
@@ -352,7 +352,7 @@ mod tests {
     use super::*;
     use crate::scene::Limits;
 
-    /// Two runs with steps of their own.
+    /// Two runs with different time steps.
     const SCENE: &str = "
         gravity = [0, -9.8, 0]
         time = { duration = 0.1, frames_per_second = 20 }
@@ -383,7 +383,7 @@ mod tests {
                 assert_eq!(runner.steps(), runner.steps_at(moment));
                 let last = if frame.index > 0 { whole[frame.index as usize - 1].runs[1].snapshot.step } else { 0 };
                 assert_eq!(slices, (frame.runs[1].snapshot.step - last).div_ceil(slice).max(1));
-                // A run without rotations has no residual, and NaN equals nothing: compared as text.
+                // A run without rotations has no residual. NaN is not equal to itself, so texts are compared.
                 assert_eq!(format!("{:?}", runner.frame(frame.index)), format!("{frame:?}"));
             }
         }
@@ -421,7 +421,7 @@ mod tests {
         }
     }
 
-    /// Processor time is asked of each thread besides those of the pool.
+    /// Processor time is measured on each helper thread, too.
     #[test]
     fn each_thread_that_was_lent_is_asked() {
         let large = SCENE.replace("[2, 1, 1]", "[20, 20, 20]");

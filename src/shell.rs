@@ -1,4 +1,4 @@
-//! Command lines as they are told to users, to be pasted into a shell.
+//! Command lines in messages, quoted so that they can be pasted into a shell.
 
 /// A word, quoted where it must be, as it can be pasted into a command line.
 pub(crate) fn word(word: &str) -> String {

@@ -1,4 +1,4 @@
-//! Scenes made in code, as the author of another crate would make them.
+//! Scenes made in code, as in another crate.
 
 use localshape::glam::DVec3;
 use localshape::look::Theme;
@@ -17,12 +17,12 @@ fn shape(stiffness: f64) -> shape_based::Parameters {
     shape_based::Parameters::new(stiffness)
 }
 
-/// A scene in code and the same one in a file are the same in everything, also in the digest that names their meaning.
+/// A scene made in code and the same one from a file are equal in everything, including the digest.
 fn assert_same(made: SceneBuilder, file: &str) {
     let parsed = Scene::parse(file, "scene.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
     let made = made.build(&Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
     assert!(!made.digest.is_empty());
-    // Titles are compared by their digest; names, which a file's own name gives, are not.
+    // Titles are compared by their digest; names, which are those of files, are not compared.
     let [made, parsed] = [made, parsed].map(|scene| format!("{:#?}", Scene { name: String::new(), ..scene }));
     assert_eq!(made, parsed, "{file}");
 }
@@ -178,7 +178,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
     assert_same(made, text);
 }
 
-/// Where, what was found, what was expected, what to do: as of a file, without lines of a text that nobody has written.
+/// Position, what was found, what was expected, what to do: as for a file, without lines of its text.
 #[test]
 fn mistakes_in_code_are_told_as_those_in_files() {
     let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -284,7 +284,7 @@ fn mistakes_in_code_are_told_as_those_in_files() {
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 }
 
-/// What is not forbidden and probably not meant is said, too.
+/// Warnings about what is allowed but probably not intended.
 #[test]
 fn warnings_name_the_setting() {
     let scene = Scene::builder("drop", BodyBuilder::polygon(3, 1.0)).run("One", shape(1.0)).frames_per_second(0.1);

@@ -1,4 +1,4 @@
-//! Animated PNG: every frame as it is, but only what differs from the one before is stored.
+//! Animated PNG: lossless; only the pixels that differ from the previous frame are stored.
 
 use super::order::{Kept, in_order};
 use super::timeline::fraction;
@@ -9,7 +9,7 @@ const ANIMATION_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"acTL")
 const FRAME_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"fcTL");
 const FRAME_DATA: png::chunk::ChunkType = png::chunk::ChunkType(*b"fdAT");
 
-/// The part of a frame that is new, compressed.
+/// The changed part of a frame, compressed.
 struct Patch {
     place: [u32; 4],
     data: Vec<u8>,
@@ -51,7 +51,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
 }
 
 impl Patch {
-    /// What is as before is clear, for that takes next to no room.
+    /// Unchanged pixels are transparent, which compresses best.
     fn new(image: &Image, before: Option<&Image>) -> Self {
         let [width, height] = image.size;
         let pixel = |image: &Image, at: usize| [0, 1, 2].map(|channel| image.pixels[3 * at + channel]);
@@ -67,7 +67,7 @@ impl Patch {
         Self { place, data: compressed([place[2], place[3]], &pixels) }
     }
 
-    /// What stands before its data: it stays where it is put, and what was there shows through where it is clear.
+    /// The control chunk before the data: the part is not disposed, and is blended over the previous frame.
     fn control(&self, sequence: u32, duration: f64) -> Vec<u8> {
         let [left, top, width, height] = self.place;
         let numbers = [sequence, width, height, left, top].map(u32::to_be_bytes).concat();
@@ -76,19 +76,19 @@ impl Patch {
     }
 }
 
-/// The pixels of a picture as the image data of a PNG file.
+/// Pixels as the image data of a PNG file.
 fn compressed([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
     let mut file = Vec::with_capacity(pixels.len() / 8);
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
-    // A third smaller than as fast as can be, for twice the time.
+    // A third smaller than the fastest level, in twice the time.
     encoder.set_deflate_compression(png::DeflateCompression::Level(3));
     encoder.set_filter(png::Filter::Paeth);
     let mut writer = encoder.write_header().expect("a picture into memory");
     writer.write_image_data(pixels).expect("a picture of the right length into memory");
     writer.finish().expect("a picture into memory");
-    // Length, name, data and checksum of one chunk after the other, behind the signature.
+    // After the signature: length, name, data and checksum of each chunk.
     let mut data = Vec::with_capacity(file.len());
     let mut rest = &file[8..];
     while let Some((head, tail)) = rest.split_first_chunk::<8>() {

@@ -1,4 +1,4 @@
-//! Why there is no animation.
+//! Errors of making animations.
 
 use crate::golden::PictureError;
 use crate::output::OutputError;
@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 /// Why an animation could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum AnimationError {
-    /// A picture cannot be read, or is none.
+    /// A file is not a picture, or cannot be read.
     #[error("{}", path.display())]
     Picture {
-        /// Where it is.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         source: PictureError,
     },
-    /// What was asked for cannot be, or a frame is not what it should be.
+    /// The request cannot be met, or a frame is not as required.
     #[error("{0}")]
     Wrong(String),
     /// A file cannot be read or written.
@@ -25,10 +25,10 @@ pub enum AnimationError {
     /// The disk has no room for a file.
     #[error("cannot write {}: the disk is full; nothing of this file is left, an earlier one is as it was", .0.display())]
     Full(PathBuf),
-    /// What the animation is written to takes no more.
+    /// The output of the animation cannot be written.
     #[error("cannot write the animation")]
     Out(#[source] io::Error),
-    /// A program that the format needs is not there.
+    /// A program that the format needs is missing.
     #[error(
         "there is no `ffmpeg` on this machine, which {0} files are made with. Install it (apt install ffmpeg; brew install \
          ffmpeg; winget install ffmpeg), or choose a file that is made without it: .gif, .apng, .y4m, or .png for a sheet"
@@ -37,18 +37,18 @@ pub enum AnimationError {
     /// That program failed.
     #[error("ffmpeg failed ({status}){told}")]
     Ffmpeg {
-        /// How it ended.
+        /// Its exit status.
         status: String,
-        /// What it said last, on lines of its own.
+        /// The last lines of its standard error.
         told: String,
     },
-    /// The user wanted it to stop.
+    /// The user interrupted it.
     #[error("interrupted")]
     Stopped,
 }
 
 impl AnimationError {
-    /// Names the file that was being written.
+    /// Adds the file that was being written.
     pub(super) fn in_file(self, path: &Path) -> Self {
         match self {
             Self::Out(source) | Self::File(OutputError::Write { source, .. }) => match source.kind() {

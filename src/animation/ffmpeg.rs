@@ -1,4 +1,4 @@
-//! Films that `ffmpeg` makes: pictures go to it through a pipe.
+//! Films made by `ffmpeg`, which reads pictures through a pipe.
 
 use super::order::in_order;
 use super::{Animation, AnimationError, Format, Image, Written};
@@ -11,16 +11,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Lines of what it says that are told when it fails.
+/// Number of lines of its standard error that are reported if it fails.
 const LINES: usize = 5;
-/// Threads that read pictures for it, at most: these keep up with it, and each holds pictures in memory.
+/// Greatest number of threads that read pictures: they keep up with `ffmpeg`, and each holds pictures in memory.
 const READERS: usize = 2;
-/// It is asked as often as this whether it has ended.
+/// Interval at which its exit is polled.
 const BETWEEN: Duration = Duration::from_millis(10);
-/// While it takes no pictures, the user is listened to as often as this.
+/// Interval at which interruption is polled while it accepts no pictures.
 const LISTEN: Duration = Duration::from_millis(100);
 
-/// Looks whether it is there.
+/// Tests whether `ffmpeg` exists.
 pub(super) fn look(format: Format) -> Result<(), AnimationError> {
     let mut command = Command::new("ffmpeg");
     let status = command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
@@ -39,7 +39,7 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     let [rate, of] = timeline.rate();
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = timeline.ticks(rate_each, 1);
-    // H.264 and VP9 keep one sample of colour for four pixels, so sides are even: the background goes on there.
+    // H.264 and VP9 have one colour sample for four pixels, so sides are made even by extending the background.
     let even @ [width, height] = animation.reel.size().map(|side| side.next_multiple_of(2));
     let ground = animation.reel.image(ticks[0].0)?.corner();
     let padded = |image: Image| {
@@ -55,8 +55,8 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     command.args(["-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", &format!("{width}x{height}")]);
     command.args(["-framerate", &format!("{rate}/{of}"), "-i", "pipe:0", "-an"]);
     command.args(["-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p"]);
-    // Both look ahead less far than usual, on a fixed number of threads: half the memory, as much on any machine, and for
-    // one encoder the same bytes.
+    // Both encoders get less lookahead than by default and a fixed number of threads: half the memory, the same on any
+    // machine, and the same bytes for the same encoder.
     command.args(["-threads", "2"]);
     command.args(match format {
         Format::WebM => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-cpu-used", "4", "-lag-in-frames", "4"][..],
@@ -66,13 +66,13 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         command.args(["-movflags", "+faststart"]);
     }
     command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
-    // Nothing by chance, as the number that Matroska gives a film.
+    // No random values, such as the identifier that Matroska gives a film.
     command.args(["-fflags", "+bitexact", "-metadata", &format!("comment={}", animation.comment)]);
     command.args(["-f", if format == Format::WebM { "webm" } else { "mp4" }]).arg(file.hidden_path());
     let (process, mut film) = start(&mut command, ending(format), animation.go_on)?;
     let mut pictures = 0;
     std::thread::scope(|scope| {
-        // A process that takes no pictures keeps this thread waiting; another one then listens to the user.
+        // If the process accepts no pictures, this thread blocks, so another one polls for interruption.
         let (_end, ended) = channel::<()>();
         let process = &process;
         scope.spawn(move || {
@@ -99,14 +99,14 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     Ok(Written { pictures, duration: pictures as f64 / rate_each, size: even })
 }
 
-/// Starts the process that makes a film.
+/// Starts the process.
 fn start<'a>(
     command: &mut Command,
     ending: &'static str,
     go_on: &'a (dyn Fn() -> bool + Sync),
 ) -> Result<(Process, Film<'a>), AnimationError> {
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    // Ctrl-C is for this program, which then ends the other.
+    // Only this program receives Ctrl-C; it then ends the process.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
     let mut child = command.spawn().map_err(|error| match error.kind() {
@@ -129,7 +129,7 @@ fn start<'a>(
     Ok((Process(Mutex::new(child)), Film { pipe, told, go_on }))
 }
 
-/// A process that is ended when it is dropped.
+/// A process that is killed when this is dropped.
 struct Process(Mutex<Child>);
 
 impl Process {
@@ -137,15 +137,15 @@ impl Process {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// How it has ended, if it has.
+    /// Its exit status, if it has ended.
     fn ended(&self) -> std::io::Result<Option<ExitStatus>> {
         self.lock().try_wait()
     }
 
-    /// Ends it at once, with those that it has started, for any of them may hold the pipe open.
+    /// Kills it together with its child processes, as any of them may hold the pipe open.
     fn kill(&self) {
         let mut child = self.lock();
-        // Once it is known to have ended, its number may be another's.
+        // After it has been waited for, its process id may belong to another process.
         if matches!(child.try_wait(), Ok(None)) {
             #[cfg(unix)]
             let _ = rustix::process::kill_process_group(
@@ -160,15 +160,15 @@ impl Process {
 impl Drop for Process {
     fn drop(&mut self) {
         self.kill();
-        // If it has ended, there is nothing to be done.
+        // If it has ended already, this does nothing.
         let _ = self.lock().wait();
     }
 }
 
-/// What pictures are written to.
+/// The pipe to the process.
 struct Film<'a> {
     pipe: Option<ChildStdin>,
-    /// Gathers the last lines that the process says.
+    /// Collects the last lines of its standard error.
     told: Option<JoinHandle<VecDeque<String>>>,
     go_on: &'a (dyn Fn() -> bool + Sync),
 }
@@ -176,7 +176,7 @@ struct Film<'a> {
 impl Film<'_> {
     fn write(&mut self, process: &Process, bytes: &[u8]) -> Result<(), AnimationError> {
         let written = self.pipe.as_mut().expect("not ended yet").write_all(bytes);
-        // Why it takes no more, it says itself.
+        // The reason is on its standard error.
         written.map_err(|_| {
             self.ended(process).err().unwrap_or_else(|| AnimationError::Ffmpeg {
                 status: "it took only a part of the pictures".to_owned(),
@@ -199,7 +199,7 @@ impl Film<'_> {
             }
         };
         let told = self.told.take().and_then(|told| told.join().ok()).unwrap_or_default();
-        // On a full disk some versions say so and end well, leaving a film that nothing can play.
+        // On a full disk some versions print this and exit with success, but the film cannot be played.
         let is_cut = |line: &String| ["Error writing trailer", "No space left"].iter().any(|cut| line.contains(cut));
         match status {
             Ok(status) if status.success() && !told.iter().any(is_cut) => Ok(()),

@@ -1,27 +1,27 @@
-//! Kinds of files.
+//! File formats.
 
 use super::AnimationError;
 use std::path::Path;
 
-/// A kind of file, chosen by the ending of its name.
+/// A file format, selected by the extension of the file name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Animated PNG: every pixel as it is.
+    /// Animated PNG: lossless.
     Apng,
     /// GIF with one palette of 255 colours.
     Gif,
-    /// YUV4MPEG2: uncompressed, for other programs.
+    /// YUV4MPEG2: uncompressed, as input of other programs.
     Y4m,
-    /// MP4 with H.264, made by `ffmpeg`.
+    /// MP4 with H.264, encoded by `ffmpeg`.
     Mp4,
-    /// WebM with VP9, made by `ffmpeg`.
+    /// WebM with VP9, encoded by `ffmpeg`.
     WebM,
     /// A still picture with frames side by side.
     Sheet,
 }
 
 impl Format {
-    /// All endings with what they stand for.
+    /// All extensions with their formats.
     const ENDINGS: [(&str, Self); 6] = [
         ("gif", Self::Gif),
         ("apng", Self::Apng),
@@ -31,10 +31,10 @@ impl Format {
         ("png", Self::Sheet),
     ];
 
-    /// What the name of a file says.
+    /// The format of a file name.
     ///
     /// # Errors
-    /// With the endings that there are, if it has none of them.
+    /// If the extension is unknown, with the known ones.
     pub fn of(path: &Path) -> Result<Self, String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let known = Self::ENDINGS.iter().find(|(known, _)| *known == ending);
@@ -50,10 +50,10 @@ impl Format {
 }
 
 impl Format {
-    /// Looks whether what the format needs is there.
+    /// Tests whether the program that the format needs exists.
     ///
     /// # Errors
-    /// If it needs `ffmpeg` and that is missing.
+    /// If it needs `ffmpeg`, which is missing.
     pub(crate) fn look(self) -> Result<(), AnimationError> {
         match self {
             Self::Mp4 | Self::WebM => super::ffmpeg::look(self),

@@ -1,5 +1,5 @@
-//! GIF: one palette for all frames, so that nothing flickers, found in a first pass over them. Each frame is stored where
-//! it differs from the one before.
+//! GIF: one palette for all frames, to avoid flicker, computed in a first pass over them. Of each frame only the part
+//! that differs from the previous one is stored.
 
 use super::order::in_order;
 use super::palette::{Counts, Numbers, Palette};
@@ -7,15 +7,15 @@ use super::{Animation, AnimationError, Written, changed};
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::io::{self, Write};
 
-/// Units of time a second.
+/// Ticks per second.
 const RATE: f64 = 100.0;
-/// The shortest delay that players keep to; shorter ones they take for a tenth of a second.
+/// The shortest delay (ticks) that players respect; they replace shorter ones by a tenth of a second.
 const LEAST: u64 = 2;
-/// The number that stands for what was there before.
+/// The palette index of transparent pixels, which keep the previous colour.
 const SAME: u8 = 255;
-/// The kind of block that holds a comment.
+/// The extension block for comments.
 const COMMENT: AnyExtension = AnyExtension(0xfe);
-/// How much of the work the first pass is.
+/// The first pass as a fraction of the work.
 const FIRST: f64 = 0.4;
 
 pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
@@ -40,7 +40,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     drop(counts);
 
     let mut encoder = Encoder::new(out, wide, high, &palette.colours.concat()).map_err(failed)?;
-    // The file counts how often it is played again.
+    // The file has the number of repetitions, one less than the number of plays.
     match animation.plays {
         0 => encoder.set_repeat(Repeat::Infinite).map_err(failed)?,
         1 => {}
@@ -52,7 +52,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let mut shown: Option<Vec<u8>> = None;
     in_order(ticks.len(), animation.threads, numbers, |at, numbers| {
         let mut frame = frame(size, &palette, numbers, &mut shown);
-        // What lasts longer than a delay can say stays for several.
+        // A duration longer than the greatest delay is divided into several frames.
         let mut left = ticks[at].1;
         while left > 0 {
             frame.delay = left.min(u16::MAX.into()) as u16;
@@ -66,8 +66,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     Ok(Written { pictures: ticks.len(), duration, size })
 }
 
-/// The part of a picture that differs from what is shown, compressed. A pixel whose colour is as good as the one shown
-/// stays as it is.
+/// The compressed part of a picture that differs from what is shown. A pixel keeps the shown colour if that is as good.
 fn frame(size: [u32; 2], palette: &Palette, numbers: Numbers, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
     let (place, buffer) = match shown {
         None => ([0, 0, size[0], size[1]], shown.insert(numbers.best).clone()),

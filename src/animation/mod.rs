@@ -1,9 +1,9 @@
-//! Animations: frames, one after the other with their durations, as one file.
+//! Animations: frames with their durations, in one file.
 //!
-//! A [`Reel`] hands out frames by number, a [`Timeline`] says which of them is shown how long, and [`Animation::write`]
-//! makes a file of them in one of several [`Format`]s. Frames are decoded and compressed on threads a few ahead of where
-//! the file is, and forgotten behind it: memory is bounded however long the animation is. The file has the same bytes for
-//! any number of threads, and is there whole or not at all.
+//! A [`Reel`] returns frames by number, a [`Timeline`] has the duration of each, and [`Animation::write`] makes a file
+//! in one of several [`Format`]s. Threads decode and compress a few frames ahead of the writer and free them
+//! afterwards, so memory is bounded for any length. The file has the same bytes for any number of threads, and is
+//! written completely or not at all.
 
 mod apng;
 mod error;
@@ -51,7 +51,7 @@ impl Image {
         [self.pixels[0], self.pixels[1], self.pixels[2]]
     }
 
-    /// Puts another picture, which must fit, in front of this one, with its top left corner at `x`, `y` (px).
+    /// Copies another picture, which must fit, into this one, with its top left corner at `x`, `y` (px).
     pub(crate) fn paste(&mut self, other: &Self, [x, y]: [u32; 2]) {
         let row = 3 * other.size[0] as usize;
         for (line, source) in other.pixels.chunks_exact(row).enumerate() {
@@ -61,7 +61,7 @@ impl Image {
     }
 }
 
-/// What is clear is put in front of white.
+/// Transparent pixels are blended with white.
 impl From<Pixels> for Image {
     fn from(picture: Pixels) -> Self {
         let over = |byte: u8, opacity: u8| {
@@ -75,54 +75,56 @@ impl From<Pixels> for Image {
     }
 }
 
-/// Frames of one size, to be had in any order and more than once.
+/// Frames of one size, with random access.
 pub trait Reel: Sync {
     /// Width and height of every frame (px).
     fn size(&self) -> [u32; 2];
 
-    /// A frame by its number, from 0. May wait until it is there.
+    /// A frame by its number, from 0. May block until it exists.
     ///
     /// # Errors
-    /// If it cannot be had.
+    /// If it cannot be read.
     fn image(&self, frame: usize) -> Result<Image, AnimationError>;
 }
 
-/// All that a file is made of.
+/// The contents and options of a file.
 pub struct Animation<'a> {
     /// The frames.
     pub reel: &'a dyn Reel,
-    /// Which of them is shown how long. It has at least one shot.
+    /// The duration of each frame. It has at least one shot.
     pub timeline: &'a Timeline,
-    /// How many times it is to be played; 0 for ever. Only APNG and GIF can say so.
+    /// How many times it is played; 0 for ever. Only APNG and GIF can store this.
     pub plays: u16,
-    /// How frames stand on a still picture.
+    /// The layout of frames on a still picture.
     pub sheet: &'a Sheet,
-    /// What the file says about itself, where the format has a place for it.
+    /// Metadata of the file, if the format has a place for it.
     pub comment: &'a str,
     /// Threads to work with, at least one.
     pub threads: usize,
-    /// Told how much of the work is done, from 0 to 1.
+    /// Called with the completed fraction of the work.
     pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Says whether to go on. Asked often, and on other threads, too.
+    /// Whether to continue. Called often, and on other threads, too.
     pub go_on: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// What was written.
+/// The result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Written {
-    /// Pictures in the file. Formats of a fixed rate repeat some; others leave out what would be shown too shortly.
+    /// Number of pictures in the file. Formats with a fixed rate repeat some; others omit frames that would be shown
+    /// too shortly.
     pub pictures: usize,
-    /// How long it plays once (s); 0 for a still picture.
+    /// Duration of one play (s); 0 for a still picture.
     pub duration: f64,
     /// Width and height (px). Films have even sides; a sheet has a size of its own.
     pub size: [u32; 2],
 }
 
 impl Animation<'_> {
-    /// Makes the file `path`, whose folder exists, in place of what is there.
+    /// Writes the file `path`, whose folder exists, replacing an earlier one.
     ///
     /// # Errors
-    /// If a frame cannot be had, the file cannot be written, or `ffmpeg`, where the format needs it, is missing or fails.
+    /// If a frame cannot be read, the file cannot be written, or `ffmpeg`, where the format needs it, is missing or
+    /// fails.
     pub fn write(&self, format: Format, path: &Path) -> Result<Written, AnimationError> {
         self.write_into(format, path).map_err(|error| error.in_file(path))
     }
@@ -154,7 +156,7 @@ impl Animation<'_> {
         Ok(written)
     }
 
-    /// Tells that so much is done, from 0 to 1, and ends the work if it is not wanted any more.
+    /// Reports the completed fraction of the work, and returns an error if the work is to stop.
     fn report(&self, done: f64) -> Result<(), AnimationError> {
         (self.progress)(done);
         if (self.go_on)() { Ok(()) } else { Err(AnimationError::Stopped) }
@@ -171,13 +173,13 @@ fn buffered(
         out.flush().map_err(AnimationError::Out)?;
         Ok(written)
     });
-    // What is left in the buffer of a failed file is not worth another try.
+    // Not another attempt to write what is left in the buffer of a failed file.
     drop(out.into_parts());
     written
 }
 
-/// Left, top, width and height (px) of the smallest rectangle that holds all pixels for which `differ` is true of their
-/// place in the picture; one pixel if there are none.
+/// Left, top, width and height (px) of the smallest rectangle with all pixels for whose index `differ` is true; one
+/// pixel if there are none.
 fn changed([width, height]: [u32; 2], differ: impl Fn(usize) -> bool) -> [u32; 4] {
     let (wide, high) = (width as usize, height as usize);
     let row = |y: usize| (0..wide).any(|x| differ(y * wide + x));
@@ -188,7 +190,7 @@ fn changed([width, height]: [u32; 2], differ: impl Fn(usize) -> bool) -> [u32; 4
         left = (0..left).find(|x| differ(y * wide + x)).unwrap_or(left);
         right = (right..wide).rev().find(|x| differ(y * wide + x)).unwrap_or(right);
     }
-    // The first row that differs does so somewhere.
+    // The first row with a difference has one in some column.
     let (left, right) = (left.min(right), right.max(left));
     [left, top, right - left + 1, bottom - top + 1].map(|number| number as u32)
 }

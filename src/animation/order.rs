@@ -1,16 +1,16 @@
-//! Work on many threads whose results are taken in order, a few ahead.
+//! Parallel work whose results are consumed in order, computed a few ahead.
 
 use super::AnimationError;
 use std::collections::VecDeque;
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// So many results for each thread may wait to be taken.
+/// Number of results for each thread that may wait.
 const AHEAD: usize = 2;
-/// Threads that work, at most: more would keep more frames in memory, and these keep up with any disk.
+/// Greatest number of threads: more would keep more frames in memory, and these keep up with any disk.
 const MOST: usize = 4;
 
-/// Does `work` for each of `0..count` on `threads` threads and hands the results to `take` in order. Ends with the first
+/// Calls `work` for each of `0..count` on `threads` threads and `take` with the results, in order. Stops at the first
 /// error of either.
 pub(super) fn in_order<T: Send>(
     count: usize,
@@ -22,12 +22,12 @@ pub(super) fn in_order<T: Send>(
     std::thread::scope(|scope| {
         let work = &work;
         let start = |first: usize| {
-            // Beside what waits here, a thread holds one more result, which it waits to hand over.
+            // In addition to the buffered results, each thread holds one that it is about to send.
             let (results, taken) = sync_channel(AHEAD - 1);
             scope.spawn(move || {
                 for at in (first..count).step_by(threads) {
                     let result = work(at);
-                    // Nobody takes any more after an error, and without one only when all has ended.
+                    // The receiver is dropped after an error, or at the end.
                     let failed = result.is_err();
                     if results.send(result).is_err() || failed {
                         return;
@@ -38,7 +38,7 @@ pub(super) fn in_order<T: Send>(
         };
         let results: Vec<_> = (0..threads.min(count)).map(start).collect();
         for at in 0..count {
-            // A thread that sends nothing more has panicked, which the end of the scope tells.
+            // A thread that sends nothing has panicked; the scope then panics as well.
             let result = results[at % threads].recv().map_err(|_| AnimationError::Stopped)?;
             take(at, result?)?;
         }
@@ -46,23 +46,23 @@ pub(super) fn in_order<T: Send>(
     })
 }
 
-/// Things that are made when they are first asked for, and kept while they may be asked for again: the few newest.
+/// A cache of computed values, which keeps the newest ones.
 pub(super) struct Kept<T, F> {
     make: F,
     most: usize,
     places: Mutex<VecDeque<(usize, Place<T>)>>,
 }
 
-/// One of them, once it is made.
+/// A value, once it is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
 impl<T, F: Fn(usize) -> Result<T, AnimationError>> Kept<T, F> {
-    /// Kept for as many threads.
+    /// A cache for this number of threads.
     pub(super) fn new(threads: usize, make: F) -> Self {
         Self { make, most: 2 * threads.clamp(1, MOST) + 2, places: Mutex::new(VecDeque::new()) }
     }
 
-    /// One of them. Who asks for what another thread is making waits for it.
+    /// A value. If another thread is computing it, waits for the result.
     pub(super) fn get(&self, key: usize) -> Result<Arc<T>, AnimationError> {
         let place = self.place(key);
         let mut made = place.lock().unwrap_or_else(PoisonError::into_inner);

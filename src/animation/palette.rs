@@ -1,41 +1,41 @@
-//! Few colours for many: a palette for all frames of an animation, and which of its colours stand for each other colour.
+//! Colour quantisation: a palette for all frames of an animation, and dithering of pictures with it.
 //!
-//! Colours are gathered in cells of 4×4×4 levels. Boxes of cells are cut in two, the least uniform one first, as in
-//! P. Heckbert, *Color Image Quantization for Frame Buffer Display*, SIGGRAPH 1982, but in Oklab, where equal distances
-//! look about equal; then each colour moves to the mean of what is nearest to it (k-means).
+//! Colours are counted in cells of 4×4×4 levels. Boxes of cells are divided, the least uniform one first, as in P.
+//! Heckbert, *Color Image Quantization for Frame Buffer Display*, SIGGRAPH 1982, but in Oklab, where equal distances
+//! look about equal. Then each colour is moved to the mean of the nearest cells (k-means).
 
 use super::Image;
 use crate::colour::{Colour, Oklab, from_oklab, oklab};
 
-/// Bits of each channel that tell cells apart.
+/// Bits of each channel that select a cell.
 const BITS: u32 = 6;
 const CELLS: usize = 1 << (3 * BITS);
-/// Colours of a palette. One more number is left for what does not change.
+/// Colours of a palette. One more index means an unchanged pixel.
 const MOST: usize = 255;
-/// How often colours move to the mean of what is nearest to them.
+/// Iterations of k-means.
 const ROUNDS: usize = 6;
-/// How much more often a colour counts the more pixels it has: with 1 a large background would take all colours.
+/// Exponent of the weight of a colour by its number of pixels: with 1 a large background would take all colours.
 const POWER: f64 = 0.4;
-/// Colours that are as near as this in Oklab look the same side by side, and are not dithered.
+/// Colours nearer than this in Oklab look the same side by side, and are not dithered.
 const NEAR: f64 = 0.012;
-/// What is shown already stays while the colour that is meant is as near as this in Oklab.
+/// A shown colour is kept if the new one is nearer than this in Oklab.
 const STAY: f64 = 0.015;
-/// So many pixels of one colour in a row are a ground.
+/// Length of a run of pixels of the same colour that counts as background.
 const GROUND: u64 = 48;
-/// How much a mixture is disliked for its two colours being apart: its grain shows.
+/// Weight of the difference of the two colours of a mixture, as it makes the dither pattern visible.
 const GRAIN: f64 = 0.15;
-/// Steps of a mixture.
+/// Number of steps of a mixture.
 const LEVELS: f64 = 64.0;
 
-/// Where the colour of a pixel is counted.
+/// The cell of a pixel.
 fn cell(pixel: [u8; 3]) -> usize {
     let [r, g, b] = pixel.map(|byte| usize::from(byte >> (8 - BITS)));
     r << (2 * BITS) | g << BITS | b
 }
 
-/// How many pixels have which colours.
+/// The number of pixels of each colour.
 pub(super) struct Counts {
-    /// For each cell the number of pixels, the sums of their channels, and the number of those that lie on a ground.
+    /// For each cell the number of pixels, the sums of their channels, and the number of those in a background.
     cells: Vec<[u64; 5]>,
 }
 
@@ -75,7 +75,7 @@ impl Counts {
         }
     }
 
-    /// The palette that suits these colours best.
+    /// The palette for these colours.
     pub(super) fn palette(&self) -> Palette {
         let filled = self.cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
         let cells: Vec<Cell> = filled
@@ -109,13 +109,13 @@ impl Counts {
     }
 }
 
-/// Colours that are counted together.
+/// The colours of a cell.
 struct Cell {
     at: usize,
     mean: Colour,
     lab: Oklab,
     count: u64,
-    /// Whether most of its pixels lie on a ground, on which every trace of what was there before would be seen.
+    /// Whether most of its pixels are in a background, where remains of the previous frame would be visible.
     is_ground: bool,
     weight: f64,
 }
@@ -130,7 +130,7 @@ fn mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> (f64, [f64; 3]) {
     (weight, sums.map(|sum| sum / weight))
 }
 
-/// The axis along which cells differ most, how much they do, and their mean on it.
+/// The axis along which cells differ most, by how much, and their mean on it.
 fn spread(cells: &[Cell], members: &[usize]) -> (usize, f64, f64) {
     let (_, middle) = mean(members.iter().map(|&at| &cells[at]));
     let squares = |axis: usize| {
@@ -153,7 +153,8 @@ fn chosen(cells: &[Cell]) -> Vec<Colour> {
         let widest = (0..boxes.len()).max_by(|&one, &other| boxes[one].0.1.total_cmp(&boxes[other].0.1));
         let ((axis, _, middle), members) = boxes.swap_remove(widest.unwrap_or(0));
         let (low, high): (Vec<_>, Vec<_>) = members.into_iter().partition(|&at| cells[at].lab.0[axis] < middle);
-        // Cells of one colour have nothing on one side; there are more cells than colours, so another box has.
+        // Cells of one colour have nothing on one side; there are more cells than colours, so another box can be
+        // divided.
         for half in [low, high].into_iter().filter(|half| !half.is_empty()) {
             boxes.push((spread(cells, &half), half));
         }
@@ -174,7 +175,7 @@ fn chosen(cells: &[Cell]) -> Vec<Colour> {
             }
         }
     }
-    // A colour that has most of the pixels near it stays as it is: backgrounds meet those of pages.
+    // A colour with most of the pixels of a centre is kept exactly: the background should match that of a page.
     let mut of: Vec<(u64, u64, usize)> = vec![(0, 0, 0); centres.len()];
     for (at, (cell, &centre)) in cells.iter().zip(&nearest).enumerate() {
         let (all, most, which) = &mut of[centre];
@@ -205,14 +206,14 @@ fn nearest_of(colour: Oklab, all: &[Oklab]) -> usize {
     best.1
 }
 
-/// One colour of the palette, or two side by side, for a colour that it lacks.
+/// A colour of the palette, or a mixture of two, for a colour that is not in the palette.
 #[derive(Clone, Copy, Default)]
 struct Mixture {
     one: u8,
     other: u8,
-    /// How many of 64 pixels have the other.
+    /// How many of 64 pixels have the second colour.
     share: u8,
-    /// Where it is said which colours are near it.
+    /// The row of [`Palette`]'s table of near colours.
     row: u32,
 }
 
@@ -243,8 +244,8 @@ impl Mixture {
     }
 }
 
-/// In which order the pixels of a square of 8×8 take the second colour (B. Bayer, 1973): those that take it at one share
-/// also do at every larger one, and they are as far apart as can be.
+/// The order in which the pixels of an 8×8 square get the second colour (B. Bayer, 1973): pixels that have it at one
+/// share have it at every larger one, and they are as far apart as possible.
 const ORDER: [[u8; 8]; 8] = {
     let mut order = [[0; 8]; 8];
     let mut y = 0;
@@ -265,31 +266,31 @@ const ORDER: [[u8; 8]; 8] = {
     order
 };
 
-/// Colours by number, and what stands for all others.
+/// A palette, and the colour or mixture for each cell.
 pub(super) struct Palette {
     pub(super) colours: Vec<Colour>,
     mixtures: Vec<Mixture>,
-    /// For each cell that is not empty, a bit for each colour that is near it.
+    /// For each cell that is not empty, a bit for each near colour of the palette.
     near: Vec<[u64; 4]>,
 }
 
-/// A picture as numbers of colours.
+/// A picture as indices into the palette.
 pub(super) struct Numbers {
-    /// For each pixel the colour that stands for its own.
+    /// The index for each pixel.
     pub(super) best: Vec<u8>,
-    /// For each pixel where it is said which other colours are near it.
+    /// For each pixel the row of the palette's table of near colours.
     rows: Vec<u32>,
 }
 
 impl Palette {
-    /// Whether a colour that is shown already may stay for a pixel.
+    /// Whether a pixel may keep the colour that is shown.
     pub(super) fn may_stay(&self, numbers: &Numbers, at: usize, shown: u8) -> bool {
         shown == numbers.best[at]
             || self.near[numbers.rows[at] as usize][usize::from(shown / 64)] >> (shown % 64) & 1 == 1
     }
 
-    /// A picture as numbers of colours. Which of two colours a pixel takes depends on its place: so the grain of a
-    /// mixture stands still, whatever moves.
+    /// A picture as indices into the palette. In a mixture the position of a pixel decides its colour, so the dither
+    /// pattern does not move.
     pub(super) fn numbers(&self, image: &Image) -> Numbers {
         let width = image.size[0] as usize;
         let all = image.pixels.len() / 3;

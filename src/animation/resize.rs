@@ -1,4 +1,4 @@
-//! Pictures in another size.
+//! Scaling pictures.
 
 use super::Image;
 use crate::colour::{encoded, linear};
@@ -9,13 +9,13 @@ use std::sync::LazyLock;
 /// Levels of linear light.
 const LEVELS: f64 = 65535.0;
 
-/// Bytes of sRGB as linear light, and, for as many steps as tell every byte apart, the way back.
+/// Tables from sRGB bytes to linear light and back, with enough steps to distinguish all bytes.
 static LINEAR: LazyLock<[u16; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| (linear([byte as u8; 3])[0] * LEVELS).round() as u16));
 static ENCODED: LazyLock<Vec<u8>> =
     LazyLock::new(|| (0..=u16::MAX).map(|light| encoded([f64::from(light) / LEVELS; 3])[0]).collect());
 
-/// A picture in another size (px): mixed as light is, with a windowed sinc (Lanczos) of three lobes.
+/// A picture scaled to another size (px), in linear light, with a Lanczos filter of three lobes.
 ///
 /// # Panics
 /// If a side is zero.
@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn light_is_kept() {
         assert_eq!(resized(&Image::plain([40, 30], [200, 7, 90]), [13, 11]), Image::plain([13, 11], [200, 7, 90]));
-        // A chequerboard of black and white is half the light.
+        // A chequerboard of black and white has half the light.
         let pixels = (0..64 * 64).flat_map(|at| [if (at + at / 64) % 2 == 0 { 255 } else { 0 }; 3]).collect();
         let small = resized(&Image { size: [64, 64], pixels }, [8, 8]);
         let middle = small.pixels[3 * (4 * 8 + 4)];

@@ -1,4 +1,4 @@
-//! Frames side by side on a still picture, each with its time.
+//! A still picture with frames side by side, each with its time.
 
 use super::order::in_order;
 use super::{Animation, AnimationError, Image, Written, resized};
@@ -6,12 +6,12 @@ use crate::colour::{Colour, best_of, mixed};
 use crate::output::{Compression, encode};
 use crate::picture::{Fonts, Weight};
 
-/// How frames stand side by side.
+/// The layout of a sheet.
 #[derive(Clone, Debug)]
 pub struct Sheet {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
-    /// The time of each frame of the reel (s), written below it; none are written if there are fewer.
+    /// The time of each frame of the reel (s), written below it; if there are fewer times than frames, none is written.
     pub times: Vec<f64>,
 }
 
@@ -21,23 +21,23 @@ impl Default for Sheet {
     }
 }
 
-/// Where frames stand.
+/// Positions of the frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Grid {
     columns: u32,
     /// Width and height of a frame (px).
     frame: [u32; 2],
-    /// From frame to frame (px).
+    /// Distance from frame to frame (px).
     pitch: [u32; 2],
     /// Left and top of the first (px).
     origin: [u32; 2],
 }
 
-/// The least that a frame may be wide (px).
+/// Least width of a frame (px).
 const LEAST: u32 = 32;
 
 impl Sheet {
-    /// Frames of a sheet if nobody says which.
+    /// Default number of frames.
     pub const FRAMES: usize = 12;
 
     /// Space between frames (px).
@@ -45,12 +45,12 @@ impl Sheet {
         (self.size[0].min(self.size[1]) / 60).max(4)
     }
 
-    /// Size of the type (px).
+    /// Font size (px).
     fn type_size(&self) -> u32 {
         (self.size[0].min(self.size[1]) / 54).max(11)
     }
 
-    /// Rows and columns with which `count` frames become as large as can be, but not larger than they are.
+    /// Rows and columns for which `count` frames are as large as possible, but not enlarged.
     fn grid(&self, count: u32, [width, height]: [u32; 2]) -> Option<Grid> {
         let (gap, label) = (self.gap(), self.type_size() * 8 / 5);
         let fit = |columns: u32| {
@@ -67,7 +67,7 @@ impl Sheet {
         };
         let mut best: Option<Grid> = None;
         for grid in (1..=count).filter_map(fit) {
-            // Of equal ones the one with more columns: it has fewer gaps in its last row.
+            // If several are equally large, the one with more columns: its last row has fewer gaps.
             if best.is_none_or(|best| grid.frame[0] > best.frame[0]) {
                 best = Some(grid);
             }
@@ -75,10 +75,10 @@ impl Sheet {
         best
     }
 
-    /// Makes the picture as a PNG file.
+    /// Encodes the picture as a PNG file.
     ///
     /// # Errors
-    /// If a frame cannot be had, or there are more of them than have room.
+    /// If a frame cannot be read, or there is no room for all of them.
     pub(crate) fn encode(&self, animation: &Animation<'_>) -> Result<(Vec<u8>, Written), AnimationError> {
         let shots = animation.timeline.shots();
         let grid = self.grid(shots.len() as u32, animation.reel.size()).ok_or_else(|| {
@@ -114,7 +114,7 @@ impl Sheet {
     }
 }
 
-/// A moment for people.
+/// A time as text.
 fn time_in_words(time: f64) -> String {
     if time.abs() < 0.9995 { format!("{:.0} ms", time * 1e3) } else { format!("{time:.2} s") }
 }

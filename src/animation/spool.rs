@@ -1,4 +1,4 @@
-//! Frames that are still being made, for animations of them meanwhile.
+//! Frames that are still being rendered, as the [`Reel`] of an animation that is written at the same time.
 
 use super::{AnimationError, Image, Reel};
 use crate::golden::{PictureError, Pixels};
@@ -9,11 +9,11 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Compressed frames in a file without a name, which goes with it. Who asks for a frame that is not there yet waits.
+/// Compressed frames in an unnamed temporary file. Reading a frame that does not exist yet blocks until it does.
 #[derive(Debug)]
 pub(crate) struct Spool {
     size: [u32; 2],
-    /// Where the file is, for messages.
+    /// The folder of the file, for messages.
     folder: PathBuf,
     kept: Mutex<Kept>,
     changed: Condvar,
@@ -22,14 +22,14 @@ pub(crate) struct Spool {
 #[derive(Debug)]
 struct Kept {
     file: File,
-    /// Where each frame begins in the file, and how long it is (bytes).
+    /// Offset and length of each frame in the file (bytes).
     places: HashMap<usize, (u64, usize)>,
     end: u64,
     ended: bool,
 }
 
 impl Spool {
-    /// For frames of a width and height (px), kept on the disk of a folder, which exists.
+    /// For frames of a width and height (px), stored in an existing folder.
     ///
     /// # Errors
     /// If nothing can be written there.
@@ -39,7 +39,7 @@ impl Spool {
         Ok(Self { size, folder: folder.to_owned(), kept: Mutex::new(kept), changed: Condvar::new() })
     }
 
-    /// Keeps a frame as a PNG file.
+    /// Stores a frame, which is a PNG file.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -54,7 +54,7 @@ impl Spool {
         Ok(())
     }
 
-    /// No more frames come: who still waits for one does so in vain.
+    /// Ends the sequence: readers of frames that do not exist get an error.
     pub(crate) fn end(&self) {
         self.lock().ended = true;
         self.changed.notify_all();

@@ -1,33 +1,33 @@
-//! When which frame is shown.
+//! The times at which frames are shown.
 
-/// A frame and how long it is shown.
+/// A frame and its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
     /// The number of the frame in its reel.
     pub frame: usize,
-    /// How long (s), more than 0.
+    /// Duration (s), more than 0.
     pub duration: f64,
 }
 
-/// Which frame is shown how long.
+/// The frames and their durations, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
     shots: Vec<Shot>,
-    /// Pictures a second, if somebody has chosen.
+    /// Pictures per second, if chosen by the user.
     rate: Option<f64>,
 }
 
-/// How long a frame is shown that is the only one (s).
+/// Duration of the only frame (s).
 const ALONE: f64 = 1.0;
-/// Videos that nobody has chosen a rate for have this many pictures a second at most: more than screens show.
+/// Greatest number of pictures per second of films without a chosen rate: screens show no more.
 const MOST_RATE: f64 = 60.0;
 
 impl Timeline {
-    /// Each frame until the next one's moment, the last one as long as the one before it; `moments` are numbers and times
-    /// (s) of frames, both rising.
+    /// Each frame is shown until the time of the next one, the last one as long as the one before it; `moments` are
+    /// numbers and times (s) of frames, both rising.
     ///
-    /// Frames are taken at the end of a step, so their times stray by up to a step around their numbers over the rate.
-    /// Where they do not stray further, that rate is taken.
+    /// Frames show the end of a step, so their times differ by up to a step from their number divided by the rate. If
+    /// they differ by no more, that rate is used.
     pub fn of(moments: &[(u64, f64)]) -> Self {
         let (Some(&(first, start)), Some(&(last, end))) = (moments.first(), moments.last()) else {
             return Self { shots: Vec::new(), rate: None };
@@ -48,25 +48,25 @@ impl Timeline {
         Self { shots, rate: None }
     }
 
-    /// The shots in their order.
+    /// The shots in order.
     pub fn shots(&self) -> &[Shot] {
         &self.shots
     }
 
-    /// How long it plays (s).
+    /// Total duration (s).
     pub fn duration(&self) -> f64 {
         self.shots.iter().map(|shot| shot.duration).sum()
     }
 
-    /// So many times as fast.
+    /// Faster by a factor.
     pub fn faster(mut self, times: f64) -> Self {
         self.shots.iter_mut().for_each(|shot| shot.duration /= times);
         self
     }
 
-    /// The same with a fixed number of pictures a second, each of which shows the frame of its moment.
+    /// With a fixed number of pictures per second, each of which is the frame at its time.
     pub fn at_rate(mut self, rate: f64) -> Self {
-        // Sums of thirds may end a hair beyond a whole number.
+        // Sums of thirds may be slightly above a whole number.
         let tick = |time: f64| (time * rate - 1e-6).ceil().max(0.0) as u64;
         let mut starts: Vec<(usize, u64)> = Vec::new();
         let mut time = 0.0;
@@ -85,7 +85,7 @@ impl Timeline {
         self
     }
 
-    /// The same with at most so many pictures a second: halved as often as it takes, so that what is left is evenly
+    /// With at most so many pictures per second: halved as often as needed, so that the remaining ones are evenly
     /// spaced.
     pub(super) fn at_most(&self, most: f64) -> Self {
         let own = self.own_rate();
@@ -96,12 +96,12 @@ impl Timeline {
         if rate < own { self.clone().at_rate(rate) } else { self.clone() }
     }
 
-    /// The same for a film: as many pictures a second as screens show, unless somebody has chosen more.
+    /// For a film: with at most as many pictures per second as screens show, unless the user has chosen more.
     pub(super) fn for_screens(&self) -> Self {
         if self.rate.is_some() { self.clone() } else { self.at_most(MOST_RATE) }
     }
 
-    /// At most so many shots, evenly spread, of which the first and the last stay: stills for a sheet.
+    /// At most so many shots, evenly spaced, including the first and the last: stills for a sheet.
     pub fn stills(mut self, most: usize) -> Self {
         let last = self.shots.len().saturating_sub(1);
         if last >= most {
@@ -111,7 +111,7 @@ impl Timeline {
         self
     }
 
-    /// The last frame longer by so much (s).
+    /// With the last frame longer by `time` (s).
     pub fn holding(mut self, time: f64) -> Self {
         if let Some(last) = self.shots.last_mut() {
             last.duration += time;
@@ -119,7 +119,7 @@ impl Timeline {
         self
     }
 
-    /// There and back: neither the last frame nor the first is shown twice in a row when it is played again.
+    /// Forwards and backwards. Neither the last frame nor the first is shown twice in a row when it repeats.
     pub fn there_and_back(mut self) -> Self {
         let inner = 1..self.shots.len().saturating_sub(1).max(1);
         let back: Vec<_> = self.shots[inner.start.min(self.shots.len())..inner.end.min(self.shots.len())]
@@ -131,24 +131,25 @@ impl Timeline {
         self
     }
 
-    /// Pictures a second of the shortest shot.
+    /// The rate at which the shortest shot is one picture.
     fn own_rate(&self) -> f64 {
         let shortest = self.shots.iter().map(|shot| shot.duration).fold(f64::INFINITY, f64::min);
         self.rate.unwrap_or(1.0 / shortest)
     }
 
-    /// Pictures a second with which every frame can be shown at its time, as numerator and denominator.
+    /// Pictures per second at which every frame can be shown at its time, as numerator and denominator.
     pub(super) fn rate(&self) -> [u32; 2] {
         fraction(self.own_rate(), 1 << 20)
     }
 
-    /// The shots in whole ticks of a clock, `rate` a second, each `least` at least: every one begins at the tick nearest
-    /// to its time, so errors do not add up. What would be shown more shortly is left out, but never the last one.
+    /// The shots in whole ticks of a clock with `rate` ticks per second, each at least `least` ticks. Every shot begins
+    /// at the tick nearest to its time, so errors do not add up. Shots that would be shorter are omitted, but never the
+    /// last one.
     pub(super) fn ticks(&self, rate: f64, least: u64) -> Vec<(usize, u64)> {
         let mut starts: Vec<(usize, u64)> = Vec::new();
         let mut time = 0.0;
         for (at, shot) in self.shots.iter().enumerate() {
-            // Sums of thirds may end a hair below a half.
+            // Sums of thirds may be slightly below a half.
             let start = (time * rate + 1e-6).round() as u64;
             match starts.last_mut() {
                 Some((frame, before)) if start < *before + least => {
@@ -166,20 +167,20 @@ impl Timeline {
     }
 }
 
-/// Pictures a second that people choose.
+/// Common rates (pictures per second).
 const USUAL: [f64; 10] = [60.0, 30.0, 50.0, 25.0, 100.0, 120.0, 24.0, 20.0, 15.0, 10.0];
-/// How far the ends of steps are taken to stray from the moments of frames, in parts of the time between two frames.
+/// Greatest difference between the end of a step and the time of its frame, relative to the time between two frames.
 const STRAY: f64 = 0.15;
 
-/// The rate that was meant by one measured over `count` frames: a usual one or a whole number, if it may be that.
+/// The intended rate for one measured over `count` frames: a common one or a whole number, if it is near enough.
 fn likely_rate(rate: f64, count: u64) -> f64 {
     let is_near = |other: &f64| (rate - other).abs() <= STRAY / count as f64 * other;
     let mut candidates = USUAL.into_iter().chain([rate.round()]).filter(|candidate| *candidate >= 1.0);
     candidates.find(is_near).unwrap_or(rate)
 }
 
-/// The simplest fraction that is a number to within a billionth of it, or the nearest with numerator and denominator up
-/// to `most`.
+/// The simplest fraction within a relative error of 1e-9 of a number, or the nearest one with numerator and denominator
+/// up to `most`.
 pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
     let (mut before, mut here) = ([0.0, 1.0], [1.0, 0.0]);
     let mut rest = number;
@@ -195,7 +196,7 @@ pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
         }
         rest = 1.0 / (rest - whole);
     }
-    // A number beyond all such fractions.
+    // A number above all such fractions.
     if here[1] == 0.0 { [most, 1] } else { here.map(|part| part as u32) }
 }
 

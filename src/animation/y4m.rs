@@ -1,5 +1,5 @@
-//! YUV4MPEG2: a line of text, and then every picture as planes of brightness and two differences of colour, without
-//! compression. Colours are those of ITU-R BT.709, 16 to 235, one sample for each pixel.
+//! YUV4MPEG2: a header line, then every picture as uncompressed planes of luma and two chroma differences, by ITU-R
+//! BT.709 in limited range, with one sample for each pixel.
 
 use super::order::in_order;
 use super::{Animation, AnimationError, Image, Written};
@@ -10,7 +10,8 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let [rate, of] = animation.timeline.rate();
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = animation.timeline.ticks(rate_each, 1);
-    // Readers take a header of some 90 bytes: room for its beginning, which says what made it. A parameter ends at a blank.
+    // Readers accept headers of about 90 bytes, so only the beginning of the comment is used. Parameters end at a
+    // blank.
     let beginning = animation.comment.split(';').next().unwrap_or_default();
     let comment = beginning.replace(|character: char| !character.is_ascii_graphic(), "_");
     let header = format!("YUV4MPEG2 W{width} H{height} F{rate}:{of} Ip C444 XCOLORRANGE=LIMITED X{comment}\n");
@@ -27,7 +28,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     Ok(Written { pictures, duration: pictures as f64 / rate_each, size: [width, height] })
 }
 
-/// Brightness of all pixels, then how blue and how red they are, by BT.709.
+/// Luma of all pixels, then Cb and Cr, by BT.709.
 fn planes(image: &Image) -> Vec<u8> {
     const SHARES: [f32; 3] = [0.2126, 0.7152, 0.0722];
     let all = image.pixels.len() / 3;

@@ -118,7 +118,7 @@ impl FigureCommand {
         result
     }
 
-    /// Gives a figure the size and the colours that are asked for.
+    /// Sets the requested size and colours of a figure.
     fn fit(&self, figure: &mut Figure) -> Result<(), Failure> {
         figure.size = self.size.unwrap_or(figure.size);
         if let Some(times) = self.scale {
@@ -161,7 +161,7 @@ impl FigureCommand {
         Ok(Some(numbers(figure, &moments)))
     }
 
-    /// All figures that are asked for, each once.
+    /// All requested figures, each once.
     fn load(&self) -> Result<Vec<Figure>, Failure> {
         let mut figures: Vec<(Figure, PathBuf)> = Vec::new();
         for asked in &self.figures {

@@ -1,4 +1,4 @@
-//! Files of animations: what is told of them, and which may be replaced.
+//! Animation files: messages about them, and which may be replaced.
 
 use super::failure::{Failure, Status, with_causes};
 use crate::animation::{AnimationError, Written};

@@ -27,9 +27,9 @@ use std::time::Duration;
 pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
-    /// The diagnostic, if there is one, whose course over the whole scene they need to know before the first frame.
+    /// The diagnostic, if there is one, whose time series over the whole scene is needed before the first frame.
     fn course(&self) -> Option<Diagnostic>;
-    /// Takes note of the scene's course.
+    /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
@@ -199,7 +199,7 @@ impl Recording<'_> {
     }
 
     /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field, and
-    /// some of them its course before the first frame.
+    /// some of them its time series before the first frame.
     fn simulate<'p>(
         &mut self,
         pool: &ThreadPool,
@@ -250,7 +250,7 @@ impl Recording<'_> {
 }
 
 /// Steps of each run after which the user is listened to: some milliseconds' worth, at some 2 ns for each corner of an
-/// element, and ten times that by the plain code. A frame seldom takes more.
+/// element, and ten times that with the reference code. A frame seldom takes more.
 pub(super) fn slice(body: &Body) -> u64 {
     const CORNERS: usize = 2_500_000;
     (CORNERS / body.elements.indices().len().max(1)).max(1) as u64

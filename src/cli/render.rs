@@ -238,7 +238,7 @@ impl<'a> Films<'a> {
     }
 }
 
-/// However it ends, nobody waits for frames that do not come.
+/// Ends the sequence in any case, so that no reader blocks.
 impl Drop for Films<'_> {
     fn drop(&mut self) {
         self.spool.end();
@@ -290,7 +290,7 @@ struct Drawing<'a> {
 impl Pictures for Drawing<'_> {
     fn describe(&self, summary: &mut Summary) {
         summary.adapter = Some(self.adapter.clone());
-        // Frames that nobody keeps are as good as simulated.
+        // Frames that are not kept count as simulated only.
         if self.keep {
             summary.frames.size = Some(self.scene.view.size);
             summary.frames.samples = Some(self.samples);

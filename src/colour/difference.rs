@@ -45,7 +45,7 @@ impl Vision {
     }
 }
 
-/// Linear light as somebody sees it, simulated by each of two models of colour blindness: Machado 2009 and Viénot 1999.
+/// Linear light as perceived with a colour vision, by two models of colour blindness: Machado 2009 and Viénot 1999.
 pub(crate) fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
     match vision {
@@ -55,14 +55,14 @@ pub(crate) fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     }
 }
 
-/// The difference of two colours to somebody: the smaller CIEDE2000 of both models of that vision. A difference of about 1
-/// is just noticeable between colours that touch; colours that differ by 20 are not confused.
+/// The difference of two colours for a colour vision: the smaller CIEDE2000 of both models. A difference of about 1 is
+/// just noticeable between adjacent colours; colours that differ by 20 are not confused.
 pub(crate) fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
     let [one, other] = [one, other].map(|colour| seen_by(vision, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
 }
 
-/// The smallest difference of two colours to anybody (CIEDE2000).
+/// The smallest difference of two colours for any colour vision (CIEDE2000).
 pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
     Vision::ALL.into_iter().map(|vision| difference(one, other, vision)).fold(f64::INFINITY, f64::min)
 }

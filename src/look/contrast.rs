@@ -9,7 +9,7 @@ use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Vision, contrast, dif
 use crate::reading::report::{Report, Way};
 use std::fmt;
 
-/// The least difference of turned-over elements from sound ones, to anybody (CIEDE2000).
+/// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// The look, or `None` if there is a mistake in it.
@@ -96,7 +96,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     }
 }
 
-/// Checks the difference of turned-over elements from sound ones.
+/// Checks the difference of turned-over elements from others.
 fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
     let (key, other) = match (typed.turned_over, typed.body) {
         (Some(_), _) => ("turned_over", "the body's"),
@@ -126,7 +126,7 @@ fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut R
     report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 
-/// A colour that somebody may take for that of turned-over elements.
+/// A colour that may be mistaken for that of turned-over elements.
 struct TooLike<T> {
     colour: Colour,
     /// Where it is used.
@@ -136,7 +136,8 @@ struct TooLike<T> {
 }
 
 impl<T: Copy> TooLike<T> {
-    /// The colour that is most like that of turned-over elements to anybody; `None` if all are different enough.
+    /// The colour that is most similar to that of turned-over elements for any colour vision; `None` if all are
+    /// different enough.
     fn find(colours: impl IntoIterator<Item = (Colour, T)>, alarm: Colour) -> Option<Self> {
         let seen = colours.into_iter().flat_map(|(colour, place)| Vision::ALL.map(|vision| (colour, place, vision)));
         let measured = seen.map(|(colour, place, vision)| {

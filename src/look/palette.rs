@@ -30,9 +30,9 @@ pub(crate) struct Palette {
     pub shadow: Colour,
     /// How far it goes there for full shadow of the key light and of the sky.
     pub shadow_strength: [f32; 2],
-    /// A sound element in space, before light falls on it.
+    /// An element in space that is not turned over, before lighting.
     pub sound: Colour,
-    /// A sound element in the plane.
+    /// An element in the plane that is not turned over.
     pub sound_flat: Colour,
     /// A node in the plane.
     pub node: Colour,
@@ -44,7 +44,7 @@ pub(crate) struct Palette {
     pub alarm_text: Colour,
     /// Signs of turned-over elements, which stand on white in any theme.
     pub alarm_on_white: Colour,
-    /// Edges of sound elements, and steps of depth inside a body.
+    /// Edges of elements that are not turned over, and steps of depth inside a body.
     pub edge: Colour,
     /// The outline of a body.
     pub outline: Colour,
@@ -72,7 +72,7 @@ pub(crate) struct Palette {
     pub axis: Colour,
     /// Lines between panels.
     pub hairline: Colour,
-    /// A square of the tally for a sound element.
+    /// A square of the tally for an element that is not turned over.
     pub tally: Colour,
     /// A spring on the ground.
     pub spring: Colour,
@@ -93,7 +93,8 @@ impl Palette {
         }
     }
 
-    /// Signs on sound elements in the plane: their edges' colour, a third of the way to the elements' own.
+    /// Signs on elements in the plane that are not turned over: their edges' colour, a third of the way to the
+    /// elements' own.
     pub(crate) fn sign(&self) -> Colour {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }
@@ -237,7 +238,7 @@ mod tests {
         0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]
     }
 
-    /// A turned-over element at a depth behind a sound one, from 0 to 1, as `shaders/surface.wgsl` mixes it.
+    /// A turned-over element at a depth behind another one, from 0 to 1, as `shaders/surface.wgsl` mixes it.
     fn through(sound: [f64; 3], alarm: [f64; 3], light: [f64; 3], deep: f64) -> [f64; 3] {
         let colour: [f64; 3] = std::array::from_fn(|at| sound[at] * light[at]);
         let grey = brightness(colour);
@@ -250,7 +251,7 @@ mod tests {
         })
     }
 
-    /// The smallest difference of two colours to anybody who does not see as most do.
+    /// The smallest difference of two colours for any colour-blind vision.
     fn apart(one: [f64; 3], other: [f64; 3], measure: fn(Lab, Lab) -> f64) -> f64 {
         let [one, other] = [one, other].map(|light| linear(encoded(light)));
         let visions = [Vision::Normal, Vision::Deuteranopia, Vision::Protanopia];

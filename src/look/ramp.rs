@@ -26,8 +26,8 @@ const POINTS: [[f64; 3]; 9] = [
     [0.3850, -0.0087, -0.1247],
 ];
 
-/// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong, of
-/// hues that are told apart by all eyes; the middle is grey, and nearer to the ground than they are.
+/// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong,
+/// with hues that differ for any colour vision; the middle is grey, and nearer to the background than they are.
 const DIVERGING: [[[f64; 3]; 3]; 2] = [
     [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
     [[0.7200, 0.0900, -0.1300], [0.4600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],

@@ -151,7 +151,7 @@ fn colour(typed: &ColourFile, scene: &Subject<'_>, report: &mut Report<'_>) -> O
     Some(ColourScale { field: typed.by, range, map: typed.map })
 }
 
-/// The ends of a scale, if they rise and are far enough apart to be told from each other.
+/// The ends of a scale, if they rise and differ enough.
 fn rising([low, high]: [f64; 2], way: &[Way<'_>; 3], report: &mut Report<'_>) -> Option<[f64; 2]> {
     let keys = way.iter().filter_map(|step| if let Way::Key(key) = step { Some(*key) } else { None });
     let name = keys.collect::<Vec<_>>().join(".");

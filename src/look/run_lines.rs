@@ -3,10 +3,10 @@
 use super::palette::Palette;
 use crate::colour::{Colour, LINE_CONTRAST, least_difference, readable};
 
-/// The least difference of the colours of two runs, to anybody (CIEDE2000).
+/// The least difference of the colours of two runs, for any colour vision (CIEDE2000).
 const RUNS_APART: f64 = 15.0;
-/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They tell
-/// runs apart where colours do not: in grey print, and where there are more runs than colours.
+/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They
+/// distinguish runs where colours do not: in greyscale print, and where there are more runs than colours.
 const DASHES: [&[f64]; 8] = [
     &[],
     &[7.0, 4.0],

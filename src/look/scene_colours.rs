@@ -13,7 +13,7 @@ const DARK_ALARM: f64 = 0.48;
 const LIGHTER_HATCH: f64 = 0.36;
 
 impl Palette {
-    /// The theme whose text can be read on a background: the one asked for, or else the better one.
+    /// The theme whose text is legible on a background: the requested one, or else the better one.
     pub(crate) fn theme_on(background: Option<Colour>, theme: Theme) -> Theme {
         let Some(ground) = background else { return theme };
         let other = if theme == Theme::Light { Theme::Dark } else { Theme::Light };

@@ -45,7 +45,7 @@ pub struct View {
     pub legend: bool,
     /// The diagnostic that is drawn over time below each panel.
     pub strip: Option<Diagnostic>,
-    /// Opacity of sound elements, from 0.1 to 1.
+    /// Opacity of elements that are not turned over, from 0.1 to 1.
     pub opacity: f64,
     /// How far elements are drawn apart, in parts of their distance from the body's middle; 0 leaves them together.
     pub explode: f64,
@@ -59,7 +59,7 @@ pub struct View {
     pub floor: FloorStyle,
     /// Whether edges in front, and edges behind the body, are drawn.
     pub edges: [bool; 2],
-    /// Whether the outlines of sound elements and of solid obstacles are drawn.
+    /// Whether the outlines of solid obstacles and of elements that are not turned over are drawn.
     pub outline: bool,
     /// Whether turned-over elements are hatched, besides having a colour of their own.
     pub hatch: bool,
@@ -211,7 +211,7 @@ pub enum ColourMap {
 /// The appearance of a picture apart from its content: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// What the colours come from: the theme asked for, unless its text could not be read on the background.
+    /// The theme of the colours: the requested one, unless its text would be illegible on the background.
     pub theme: Theme,
     /// All colours.
     pub(crate) palette: Palette,

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Files that are written completely or not at all.
 
 use super::OutputError;
 use std::fs::{self, File};
@@ -9,7 +9,7 @@ use tempfile::NamedTempFile;
 const PREFIX: &str = ".localshape-";
 const SUFFIX: &str = ".partial";
 
-/// A file under a hidden name until [`Self::commit`] gives it its own. Dropped before that, it leaves nothing.
+/// A file with a hidden name until [`Self::commit`] renames it. If it is dropped before that, it is removed.
 #[derive(Debug)]
 pub(crate) struct AtomicFile {
     path: PathBuf,
@@ -17,25 +17,25 @@ pub(crate) struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins the file `path`, whose folder exists. Where the folder is not locked ([`super::FolderLock`]), others may take
-    /// it for a leftover.
+    /// Creates the file for `path`, whose folder exists. If the folder is not locked ([`super::FolderLock`]), another
+    /// process may remove it as a leftover.
     ///
     /// # Errors
     /// If the folder cannot be written to.
     pub(crate) fn create(path: &Path) -> Result<Self, OutputError> {
         let folder = folder_of(path);
-        // Made by the standard library, results are as open to others as any file; tempfile's own are their owner's.
+        // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
         let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
         Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
     }
 
-    /// The name that the file will have.
+    /// The final name of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The name that it has until then, for programs that write it themselves.
+    /// The hidden name, for programs that write the file themselves.
     #[cfg(feature = "render")]
     pub(crate) fn hidden_path(&self) -> &Path {
         self.temporary.path()
@@ -54,14 +54,14 @@ impl AtomicFile {
         self.temporary.as_file_mut().write_all(bytes).map_err(OutputError::writing(&self.path))
     }
 
-    /// Gives the file its own name, in place of what had that name before, once the disk has its contents: so a name
-    /// never stands for less than the whole, even when the power fails.
+    /// Renames the file to its final name, replacing an earlier file, after its contents are synced to the disk. So the
+    /// final name always has complete contents, even after a power failure.
     ///
-    /// Waiting for the disk took 4 ms for a file of 300 kB (median of 100). For frames it is done by the threads that
-    /// compress them, while others are drawn: rendering took as long as without.
+    /// The sync took 4 ms for a file of 300 kB (median of 100). For frames it is done by the threads that compress
+    /// them, while others are drawn: rendering took as long as without.
     ///
     /// # Errors
-    /// If it cannot be written or renamed; then it is removed.
+    /// If it cannot be written or renamed; it is then removed.
     pub(crate) fn commit(self) -> Result<(), OutputError> {
         let Self { path, temporary } = self;
         temporary.as_file().sync_data().map_err(OutputError::writing(&path))?;
@@ -73,14 +73,15 @@ impl AtomicFile {
 /// Writes a whole file at once.
 ///
 /// # Errors
-/// If it cannot be written; then an earlier file of that name is as it was.
+/// If it cannot be written; an earlier file of that name is then unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let mut file = AtomicFile::create(path)?;
     file.append(bytes)?;
     file.commit()
 }
 
-/// Removes what programs have left unfinished in a folder; nothing else. Nobody else may be writing in it.
+/// Removes the files that killed processes left unfinished in a folder, and nothing else. No other process may be
+/// writing there.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
@@ -95,7 +96,7 @@ pub(super) fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
     Ok(())
 }
 
-/// Removes a file, or finds it gone already.
+/// Removes a file; succeeds if it does not exist.
 pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError::writing(path)(error)),
@@ -103,7 +104,7 @@ pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// The folder that a file is in.
+/// The folder of a file.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

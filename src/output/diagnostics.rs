@@ -9,17 +9,17 @@ use std::path::Path;
 /// The name of the file in its folder.
 pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 
-/// Writes the diagnostics of frames as they come. The file appears with [`Self::finish`].
+/// Writes the diagnostics of frames, one after the other. The file gets its name in [`Self::finish`].
 #[derive(Debug)]
 pub(crate) struct DiagnosticsWriter {
     file: AtomicFile,
     names: Vec<String>,
-    /// Length of the rows that were written whole (bytes).
+    /// Length of the completely written rows (bytes).
     length: u64,
 }
 
 impl DiagnosticsWriter {
-    /// Begins the file in `folder`.
+    /// Creates the file in `folder`.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -47,7 +47,8 @@ impl DiagnosticsWriter {
         Ok(())
     }
 
-    /// Gives the file its name. Also after a failed [`Self::write`]: then it ends with the last whole frame.
+    /// Renames the file to its final name. Also after a failed [`Self::write`]: the file then ends with the last
+    /// complete frame.
     ///
     /// # Errors
     /// If it cannot be renamed.
@@ -58,7 +59,7 @@ impl DiagnosticsWriter {
     }
 }
 
-/// The cells of a row, each with the head of its column; `docs/files.md` says what they mean.
+/// The cells of a row, each with the heading of its column; `docs/files.md` explains them.
 fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> Vec<(String, String)> {
     let status = match snapshot.status {
         Status::Ok => "ok",
@@ -82,7 +83,7 @@ fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> Vec<(String, String)> {
     cells
 }
 
-/// Rows as text, with quotation marks where a name needs them.
+/// Rows as CSV, quoted where necessary.
 fn rows(rows: impl IntoIterator<Item = impl Iterator<Item = String>>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {

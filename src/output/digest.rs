@@ -1,4 +1,4 @@
-//! Digests that tell whether two states are the same, bit for bit.
+//! Digests by which states are compared bit for bit.
 
 use crate::sim::snapshot::Snapshot;
 use sha2::{Digest, Sha256};
@@ -34,7 +34,7 @@ mod tests {
         other.velocity[0].z = -0.0;
         assert_eq!(state_digest(&one), state_digest(&one.clone()));
         assert_ne!(state_digest(&one), state_digest(&other));
-        // The digest of nothing is a constant of SHA-256.
+        // The SHA-256 digest of empty input.
         assert!(state_digest(&Snapshot::default()).starts_with("e3b0c44298fc1c14"));
     }
 }

@@ -1,10 +1,10 @@
-//! What can go wrong with files.
+//! Errors of reading and writing files.
 
 use std::fs::{self, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A file or folder that could not be read, written or used. The cause, where there is one, is its source.
+/// A file or folder that could not be read, written or used. The source is the cause, if there is one.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// Something could not be written.
@@ -12,7 +12,7 @@ pub enum OutputError {
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// Something could not be read.
@@ -20,44 +20,44 @@ pub enum OutputError {
     Read {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
-    /// Somebody else writes in the folder.
+    /// Another process writes to the folder.
     #[error("{} is in use: {what}; wait until that has ended, or choose another folder with -o", path.display())]
     InUse {
         /// The folder.
         path: PathBuf,
-        /// Who does what there.
+        /// The other process and what it does.
         what: Box<str>,
     },
-    /// What was named as a folder is none.
+    /// The path of a folder has something that is not a folder.
     #[error("{} is {what}, not a folder; choose another folder with -o", path.display())]
     NoFolder {
-        /// Where it is.
+        /// The path.
         path: PathBuf,
         /// What it is.
         what: &'static str,
     },
-    /// Something that is no file has the name of one of ours.
+    /// The path of an output file has something that is not a file.
     #[error("{} is {what}, not a file; move it away, or choose another folder with -o", path.display())]
     NoFile {
-        /// Where it is.
+        /// The path.
         path: PathBuf,
         /// What it is.
         what: &'static str,
     },
-    /// The folder holds files that belong to something else.
+    /// The folder has files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
     Occupied {
         /// The folder.
         path: PathBuf,
-        /// What is in the way.
+        /// These files.
         what: String,
     },
 }
 
-/// What a full disk means for the files made so far.
+/// An addition to the message if the disk is full.
 fn hint(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
@@ -67,7 +67,7 @@ fn hint(source: &io::Error) -> &'static str {
     }
 }
 
-/// What is at a path, in words.
+/// The kind of what is at a path, for messages.
 pub(super) fn kind_of(found: &Metadata) -> &'static str {
     #[cfg(unix)]
     {
@@ -83,10 +83,10 @@ pub(super) fn kind_of(found: &Metadata) -> &'static str {
     }
 }
 
-/// Whether a folder is there. If not, it can be made as far as names go.
+/// Whether a folder exists. If not, nothing at its path prevents its creation.
 ///
 /// # Errors
-/// If it, or a folder above it, is something else.
+/// If the path, or a part of it, is something else than a folder.
 pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
     let nearest = path.ancestors().find_map(|above| Some((above, fs::metadata(above).ok()?)));
     match nearest {
@@ -98,7 +98,7 @@ pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
     }
 }
 
-/// Reads a whole file; `None` if there is none, or something else: to open a pipe would be to wait for ever.
+/// Reads a whole file; `None` if there is none, or if it is not a file: opening a pipe would block.
 ///
 /// # Errors
 /// If it cannot be read.

@@ -1,4 +1,4 @@
-//! Whose folder it is: frames of different scenes never mix, and files of others are never removed.
+//! Ownership of output folders: frames of different scenes are never mixed, and files of other programs never removed.
 
 use super::atomic::remove;
 use super::error::kind_of;
@@ -12,16 +12,16 @@ pub(crate) fn frame_file_name(index: u64) -> String {
     format!("frame_{index:05}.png")
 }
 
-/// The names of all frames as a pattern, for `run.json`.
+/// The pattern of all frame names, for `run.json`.
 pub(crate) const FRAME_FILES: &str = "frame_*.png";
 
-/// The number of the frame whose name a file has.
+/// The frame number from a file name.
 fn frame_number(name: &str) -> Option<u64> {
     let index = name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()?;
     (frame_file_name(index) == name).then_some(index)
 }
 
-/// The numbers and paths of all frames in a folder by their names, rising.
+/// The numbers and paths of all frames in a folder, by their names, sorted.
 ///
 /// # Errors
 /// If the folder cannot be read.
@@ -37,7 +37,7 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
     Ok(frames)
 }
 
-/// What frames must have in common to be one sequence.
+/// What all frames of a sequence must have in common.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Look {
     /// Width and height (px).
@@ -46,18 +46,18 @@ pub(crate) struct Look {
     pub runs: Vec<String>,
 }
 
-/// What may be replaced in a folder besides the files of the same scene.
+/// Which files in a folder may be replaced, in addition to those of the same scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Replace {
-    /// Nothing.
+    /// None.
     Nothing,
-    /// What earlier versions of the same scene file made.
+    /// Those of earlier versions of the same scene file.
     Earlier,
-    /// All that has the names of our files.
+    /// All that have the names of output files.
     All,
 }
 
-/// A folder for the output of one scene, looked at but not yet touched.
+/// A folder for the output of one scene, inspected but not yet changed.
 #[derive(Debug)]
 pub(crate) struct Folder {
     path: PathBuf,
@@ -68,7 +68,7 @@ pub(crate) struct Folder {
     earlier: Option<String>,
 }
 
-/// What tells the results of one scene from those of others.
+/// Identifies the scene to which results belong.
 #[derive(Debug)]
 struct Whose {
     digest: String,
@@ -77,16 +77,16 @@ struct Whose {
 }
 
 impl Folder {
-    /// Looks at what is in a folder, which need not exist, before it is used for `scene`.
+    /// Inspects a folder, which need not exist, before it is used for `scene`.
     ///
-    /// A folder with files of another scene, or with files of others under the names of ours, is refused, unless these
-    /// are what may be replaced. What has a name of ours and is no file, such as a folder, is refused in any case.
-    /// Files of the same scene are fine: they are replaced one by one, and its other frames stay, so that
-    /// a scene can be drawn in parts. But if frames are to be drawn, those that are there must have the same `look`,
-    /// or the folder would hold no sequence. A folder that another program writes in is refused in any case.
+    /// A folder with results of another scene, or with other files that have the names of output files, is refused
+    /// unless `replace` permits their replacement. Something that has such a name but is not a file, such as a folder,
+    /// is always refused. Results of the same scene are allowed: they are replaced one by one, and its other frames are
+    /// kept, so that a scene can be drawn in parts. But if frames are to be drawn, the existing ones must have the same
+    /// `look`, so that the folder has one sequence. A folder to which another process writes is always refused.
     ///
     /// # Errors
-    /// If the folder cannot be read, is refused or is none.
+    /// If the folder cannot be read, is refused or is not a folder.
     pub(crate) fn inspect(
         path: &Path,
         scene: &Scene,
@@ -102,7 +102,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// What is in the folder, unless it is in the way.
+    /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
         let found = Found::in_folder(&self.path, &self.scene, self.look.as_ref())?;
         match found.describe(self.replace == Replace::Earlier) {
@@ -111,7 +111,7 @@ impl Folder {
         }
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -122,18 +122,17 @@ impl Folder {
         self.earlier.as_deref()
     }
 
-    /// Makes the folder if there is none, locks it, and removes leftovers of killed programs and the files of another
-    /// scene. Unless `states` are written anew, earlier ones go, too: they would not be those of the diagnostics
-    /// beside them.
+    /// Creates the folder if necessary, locks it, and removes leftovers of killed processes and the results of another
+    /// scene. Unless new `states` are written, earlier ones are removed, too, as they would not match the diagnostics.
     ///
     /// # Errors
-    /// If the folder cannot be made or written to; or as [`Self::inspect`], for only now nobody else can change what is
-    /// there.
+    /// If the folder cannot be created or written to; and the errors of [`Self::inspect`], which is repeated because
+    /// the folder may have changed before it was locked.
     pub(crate) fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone(&self.path)?;
         let found = self.find()?;
-        // The summary goes last: until then it says whose all the others are.
+        // The summary is removed last: until then it identifies the owner of the other files.
         let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
         for path in stale.iter().chain(found.states.iter().filter(|_| !states)) {
             remove(path)?;
@@ -142,7 +141,7 @@ impl Folder {
     }
 }
 
-/// A folder in which nobody else writes until this is dropped.
+/// A locked folder: no other process writes to it until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Claimed {
     path: PathBuf,
@@ -150,7 +149,7 @@ pub(crate) struct Claimed {
 }
 
 impl Claimed {
-    /// Where it is.
+    /// The path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -164,41 +163,41 @@ impl Look {
     }
 }
 
-/// What is in the way in a folder.
+/// Existing results in a folder.
 #[derive(Debug, Default)]
 struct Found {
     /// Frames of another scene.
     frames: Vec<PathBuf>,
-    /// Frames of this scene that cannot stand beside new ones.
+    /// Frames of this scene that do not match new ones.
     unlike: Vec<PathBuf>,
-    /// What one of these is, in words.
+    /// The look of one of these, in words.
     unlike_look: String,
     /// Diagnostics, states and summary of another scene.
     records: Vec<PathBuf>,
-    /// Frames that an earlier version of this scene's file made.
+    /// Frames that were made with an earlier version of this scene's file.
     earlier_frames: Vec<PathBuf>,
-    /// Its diagnostics, states and summary.
+    /// Diagnostics, states and summary made with it.
     earlier_records: Vec<PathBuf>,
     /// The name of that file.
     file: String,
     /// States of this scene.
     states: Option<PathBuf>,
-    /// That other scene, if its summary is there.
+    /// That other scene, if its summary exists.
     other: Option<Owner>,
     /// Title of this scene.
     title: String,
-    /// Names of ours that files of others have.
+    /// Names of output files that other programs' files have.
     foreign: Vec<String>,
 }
 
 impl Found {
     fn in_folder(path: &Path, scene: &Whose, look: Option<&Look>) -> Result<Self, OutputError> {
-        // Scenes made in code have no digest, and so nothing tells them apart.
+        // Scenes with models made in code have no digest, so their own results are not recognised.
         let is_own = |digest: &str| !digest.is_empty() && digest == scene.digest;
         let name = scene.file.as_ref().and_then(|file| Some(file.file_name()?.to_string_lossy().into_owned()));
         let mut found = Self { title: scene.title.clone(), file: name.unwrap_or_default(), ..Self::default() };
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
-        // Whoever moves a project moves its scenes and their output.
+        // A scene file that was moved together with its output is still the same.
         let is_same_file = |owner: &Owner| {
             let moved = owner.relative_file.as_ref().and_then(|file| path.join(file).canonicalize().ok());
             let files = [owner.file.as_ref().map(PathBuf::from), moved];
@@ -217,7 +216,7 @@ impl Found {
             match fs::metadata(&path) {
                 Ok(kind) if !kind.is_file() => return Err(OutputError::NoFile { path, what: kind_of(&kind) }),
                 Ok(_) => {}
-                // A link to nothing can be replaced as any file.
+                // A dangling link can be replaced like a file.
                 Err(_) if path.is_symlink() => {
                     found.foreign.push(name.to_owned());
                     continue;
@@ -254,14 +253,14 @@ impl Found {
             }
         }
         found.foreign.sort_unstable();
-        // The summary last, see `inspect`.
+        // The summary last, see `prepare`.
         found.records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
         found.earlier_records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
         found.other = owner.filter(|owner| !is_own(&owner.digest));
         Ok(found)
     }
 
-    /// What an earlier version of the scene's file made, in words.
+    /// What was made with an earlier version of the scene's file, in words.
     fn earlier(&self) -> Option<String> {
         let what = match (self.earlier_frames.len(), self.earlier_records.is_empty()) {
             (0, true) => return None,
@@ -272,12 +271,13 @@ impl Found {
         Some(format!("{what} made by an earlier version of {}", self.file))
     }
 
-    /// What is in the way, in words; `None` if nothing is, or only what an earlier version made and that may go.
+    /// What prevents the use of the folder, in words; `None` if nothing does, or only what an earlier version made and
+    /// may be replaced.
     fn describe(&self, may_replace_earlier: bool) -> Option<String> {
         let another = match &self.other {
             None => "another scene".to_owned(),
             Some(Owner { title, file: Some(file), .. }) => format!("another scene (“{title}”, {file})"),
-            // Summaries of earlier versions of this program name no file.
+            // Summaries of earlier versions of this program have no file name.
             Some(Owner { title, .. }) if *title == self.title => {
                 format!("another scene, or an earlier version of this one (“{title}”)")
             }
@@ -311,7 +311,7 @@ struct Owner {
 }
 
 impl Owner {
-    /// Reads it from `run.json`; `None` if there is none or it is not one of ours.
+    /// Reads it from `run.json`; `None` if there is none or another program wrote it.
     fn read(path: &Path) -> Result<Option<Self>, OutputError> {
         let Some(bytes) = read_file(path)? else { return Ok(None) };
         let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
@@ -331,7 +331,7 @@ mod tests {
     use crate::sim::model::shape_based::ShapeBased;
     use std::sync::Arc;
 
-    /// They have no digest that could tell them apart.
+    /// They have no digest by which they could be compared.
     #[test]
     fn scenes_with_models_of_their_own_are_never_taken_for_each_other() {
         let scene = |title: &str, side: f64| {

@@ -1,4 +1,4 @@
-//! Compressing and writing frames on threads of their own, so that drawing need not wait.
+//! Compresses and writes frames on separate threads, in parallel to drawing.
 
 use super::{Clock, Compression, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
@@ -15,27 +15,27 @@ pub(crate) struct PixelFrame {
     pub pixels: Vec<u8>,
     /// The number of the frame.
     pub frame: u64,
-    /// What it says about itself.
+    /// The text chunks of the file.
     pub tags: Tags,
 }
 
-/// Who is handed the files of frames besides the disk: their numbers and bytes, in any order.
+/// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
 pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
 
-/// Threads that compress and write frames, as many as are needed to keep up, up to a bound. When all of them are behind,
-/// [`Self::write`] waits, so memory is bounded.
+/// Threads that compress and write frames, started as needed, up to a bound. Memory is bounded: while all threads are
+/// busy, [`Self::write`] blocks.
 pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
     folder: Option<PathBuf>,
     tap: Option<Tap>,
-    /// How many threads there may be.
+    /// Greatest number of threads.
     most: usize,
     threads: Vec<JoinHandle<Written>>,
     written: Written,
 }
 
-/// What was written, by one thread or all.
+/// The result of one thread or of all.
 #[derive(Debug, Default)]
 struct Written {
     frames: usize,
@@ -44,10 +44,10 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// A writer with up to `most` threads (at least one) that write into `folder`, which exists, and pass each file to `tap`
-    /// with the number of its frame; without a folder only that.
+    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists, and pass each file with
+    /// the number of its frame to `tap`; without a folder they only pass it.
     pub(crate) fn new(folder: Option<&Path>, most: usize, tap: Option<Tap>) -> Self {
-        // No frame waits in the queue: it goes to a free thread, or stays where it was drawn until there is one.
+        // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
         let folder = folder.map(Path::to_owned);
@@ -62,10 +62,10 @@ impl FrameWriter {
         }
     }
 
-    /// Passes one frame on.
+    /// Passes one frame to a thread.
     ///
     /// # Errors
-    /// If an earlier frame could not be written. Then this one and all that follow are not taken.
+    /// If an earlier frame could not be written. Then this frame and all later ones are dropped.
     pub(crate) fn write(&mut self, frame: PixelFrame) -> Result<(), OutputError> {
         let Some(queue) = &self.queue else { return self.wait() };
         let frame = match queue.try_send(frame) {
@@ -80,8 +80,7 @@ impl FrameWriter {
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
     }
 
-    /// Waits for all frames handed over. Returns how many were written in all and the time that took, summed over
-    /// threads.
+    /// Waits until all frames are written. Returns their number and the time spent, summed over threads.
     ///
     /// # Errors
     /// If one could not be written and [`Self::write`] did not report it.
@@ -103,7 +102,7 @@ impl FrameWriter {
     }
 }
 
-/// Writes frames until there are no more or one fails. After a failure the queue is gone: nobody waits for it.
+/// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
 fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>>>, tap: Option<&Tap>) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = Written::default();

@@ -1,6 +1,6 @@
-//! Who writes in a folder: locks that the system frees when their holder ends, however it ends, and that leave no file.
+//! Locks of output folders. The system releases them when their process ends for any reason, and they leave no file.
 //!
-//! The folder itself is locked. Programs on other machines that share it do not see that.
+//! The folder itself is locked. Processes on other machines that share it do not see the lock.
 
 use super::OutputError;
 use super::atomic::remove_leftovers;
@@ -8,12 +8,11 @@ use std::fs::File;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// So long one who takes a folder for itself may hold it before it does so in earnest: looking for leftovers takes
-/// milliseconds.
+/// How long a process may hold an exclusive lock only to remove leftovers, which takes milliseconds.
 const MOMENT: Duration = Duration::from_secs(1);
 
-/// A folder that this program writes in, locked until this is dropped. Where folders cannot be locked, nobody is
-/// kept out.
+/// A folder to which this process writes, locked until this is dropped. Where the system cannot lock folders, there is
+/// no protection.
 #[derive(Debug)]
 pub(crate) struct FolderLock {
     /// The open folder, which holds the lock.
@@ -21,11 +20,10 @@ pub(crate) struct FolderLock {
 }
 
 impl FolderLock {
-    /// Locks a folder, which exists, for one who alone writes in it. What killed programs have left unfinished in it
-    /// goes.
+    /// Locks an existing folder for exclusive use, and removes leftovers of killed processes from it.
     ///
     /// # Errors
-    /// If somebody else writes in it, or it cannot be written to.
+    /// If another process writes to it, or it cannot be written to.
     pub(crate) fn alone(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
         if !lock.take(true) {
@@ -35,23 +33,23 @@ impl FolderLock {
         Ok(lock)
     }
 
-    /// Locks a folder, which exists, for one who writes files of its own in it beside those of others. Leftovers stay,
-    /// for they may be others' work.
+    /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
+    /// may belong to these.
     pub(crate) fn beside_others(path: &Path) -> Self {
         let lock = Self::open(path);
         let started = Instant::now();
-        // Whoever writes alone may be about to remove leftovers. Who still does so later has removed them, and needs not
-        // be waited for.
+        // A process with an exclusive lock may be about to remove leftovers. If it keeps the lock for longer, it has
+        // done so, and there is no need to wait for it.
         while !lock.take(false) && started.elapsed() < MOMENT {
             std::thread::sleep(Duration::from_millis(5));
         }
         lock
     }
 
-    /// Looks whether somebody alone writes in a folder, which need not exist.
+    /// Tests whether a process has locked a folder, which need not exist, for exclusive use.
     ///
     /// # Errors
-    /// If somebody does.
+    /// If one has.
     pub(crate) fn look(path: &Path) -> Result<(), OutputError> {
         if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
     }
@@ -59,7 +57,7 @@ impl FolderLock {
     #[cfg(unix)]
     fn open(path: &Path) -> Self {
         use rustix::fs::{Mode, OFlags, open};
-        // To open a pipe is to wait for ever.
+        // Opening a pipe would block.
         let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NONBLOCK | OFlags::CLOEXEC;
         Self { folder: open(path, flags, Mode::empty()).ok().map(File::from) }
     }
@@ -69,7 +67,7 @@ impl FolderLock {
         Self { folder: None }
     }
 
-    /// Takes the lock for one alone or beside others; `false` if somebody else keeps it.
+    /// Takes the lock, exclusive or shared; `false` if another process holds it.
     #[cfg(unix)]
     fn take(&self, alone: bool) -> bool {
         use rustix::fs::{FlockOperation, flock};
@@ -78,7 +76,7 @@ impl FolderLock {
         self.folder.as_ref().is_none_or(|folder| flock(folder, how) != Err(Errno::WOULDBLOCK))
     }
 
-    /// Folders cannot be locked there.
+    /// Folders cannot be locked on these systems.
     #[cfg(not(unix))]
     fn take(&self, alone: bool) -> bool {
         let _ = (&self.folder, alone);
@@ -86,13 +84,13 @@ impl FolderLock {
     }
 }
 
-/// What is said of a folder that somebody else writes in.
+/// The error for a folder to which another process writes.
 fn in_use(path: &Path) -> OutputError {
     let process = holder(path).map_or("another process".to_owned(), |id| format!("process {id}"));
     OutputError::InUse { path: path.to_owned(), what: format!("{process} is writing there").into() }
 }
 
-/// The process that has locked a folder, where the system tells.
+/// The process that has locked a folder, where the system provides it.
 fn holder(path: &Path) -> Option<u32> {
     #[cfg(target_os = "linux")]
     {
@@ -108,7 +106,7 @@ fn holder(path: &Path) -> Option<u32> {
     }
 }
 
-/// The process that has locked a file, which is named as in `/proc/locks` by its device and number, such as
+/// The process that has locked a file, given as in `/proc/locks` by its device and inode number, such as
 /// `fe:00:5309211` in `1: FLOCK  ADVISORY  WRITE 16548 fe:00:5309211 0 EOF`.
 #[cfg(target_os = "linux")]
 fn holder_in(locks: &str, file: &str) -> Option<u32> {
@@ -150,7 +148,7 @@ mod tests {
         assert!(!leftover.exists());
     }
 
-    /// Or the next one would take its files for leftovers.
+    /// Otherwise another process could remove its files as leftovers.
     #[test]
     fn nobody_is_left_without_a_lock_who_comes_while_another_tidies_up() {
         let folder = tempfile::tempdir().unwrap();

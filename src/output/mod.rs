@@ -1,8 +1,8 @@
-//! What stays on disk: frames, diagnostics, states and a summary of each run of the program.
+//! Output files: frames, diagnostics, states and a summary of each run of the program.
 //!
-//! Every file is first made under a hidden name in its own folder and then renamed: under its own name it is whole
-//! or not there, also when the program is killed or the disk is full. Equal input gives equal bytes, except for the
-//! times in `run.json`.
+//! Every file is first written under a hidden name in the same folder and then renamed, so that it is complete or does
+//! not exist, also when the program is killed or the disk is full. Equal input gives equal bytes, except for the times
+//! in `run.json`.
 
 mod atomic;
 mod diagnostics;
@@ -36,9 +36,9 @@ pub(crate) use timing::Clock;
 pub(crate) use timing::thread_time;
 pub use timing::{Spent, Timings};
 
-/// A number with 17 significant digits, from which the same double precision number is read again.
+/// A number with 17 significant digits, which identify a double precision number uniquely.
 ///
-/// Not-a-number is `nan` and infinity `inf`, which the readers of most languages know.
+/// Not-a-number is `nan` and infinity `inf`, which most languages can parse.
 pub(crate) fn exact(number: f64) -> String {
     if number.is_nan() { "nan".to_owned() } else { format!("{number:.16e}") }
 }

@@ -1,4 +1,4 @@
-//! Pictures as PNG, with what they show written into them.
+//! Pictures as PNG files, with metadata in text chunks.
 
 use super::{OutputError, exact, state_digest};
 use crate::moments::Moments;
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// What a picture says about itself, in text chunks. There is no time of day among them: equal pictures are equal files.
+/// The metadata of a picture, in text chunks. They include no time of day: equal pictures are equal files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tags {
     /// What it shows.
@@ -25,7 +25,7 @@ pub struct Tags {
     pub adapter: String,
 }
 
-/// What a picture shows.
+/// The subject of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// One moment of a scene.
@@ -68,7 +68,7 @@ impl Tags {
         }
     }
 
-    /// The texts by which a file says it, by the last word of their names.
+    /// The texts of the chunks, with the last part of their keywords.
     pub fn texts(&self) -> Vec<(&'static str, String)> {
         let states: Vec<_> = self.states.iter().map(|(digest, name)| format!("{digest} {name}")).collect();
         let [scene, state] = [("scene", self.scenes.join("\n")), ("state", states.join("\n"))];
@@ -80,17 +80,17 @@ impl Tags {
         texts
     }
 
-    /// What the header of a picture says; `None` of pictures of others.
+    /// The metadata in the header of a picture; `None` if another program wrote it.
     ///
     /// # Errors
-    /// The name of a text of ours that is missing, there twice or makes no sense.
+    /// The name of a text that is missing, occurs twice or is invalid.
     pub(crate) fn of(info: &png::Info<'_>) -> Result<Option<Self>, &'static str> {
         const NAMES: [&str; 7] = ["figure", "scene", "state", "frame", "time", "version", "adapter"];
         let found = NAMES.map(|name| texts_of(info, name));
         if found.iter().all(Vec::is_empty) {
             return Ok(None);
         }
-        // What is said twice is not known.
+        // A text that occurs twice is not used.
         if let Some(at) = found.iter().position(|texts| texts.len() > 1) {
             return Err(NAMES[at]);
         }
@@ -106,7 +106,7 @@ impl Tags {
             }
         };
         let is_digest = |digest: &str| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
-        // Names are told on terminals.
+        // Names are printed on terminals, so control characters are refused.
         let state_of = |line: &str| {
             let (digest, name) = line.split_once(' ')?;
             (is_digest(digest) && !name.contains(char::is_control)).then(|| (digest.to_owned(), name.to_owned()))
@@ -119,17 +119,18 @@ impl Tags {
     }
 }
 
-/// More states than any picture shows: each is looked for among those of another picture.
+/// An upper limit, above the number of states of any picture: each state is searched for among those of another
+/// picture.
 const MOST_STATES: usize = 4096;
 
-/// A picture of 8-bit red, green and blue, or of these and opacity, as a PNG file in sRGB, with texts such as those of
-/// [`Tags::texts`].
+/// Encodes a picture of 8-bit red, green and blue, with or without alpha, as a PNG file in sRGB, with texts such as
+/// those of [`Tags::texts`].
 ///
-/// `pixels` holds three bytes for each pixel, or four, in rows from the top left. Opacity has not been multiplied into
+/// `pixels` has three bytes for each pixel, or four, in rows from the top left. Alpha is not premultiplied.
 /// the colours.
 ///
 /// # Panics
-/// If `pixels` has neither of the lengths that `size`, width and height (px), asks for, or the size is zero.
+/// If the length of `pixels` does not match `size`, the width and height (px), or the size is zero.
 pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], compression: Compression) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
@@ -146,7 +147,7 @@ pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], c
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (name, text) in texts {
         let name = format!("localshape:{name}");
-        // The plain text chunk knows Latin-1 only, without control characters.
+        // A tEXt chunk can have only Latin-1 without control characters.
         let plain = text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
         let added =
             if plain { encoder.add_text_chunk(name, text.clone()) } else { encoder.add_itxt_chunk(name, text.clone()) };
@@ -160,13 +161,13 @@ pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], c
     bytes
 }
 
-/// Reads width and height of a picture (px) and what it says about itself, without its pixels; `None` if the file is no
-/// PNG file or was not written by this crate.
+/// Reads width and height of a picture (px) and its metadata, without its pixels; `None` if the file is not a PNG file
+/// or was not written by this crate.
 ///
 /// # Errors
 /// If the file cannot be read.
 pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
-    // To open a pipe would be to wait for ever.
+    // Opening a pipe would block.
     if !path.metadata().map_err(OutputError::reading(path))?.is_file() {
         return Ok(None);
     }
@@ -183,13 +184,13 @@ pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
     }
 }
 
-/// The texts of one of our names, `None` for each that cannot be read.
+/// The texts with one of our keywords, `None` for each that cannot be read.
 fn texts_of(info: &png::Info<'_>, name: &str) -> Vec<Option<String>> {
     let is = |keyword: &str| keyword.strip_prefix("localshape:") == Some(name);
     let plain =
         info.uncompressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword)).map(|chunk| Some(chunk.text.clone()));
     let wide = info.utf8_text.iter().filter(|chunk| is(&chunk.keyword)).map(|chunk| chunk.get_text().ok());
-    // Other programs may have packed it.
+    // Other programs may have compressed it.
     let packed = info.compressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword));
     plain.chain(wide).chain(packed.map(|chunk| chunk.get_text().ok())).collect()
 }

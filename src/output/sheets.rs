@@ -1,13 +1,13 @@
-//! The files of a table: all in one folder, each whole or not at all.
+//! The files of a table, in one folder, each written completely or not at all.
 
 use super::{AtomicFile, FolderLock, OutputError, is_folder, read_file};
 use std::fs;
 use std::path::Path;
 
-/// How the Markdown file of every table begins.
+/// The first characters of the Markdown file of every table.
 const BEGINNING: &str = "<!-- localshape table ";
 
-/// Files begun in a folder under hidden names. Dropped unfinished, they leave nothing.
+/// Files created in a folder under hidden names. If they are dropped unfinished, they are removed.
 #[derive(Debug)]
 pub(crate) struct SheetFiles {
     files: Vec<AtomicFile>,
@@ -15,14 +15,14 @@ pub(crate) struct SheetFiles {
 }
 
 impl SheetFiles {
-    /// Looks at a folder, which need not exist, before the files `names` are written into it, the first of them
+    /// Inspects a folder, which need not exist, before the files `names` are written to it. The first of them is
     /// Markdown that begins with `mark` in a comment.
     ///
-    /// Files of a table made in the same way are fine: they are replaced. A folder with a table made in another way, or
-    /// with files of others under these names, is refused unless `overwrite`.
+    /// Files of a table made in the same way may be replaced. A folder with a table made in another way, or with other
+    /// files of these names, is refused unless `overwrite`.
     ///
     /// # Errors
-    /// If the folder cannot be read, is refused or is none, or somebody else writes in it.
+    /// If the folder cannot be read, is refused or is not a folder, or another process writes to it.
     pub(crate) fn inspect(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
         if !is_folder(folder)? {
             return Ok(());
@@ -45,12 +45,12 @@ impl SheetFiles {
         Err(OutputError::Occupied { path: folder.to_owned(), what })
     }
 
-    /// Makes the folder if there is none, locks it, removes leftovers of killed programs and begins the files `names`:
-    /// so whatever keeps them from being written is told before the work. The rest is as in [`Self::inspect`], for only
-    /// now nobody else can change what is there.
+    /// Creates the folder if necessary, locks it, removes leftovers of killed processes and creates the files `names`,
+    /// so that errors are reported before the computation. The tests of [`Self::inspect`] are repeated because the
+    /// folder may have changed before it was locked.
     ///
     /// # Errors
-    /// If the folder cannot be made or written to, is refused, or somebody else writes in it.
+    /// If the folder cannot be created or written to, is refused, or another process writes to it.
     pub(crate) fn begin(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<Self, OutputError> {
         fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let lock = FolderLock::alone(folder)?;
@@ -62,7 +62,7 @@ impl SheetFiles {
     /// Writes the files, one text for each, in their order.
     ///
     /// # Errors
-    /// If one cannot be written; those before it are there.
+    /// If one cannot be written; those before it are kept.
     pub(crate) fn finish(self, texts: &[String]) -> Result<(), OutputError> {
         assert_eq!(self.files.len(), texts.len(), "a text for each file");
         self.files.into_iter().zip(texts).try_for_each(|(mut file, text)| {

@@ -1,4 +1,4 @@
-//! `states.npz`: a body, and its positions and velocities in every frame, for numerical work elsewhere.
+//! `states.npz`: a body, and its positions and velocities in every frame, for analysis in other programs.
 
 use super::atomic::folder_of;
 use super::{AtomicFile, OutputError};
@@ -16,46 +16,46 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// The name of the file in its folder.
 pub(crate) const STATES_FILE: &str = "states.npz";
 
-/// Writes the states of frames as they come, in memory that does not grow with their number.
+/// Writes the states of frames, one after the other, with bounded memory.
 ///
-/// The archive holds `time` (F), the moment of each frame (s), and for each run `NAME.position` (m) and
-/// `NAME.velocity` (m/s), both F × N × 3, all little-endian double precision. Each run shows the step nearest to a
-/// frame: `time` is that of the first run, and a run whose time step is another one has its own `NAME.time` (F).
-/// A scene lets no run have a name that does not fit into an archive.
+/// The archive has `time` (F), the time of each frame (s), and for each run `NAME.position` (m) and `NAME.velocity`
+/// (m/s), both F × N × 3, all little-endian double precision. Each run has the step nearest to a frame: `time` is that
+/// of the first run, and a run with another time step has its own `NAME.time` (F). Scenes allow only names of runs that
+/// are valid in an archive.
 ///
-/// The body is there once: `rest` (N × 3, m), `mass` (N, kg), and as 64-bit integers the nodes of each element,
-/// `elements`, and of each face that bounds the body, `faces`, with -1 behind those that have fewer than others.
+/// The body is stored once: `rest` (N × 3, m), `mass` (N, kg), and as 64-bit integers the nodes of each element,
+/// `elements`, and of each face on the surface of the body, `faces`, with -1 at the end of shorter rows.
 ///
-/// Arrays lie one behind the other in the archive but grow all at once, and how many frames come is known only
-/// when the last has come. So frames are first spooled to a file without a name, one record each, and arranged at
-/// the end: for a moment that takes twice the space on disk.
+/// Arrays are consecutive in the archive but all grow with each frame, and the number of frames is known only at the
+/// end. So frames are first written to an unnamed temporary file, one record each, and rearranged at the end, which
+/// temporarily needs twice the disk space.
 #[derive(Debug)]
 pub(crate) struct StatesWriter {
     path: PathBuf,
     spool: File,
     body: Arc<Body>,
     arrays: Vec<Array>,
-    /// Length of one frame in the spool (bytes).
+    /// Length of one frame in the temporary file (bytes).
     record: u64,
-    /// For each run whether it has times of its own.
+    /// For each run whether it has its own times.
     own_time: Vec<bool>,
     frames: u64,
 }
 
-/// One array of the archive, and where its part of each record lies.
+/// One array of the archive, and the position of its part in each record.
 #[derive(Debug)]
 struct Array {
     name: String,
-    /// The shape behind the number of frames, in Python's spelling.
+    /// The dimensions after the number of frames, in Python's notation.
     shape: String,
-    /// From the start of a record (bytes).
+    /// Offset in a record (bytes).
     offset: u64,
-    /// In each record (bytes).
+    /// Length in a record (bytes).
     length: usize,
 }
 
 impl StatesWriter {
-    /// Begins the file in `folder`, for frames that show `runs`, indices into the scene's runs.
+    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs.
     ///
     /// # Errors
     /// If the folder cannot be written to.
@@ -86,7 +86,7 @@ impl StatesWriter {
     /// Appends one frame.
     ///
     /// # Errors
-    /// If it cannot be written; frames written before stay.
+    /// If it cannot be written; frames written before are kept.
     pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
         record.extend(frame.time.to_le_bytes());
@@ -104,10 +104,10 @@ impl StatesWriter {
         Ok(())
     }
 
-    /// Arranges the frames written so far and gives the file its name.
+    /// Rearranges the frames written so far and renames the file to its final name.
     ///
     /// # Errors
-    /// If the file cannot be written; then there is none.
+    /// If the file cannot be written; it is then removed.
     pub(crate) fn finish(mut self) -> Result<(), OutputError> {
         let mut file = AtomicFile::create(&self.path)?;
         self.arrange(file.file()).map_err(OutputError::writing(&self.path))?;
@@ -119,7 +119,8 @@ impl StatesWriter {
         match self.fill(&mut archive) {
             Ok(()) => archive.finish()?.flush(),
             Err(error) => {
-                // Dropped unfinished, it would try to finish on the same disk and talk on standard error.
+                // If the writer is dropped unfinished, it tries to finish on the same disk and prints to standard
+                // error.
                 std::mem::forget(archive);
                 Err(error)
             }
@@ -155,7 +156,7 @@ fn fill_body(archive: &mut ZipWriter<BufWriter<&mut File>>, body: &Body) -> io::
     fill_lists(archive, "faces", 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))
 }
 
-/// Writes lists of nodes as rows of one length, not below `least`.
+/// Writes lists of nodes as rows of the same length, at least `least`.
 fn fill_lists<'l>(
     archive: &mut ZipWriter<BufWriter<&mut File>>,
     name: &str,
@@ -171,7 +172,7 @@ fn fill_lists<'l>(
     Ok(())
 }
 
-/// Begins an array of some bytes in the archive: what follows are its numbers.
+/// Begins an array of `length` bytes in the archive; its numbers are written next.
 fn begin(
     archive: &mut ZipWriter<BufWriter<&mut File>>,
     name: &str,
@@ -189,10 +190,10 @@ fn begin(
     archive.write_all(&header)
 }
 
-/// The head of an array in NumPy's file format, version 1.0, for numbers of a type and a shape in Python's spelling.
+/// The header of an array in NumPy's file format, version 1.0, for a number type and a shape in Python's notation.
 fn header(number: &str, shape: &str) -> Vec<u8> {
     let mut text = format!("{{'descr': '{number}', 'fortran_order': False, 'shape': {shape}, }}");
-    // Ten bytes stand before the text; the data begin at a multiple of 64.
+    // There are ten bytes before the text; the data begin at a multiple of 64.
     let unpadded = 10 + text.len() + 1;
     text.extend(std::iter::repeat_n(' ', unpadded.next_multiple_of(64) - unpadded));
     text.push('\n');

@@ -1,4 +1,4 @@
-//! `run.json`: what was made, by what, and how it went.
+//! `run.json`: what was made, how, and with what outcome.
 
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::scene::Scene;
@@ -17,60 +17,60 @@ pub(crate) struct Summary {
     pub localshape: String,
     /// The scene.
     pub scene: SceneSummary,
-    /// The command line, word by word.
+    /// The command line, one entry for each argument.
     pub command: Vec<String>,
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
-    /// The frames asked for and made.
+    /// The requested and the written frames.
     pub frames: FrameSummary,
-    /// What was written beside this file; frames as a pattern, their number stands in `frames.written`.
+    /// The other files that were written; frames as a pattern, with their number in `frames.written`.
     pub files: Vec<&'static str>,
     /// The graphics adapter; `null` without pictures.
     pub adapter: Option<String>,
-    /// The runs asked for, in the scene's order.
+    /// The requested runs, in the scene's order.
     pub runs: Vec<RunSummary>,
-    /// Times by stage (s); `null` as long as it has not ended.
+    /// Times by stage (s); `null` before the end.
     pub times: Option<Timings>,
 }
 
-/// Which scene it is.
+/// Identifies the scene.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SceneSummary {
     /// Its title.
     pub title: String,
-    /// Its file, as a full path; `null` if it was read from a text.
+    /// Its file, as a full path; `null` if it was parsed from a text.
     pub file: Option<String>,
-    /// The same as seen from the folder of `run.json`; [`Summary::write`] finds it out.
+    /// The file relative to the folder of `run.json`; set by [`Summary::write`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative_file: Option<String>,
     /// Digest of its meaning.
     pub digest: String,
-    /// The cycle T of the lightest node and the stiffest run (s), of which steps may be fractions.
+    /// The period T of the lightest node and the stiffest run (s), of which steps can be fractions.
     pub cycle: f64,
 }
 
-/// How a command ended for one scene.
+/// The outcome of a command for one scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Outcome {
-    /// It has not ended, or was killed.
+    /// It is running, or was killed.
     Unfinished,
     /// All frames were made.
     Done,
-    /// The user stopped it; what was made until then is whole.
+    /// The user stopped it; all files made until then are complete.
     Interrupted,
-    /// Writing or drawing failed; what was made until then is whole.
+    /// Writing or drawing failed; all files made until then are complete.
     Failed,
 }
 
-/// The frames asked for and made.
+/// Numbers of frames.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct FrameSummary {
-    /// How many were asked for.
+    /// The number of requested frames.
     pub asked: usize,
-    /// How many were simulated and recorded.
+    /// The number of simulated and recorded frames.
     pub recorded: usize,
-    /// How many pictures were written; `null` without pictures.
+    /// The number of written pictures; `null` without pictures.
     pub written: Option<usize>,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
@@ -78,7 +78,7 @@ pub(crate) struct FrameSummary {
     pub samples: Option<u32>,
 }
 
-/// How a run went.
+/// The result of a run.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RunSummary {
     /// Its name.
@@ -88,35 +88,35 @@ pub(crate) struct RunSummary {
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
-    /// What it looked like in the last frame recorded; `null` before the first.
+    /// The last recorded frame; `null` before the first.
     pub last: Option<LastState>,
 }
 
-/// Whether a run went well.
+/// Whether a run has diverged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub(crate) enum RunStatus {
-    /// It did.
+    /// It has not.
     Ok,
-    /// It blew up.
+    /// It has.
     Diverged {
-        /// Time of the first step that could not be kept (s).
+        /// Time of the first step that was rejected (s).
         time: f64,
         /// Number of that step.
         step: u64,
-        /// The first element concerned.
+        /// The first element with the node that exceeded the speed limit.
         element: Option<usize>,
     },
 }
 
-/// A run in the last frame recorded.
+/// The last recorded frame of a run.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LastState {
     /// Number of the frame.
     pub frame: u64,
     /// Time (s).
     pub time: f64,
-    /// How the body was.
+    /// The diagnostics.
     #[serde(flatten)]
     pub diagnostics: Chosen,
     /// Digest of the state.
@@ -149,7 +149,7 @@ impl Summary {
         }
     }
 
-    /// Takes note of the last frame recorded.
+    /// Records the last frame.
     pub(crate) fn note_last(&mut self, frame: &Frame) {
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
             let snapshot = &run.snapshot;
@@ -179,7 +179,7 @@ impl Summary {
     }
 }
 
-/// The way from a folder to a file, which has a full path; `None` if there is none, as between disks on Windows.
+/// The relative path from a folder to a file with a full path; `None` if there is none, as between disks on Windows.
 fn relative(file: &Path, folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let shared = folder.components().zip(file.components()).take_while(|(one, other)| one == other).count();

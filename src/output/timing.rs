@@ -1,15 +1,15 @@
-//! Wall and processor time by stage.
+//! Wall time and processor time by stage.
 
 use serde::Serialize;
 use std::ops::AddAssign;
 use std::time::{Duration, Instant};
 
-/// Time spent on something.
+/// Time spent in a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spent {
     /// Wall time (s).
     pub wall: f64,
-    /// Time on processors, summed over threads (s); `None` where the system does not tell.
+    /// Processor time, summed over threads (s); `None` where the system does not provide it.
     pub cpu: Option<f64>,
 }
 
@@ -18,17 +18,17 @@ impl AddAssign for Spent {
         self.wall += other.wall;
         self.cpu = match (self.cpu, other.cpu) {
             (Some(one), Some(other)) => Some(one + other),
-            // Nothing spent so far says nothing about the system.
+            // `None` is also the value before the first addition.
             (None, other) => other,
             (one, None) => one,
         };
     }
 }
 
-/// Times by stage. Stages overlap: their wall times may add up to more than the whole.
+/// Times by stage. Stages overlap, so the sum of their wall times may exceed the total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timings {
-    /// Stepping all runs and diagnosing them.
+    /// Advancing all runs and computing diagnostics.
     pub simulate: Spent,
     /// Laying out pictures; `None` without pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -44,7 +44,7 @@ pub struct Timings {
     pub total: Spent,
 }
 
-/// A moment, from which time is counted on the wall and on processors.
+/// A moment from which wall time and processor time are measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
     wall: Instant,
@@ -53,12 +53,12 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// Counts the processor time of the calling thread only; must be read on the same thread.
+    /// Measures the processor time of the calling thread only; must be read on the same thread.
     pub(crate) fn thread() -> Self {
         Self::new(thread_time)
     }
 
-    /// Counts the processor time of all threads.
+    /// Measures the processor time of all threads.
     pub(crate) fn process() -> Self {
         Self::new(process_time)
     }
@@ -67,7 +67,7 @@ impl Clock {
         Self { wall: Instant::now(), cpu: read(), read }
     }
 
-    /// What was spent since.
+    /// The time spent since.
     pub(crate) fn spent(&self) -> Spent {
         let cpu = self.cpu.zip((self.read)()).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
         Spent { wall: self.wall.elapsed().as_secs_f64(), cpu }

@@ -83,7 +83,7 @@ impl Chart {
         (3..=MOST_TIMES).rev().map(axis).find(fits).unwrap_or_else(|| axis(2))
     }
 
-    /// Hairlines at round values, a stronger one at zero, and their numbers if asked for.
+    /// Grid lines at round values, a stronger one at zero, and optionally their numbers.
     pub(super) fn rows(self, writer: &mut Writer<'_>, values: &Axis, with_numbers: bool) {
         let palette = writer.palette;
         let thickness = self.hairline();

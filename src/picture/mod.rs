@@ -84,7 +84,7 @@ pub(crate) struct Panel {
     pub sight: Sight,
     /// What the body stands on, if it is drawn.
     pub floor: Option<Floor>,
-    /// The boundary of the sound elements, which have not turned over.
+    /// The boundary of the elements that have not turned over.
     pub sound: Mesh,
     /// Its opacity, above 0 and up to 1.
     pub opacity: f32,
@@ -270,8 +270,8 @@ pub(crate) struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
-    /// From 0 to 1: the opacity of a contour, which fades as its faces turn towards the viewer; the opacity of an edge of a
-    /// sound element where a surface hides it.
+    /// From 0 to 1: the opacity of a contour, which fades as its faces turn towards the viewer; the opacity of an edge of an
+    /// element that is not turned over where a surface hides it.
     pub strength: f32,
 }
 
@@ -279,11 +279,11 @@ pub(crate) struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub(crate) enum LineKind {
-    /// An edge of a sound element.
+    /// An edge of an element that is not turned over.
     Edge = 0,
     /// An edge of a turned-over element.
     AlarmEdge = 1,
-    /// A place where the surface of the sound set turns away from the viewer.
+    /// A place where the surface of the elements that are not turned over turns away from the viewer.
     Contour = 2,
     /// The same of the turned-over set.
     AlarmContour = 3,

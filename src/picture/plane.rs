@@ -214,7 +214,7 @@ impl Flat<'_> {
         places.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((DVec2::ZERO, 0.0))
     }
 
-    /// The arrow of a sound element, unless a turned-over one covers it.
+    /// The arrow of an element that is not turned over, unless a turned-over one covers it.
     fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
         // The distance to any such element and to the disc of its arrow.

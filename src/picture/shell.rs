@@ -50,7 +50,7 @@ impl Shell {
     /// The boundaries of the elements that have kept their sign and of those that have turned over.
     ///
     /// A face bounds a set when exactly one of its two sides is in it. The side of a face that belongs to no element
-    /// counts as outside of every set; a face that bounds no element at all belongs to the sound ones.
+    /// counts as outside of every set; a face that bounds no element at all belongs to the first set.
     pub(super) fn boundaries(&self, body: &Body, turned_over: &[bool]) -> [Vec<Side>; 2] {
         let is_over = |element: u32| turned_over.get(element as usize).copied().unwrap_or(false);
         let elements = (0u32..).zip(turned_over).take(self.starts.len() - 1);
@@ -59,7 +59,7 @@ impl Shell {
             let [from, to] = [element, element + 1].map(|at| self.starts[at as usize] as usize);
             between.extend(self.between[from..to].iter().filter(|&&face| {
                 let sides = [body.faces.inner[face as usize], body.faces.outer[face as usize]];
-                // Seen from the other side, its element is sound.
+                // Seen from the other side, its element is not turned over.
                 !sides.into_iter().flatten().all(is_over)
             }));
         }
@@ -126,7 +126,7 @@ mod tests {
                 assert_eq!(sound, by_definition(&body, &over, false), "{seed}");
                 assert_eq!(turned, by_definition(&body, &over, true), "{seed}");
             }
-            // What is not known counts as sound.
+            // An unknown element counts as not turned over.
             assert_eq!(shell.boundaries(&body, &[]), shell.boundaries(&body, &[false; 27]));
         }
     }

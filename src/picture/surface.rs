@@ -46,11 +46,11 @@ pub(super) struct Surroundings<'a> {
     pub(super) soft: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
-    /// Opacity of sound elements.
+    /// Opacity of elements that are not turned over.
     pub(super) opacity: f64,
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
-    /// Whether edges of sound elements are drawn in front, and behind surfaces.
+    /// Whether edges of elements that are not turned over are drawn in front, and behind surfaces.
     pub(super) edges: [bool; 2],
     /// Whether each element has a closed surface of its own.
     pub(super) apart: bool,

@@ -53,7 +53,7 @@ pub struct Mistakes {
 }
 
 impl Mistake {
-    /// The same without the text in which it stands, which nobody has written.
+    /// The same without a position and an excerpt, for values that come from code.
     pub(crate) fn without_text(self) -> Self {
         Self { line: 0, column: 0, excerpt: String::new(), marked: 0..0, ..self }
     }

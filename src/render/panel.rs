@@ -104,7 +104,7 @@ fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     )
 }
 
-/// Whether anything may be seen through the sound surfaces of a panel.
+/// Whether anything may be visible through the surfaces of a panel that are not turned over.
 pub(super) fn has_behind(panel: &Panel) -> bool {
     let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
     !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())

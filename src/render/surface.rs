@@ -68,7 +68,7 @@ pub(super) struct Colouring<'a> {
     pub(super) shades: Option<&'a wgpu::Buffer>,
 }
 
-/// The textures with what lies behind sound surfaces.
+/// The textures with what lies behind surfaces that are not turned over.
 pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
     [texture_entry(2, true, samples), texture_entry(3, false, samples)]
 }

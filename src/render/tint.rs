@@ -19,7 +19,7 @@ pub(super) struct Tint {
     pipelines: ForOccluders<Pipelines>,
     samples: u32,
     alarm_layout: wgpu::BindGroupLayout,
-    /// For the turned-over sets: the scale; for the sound ones also what lies behind them.
+    /// For the turned-over sets: the scale; for the others also what lies behind them.
     alarm_group: wgpu::BindGroup,
     sound_group: wgpu::BindGroup,
     sound_layout: wgpu::BindGroupLayout,

@@ -18,9 +18,9 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// Eight million nodes, a block of 200 × 200 × 200 with three runs: it takes some 20 GB, which a workstation has, and
-    /// its steps take seconds, which somebody may still want to wait for. A slip of one digit in each of three counts is
-    /// beyond it. A scene file may have 256 MiB, some four million listed nodes.
+    /// Eight million nodes, a block of 200 × 200 × 200 with three runs: it needs about 20 GB, which a workstation has,
+    /// and its steps take seconds, which is still usable. One more digit in each of three counts exceeds it. A scene
+    /// file may have 256 MiB, about four million listed nodes.
     fn default() -> Self {
         Self { nodes: 8_200_000, corners: 200_000_000, springs: 700_000_000, file: 256 << 20 }
     }
@@ -47,7 +47,7 @@ pub(super) struct BodySize {
 /// More than is allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Excess {
-    /// What is asked for and what is allowed.
+    /// The request and the limit.
     pub(super) message: String,
     /// What to do.
     pub(super) help: String,
@@ -119,8 +119,8 @@ impl BodySize {
     }
 }
 
-/// Whether the machine has so much memory (bytes): it is asked for, and given back without being touched. An allocation
-/// that failed later would end the program without a word.
+/// Whether the machine has so much memory (bytes): it is reserved, and released without being written to. An allocation
+/// that failed later would abort the program without a message.
 fn is_given(memory: u128) -> bool {
     let bytes = usize::try_from(memory).unwrap_or(usize::MAX);
     Vec::<u8>::new().try_reserve_exact(bytes).is_ok()

@@ -1,22 +1,22 @@
-//! Lists of the same indices, in whatever order: faces that two elements share, elements that are listed twice.
+//! Finding lists with the same indices in any order: faces that two elements share, elements that are listed twice.
 
 /// Marks the end of a chain.
 const NONE: u32 = u32::MAX;
 
-/// Finds, among lists put in before, one of the same indices.
+/// A hash table of index lists, which finds a list with the same indices.
 ///
-/// Lists hang in chains by the sum of their indices. Neighbours in a body have neighbouring sums, so that the chains of
-/// a large body stay in the cache; sorted or hashed keys took several times as long for a million elements.
+/// The hash is the sum of the indices. Neighbouring elements have neighbouring sums, so the chains of a large body stay
+/// in the cache; sorted keys or scattered hashes took several times as long for a million elements.
 #[derive(Clone, Debug)]
 pub(crate) struct Alike {
-    /// The list last put into each chain; their number is a power of two.
+    /// The list last added to each chain; the number of chains is a power of two.
     last: Vec<u32>,
-    /// The one before each list in its chain.
+    /// The list before each list in its chain.
     before: Vec<u32>,
 }
 
 impl Alike {
-    /// For about so many lists at a time.
+    /// A table for about so many lists at a time.
     pub(crate) fn new(lists: usize) -> Self {
         Self { last: vec![NONE; lists.max(1).next_power_of_two()], before: Vec::new() }
     }
@@ -25,7 +25,7 @@ impl Alike {
         list.iter().fold(0, |sum: usize, &index| sum.wrapping_add(index as usize)) & (self.last.len() - 1)
     }
 
-    /// Puts a list in under its number, which is below 2³² − 1 and in use no more than once.
+    /// Adds a list under a number below 2³² − 1 that is not in use.
     pub(crate) fn put(&mut self, number: usize, list: &[u32]) {
         let chain = self.chain(list);
         if self.before.len() <= number {
@@ -34,8 +34,8 @@ impl Alike {
         self.before[number] = std::mem::replace(&mut self.last[chain], number as u32);
     }
 
-    /// The number of the list last put in that has the same indices; `known` is what each was put in with. Indices are
-    /// different from each other within each list.
+    /// The number of the last added list with the same indices; `known` returns the list of a number. The indices
+    /// within a list are different.
     pub(crate) fn find<'l>(&self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
         let mut number = self.last[self.chain(list)];
         while number != NONE && !have_the_same(known(number as usize), list) {
@@ -44,7 +44,7 @@ impl Alike {
         (number != NONE).then_some(number as usize)
     }
 
-    /// The same list, which is taken out.
+    /// Like [`Self::find`], and removes the list.
     pub(crate) fn take<'l>(&mut self, list: &[u32], known: impl Fn(usize) -> &'l [u32]) -> Option<usize> {
         let chain = self.chain(list);
         let (mut after, mut number) = (NONE, self.last[chain]);
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn lists_of_the_same_indices_are_found_until_they_are_taken() {
-        // All in one chain; the last two are alike.
+        // All in one chain; the last two have the same indices.
         let lists: [&[u32]; 5] = [&[0, 9], &[4, 5], &[1, 2, 6], &[3, 6], &[6, 3]];
         let known = |number: usize| lists[number];
         let mut alike = Alike::new(1);

@@ -1,4 +1,4 @@
-//! What is simulated: a [`Body`], which never changes.
+//! The [`Body`]: nodes, masses and elements at rest.
 
 pub(crate) use super::element::{Dimension, ElementKind, Solids};
 use super::element::{around, kind};
@@ -9,10 +9,10 @@ pub(crate) use super::topology::Faces;
 use super::topology::{Elements, assign_faces};
 use glam::DVec3;
 
-/// A deformable body as it is at rest. It never changes during a simulation and all runs of a scene share it.
+/// A deformable body at rest. It is immutable, and all runs of a scene share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// In the plane or in space.
+    /// Whether it is in the plane or in space.
     pub dimension: Dimension,
     /// Rest position of each node (m).
     pub rest: Vec<DVec3>,
@@ -20,23 +20,23 @@ pub struct Body {
     pub mass: Vec<f64>,
     /// The nodes of each element, two or more.
     pub elements: IndexLists,
-    /// What each element is.
+    /// The kind of each element.
     pub kinds: Vec<ElementKind>,
-    /// The faces at rest of those elements that are of no particular kind.
+    /// The faces at rest of the elements of kind [`ElementKind::Other`].
     pub(crate) hulls: Hulls,
-    /// What can be drawn.
+    /// The faces of the elements, or the listed ones.
     pub faces: Faces,
 }
 
 impl Body {
-    /// Builds a body from its nodes and elements. What each element is follows from the number of its nodes and from
-    /// `solids`; its faces from that, or from the hull of its nodes.
+    /// Makes a body from its nodes and elements. The kind of an element follows from the number of its nodes and from
+    /// `solids`; its faces follow from its kind, or are those of the convex hull of its nodes.
     ///
-    /// `faces`, when given, are drawn instead of the elements' own; each lies between the element out of which it looks
-    /// and the one into which it looks, of those that hold all its nodes.
+    /// `faces`, if given, replace the elements' own faces. Each is assigned to the element out of which its normal
+    /// points and the one into which it points, among the elements that contain all its nodes.
     ///
     /// # Panics
-    /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has checked its input.
+    /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has to check its input.
     pub(crate) fn new(
         dimension: Dimension,
         rest: Vec<DVec3>,
@@ -85,7 +85,7 @@ impl Body {
     }
 }
 
-/// Whether a face looks out of an element at rest; so it does of one that lies in the plane of the face.
+/// Whether the normal of a face points out of an element at rest. It does for an element in the plane of the face.
 fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
     let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
     let middle = mean(face);
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::sim::topology::Springs;
 
-    /// Layers of regular pentagons, one unit apart.
+    /// Layers of regular pentagons at a distance of 1.
     fn pentagons(layers: u32) -> Vec<DVec3> {
         let corner = |at: u32| {
             let angle = std::f64::consts::TAU / 5.0 * f64::from(at % 5);

@@ -1,5 +1,5 @@
-//! Threads that wait for work, and do it together. Who makes a [`World`](super::World) lends it a [`Crew`]; nothing here
-//! starts threads by itself.
+//! A pool of threads for vectorised steps. The caller makes a [`Crew`] and passes it to a [`World`](super::World); the
+//! simulation starts no threads by itself.
 
 #![expect(unsafe_code, reason = "work that borrows is lent to threads that outlive it, and taken back before it ends")]
 
@@ -9,32 +9,32 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-/// How often a helper looks for work before it sleeps: some tens of microseconds, the time that waking one up takes.
+/// How often a helper polls for work before it sleeps: some tens of microseconds, the time that waking a thread takes.
 const LOOKS: u32 = 20_000;
 
-/// Work for one member of a crew, by its number.
+/// The work of one thread of a crew, called with the number of the thread.
 type Work<'a> = dyn Fn(usize) + Sync + 'a;
 
-/// The calling thread and its helpers, who wait for work from one step to the next and end with the crew.
+/// The calling thread and its helper threads, which wait for work between steps and end when the crew is dropped.
 pub struct Crew {
     shared: Arc<Shared>,
     helpers: Vec<JoinHandle<()>>,
 }
 
 struct Shared {
-    /// What is to be done.
+    /// The work of the present round.
     work: Mutex<Option<&'static Work<'static>>>,
-    /// How many pieces of work there have been; changes while `work` is locked.
+    /// The number of rounds of work; changes while `work` is locked.
     round: AtomicU64,
     wake: Condvar,
-    /// Helpers that are not yet through with this round.
+    /// Helpers that have not finished the present round.
     busy: AtomicUsize,
     panicked: AtomicBool,
     end: AtomicBool,
 }
 
 impl Crew {
-    /// A crew of so many threads, the caller's among them: one for the caller alone.
+    /// A crew of so many threads, including the calling one: 1 for no helpers.
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
             work: Mutex::new(None),
@@ -53,22 +53,22 @@ impl Crew {
         Self { shared, helpers }
     }
 
-    /// The number of threads, at least one, which may be less than was asked for.
+    /// The number of threads: at least one, and less than requested if the system refused to start some.
     pub fn threads(&self) -> usize {
         self.helpers.len() + 1
     }
 
-    /// Calls `work` with each number below [`Self::threads`], at the same time, and returns when all have returned. Number 0
-    /// is the calling thread's.
+    /// Calls `work` with each number below [`Self::threads`], in parallel, and returns when all have returned. The
+    /// calling thread has number 0.
     ///
     /// # Panics
-    /// If one of them does.
+    /// If `work` panics on any thread.
     pub fn run(&mut self, work: &Work<'_>) {
         let Shared { busy, panicked, .. } = &*self.shared;
         if self.helpers.is_empty() {
             return work(0);
         }
-        // SAFETY: helpers use it only until they are no longer busy, for which this function waits, come what may.
+        // SAFETY: helpers use it only while they are busy, and this function waits until none is, also after a panic.
         let lent = unsafe { std::mem::transmute::<&Work<'_>, &'static Work<'static>>(work) };
         busy.store(self.helpers.len(), Ordering::Relaxed);
         self.shared.tell(Some(lent));
@@ -87,7 +87,7 @@ impl Drop for Crew {
         self.shared.end.store(true, Ordering::Relaxed);
         self.shared.tell(None);
         for helper in self.helpers.drain(..) {
-            // It catches the panics of its work.
+            // A helper catches the panics of its work, so joining succeeds.
             drop(helper.join());
         }
     }
@@ -102,7 +102,7 @@ impl Shared {
         self.wake.notify_all();
     }
 
-    /// The life of a helper.
+    /// The main loop of a helper.
     fn help(&self, number: usize) {
         let mut round = 0;
         loop {
@@ -131,12 +131,12 @@ impl Shared {
     }
 }
 
-/// Waits for something that another thread is about to do.
+/// Spins until a condition holds that another thread is about to meet.
 pub(super) fn wait_until(is_so: impl Fn() -> bool) {
     let mut looks = 0u32;
     while !is_so() {
         looks += 1;
-        // It may have no processor to itself.
+        // The other thread may be waiting for this processor.
         if looks.is_multiple_of(1000) || cfg!(miri) {
             std::thread::yield_now();
         } else {

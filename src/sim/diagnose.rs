@@ -1,4 +1,4 @@
-//! What the diagnostics of a state are computed from: volumes of elements, and the best rigid placement.
+//! The quantities from which diagnostics are computed: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
@@ -13,18 +13,18 @@ use rayon::prelude::*;
 use std::ops::{Add, Mul, Sub};
 use std::sync::Arc;
 
-/// Threads measure so many elements at a time.
+/// Elements in one task of a thread.
 const CHUNK: usize = 1024;
 
-/// What is known of a body beforehand.
+/// The precomputed part of the diagnostics of a body.
 pub(crate) struct Diagnose {
     body: Arc<Body>,
-    /// Signed volume of each element at rest (m³, in the plane m²). A segment, a triangle in space or anything else that is
-    /// flat there has none and never turns over.
+    /// Signed volume of each element at rest (m³, in the plane m²). It is zero for segments, triangles in space and all
+    /// elements that are flat at rest, which therefore never count as turned over.
     volumes_at_rest: Vec<f64>,
     /// Their sum.
     volume_at_rest: f64,
-    /// The elements that are not measured by their faces.
+    /// The elements whose volume is not computed from their faces.
     affine: Vec<Affine>,
     /// Mean of the rest positions (m).
     rest_centre: DVec3,
@@ -32,8 +32,8 @@ pub(crate) struct Diagnose {
     centred: Vec<DVec3>,
 }
 
-/// An element without faces of its own: its volume is that of the affine map that fits it best,
-/// `det(Σ r R0ᵀ (Σ R0 R0ᵀ)⁻¹)` times its volume at rest.
+/// An element without a table of faces. Its volume is that of the affine map that fits it best, `det(Σ r R0ᵀ (Σ R0
+/// R0ᵀ)⁻¹)` times its volume at rest.
 struct Affine {
     element: usize,
     /// `(Σ R0 R0ᵀ)⁻¹` (1/m²).
@@ -43,7 +43,7 @@ struct Affine {
 }
 
 impl Diagnose {
-    /// Measures the body at rest.
+    /// Precomputes the quantities of the body at rest.
     pub(crate) fn new(body: &Arc<Body>) -> Self {
         let affine: Vec<_> = (0..body.elements.len()).filter_map(|element| Affine::new(body, element)).collect();
         let mut volumes_at_rest = volumes_by_faces(body, &body.rest);
@@ -68,7 +68,7 @@ impl Diagnose {
         (all, facts.turned_over().collect(), *facts.placement)
     }
 
-    /// Some diagnostics of a state; the others are zero. What no one of them needs is not computed.
+    /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
     pub(crate) fn some(
         &self,
         state: Nodes<'_>,
@@ -114,13 +114,14 @@ impl Diagnose {
     }
 }
 
-/// Corners whose second moments have a determinant below this part of what it would be in a ball lie in a plane.
+/// Corners are taken to lie in a plane if the determinant of their second moments, relative to that of a ball, is below
+/// this.
 ///
-/// Round-off leaves 1e-16 of it for corners in a plane; a plate a thousand times wider than thick has 1e-6.
+/// Round-off gives 1e-16 for corners in a plane; a plate a thousand times wider than thick has 1e-6.
 const FLAT: f64 = 1e-12;
 
 impl Affine {
-    /// `None` for an element that is measured by its faces, or is flat.
+    /// `None` for an element whose volume is computed from its faces, or which is flat.
     fn new(body: &Body, element: usize) -> Option<Self> {
         if body.kinds[element] != ElementKind::Other {
             return None;
@@ -134,7 +135,7 @@ impl Affine {
         (!is_flat).then(|| Self { element, inverse: moments.inverse(), rest })
     }
 
-    /// By what its volume has grown.
+    /// The volume divided by that at rest.
     fn stretch(&self, body: &Body, position: &[DVec3]) -> f64 {
         let corners: Vec<_> = body.elements[self.element].iter().map(|&node| position[node as usize]).collect();
         let centre = mean(&corners);
@@ -143,7 +144,7 @@ impl Affine {
     }
 }
 
-/// Signed volume of each element by its faces (m³, in the plane m²); zero for those that have none.
+/// Signed volume of each element from its faces (m³, in the plane m²); zero for elements without faces of their own.
 fn volumes_by_faces(body: &Body, position: &[DVec3]) -> Vec<f64> {
     let mut volumes = vec![0.0; body.elements.len()];
     let set = Set::best();
@@ -153,7 +154,7 @@ fn volumes_by_faces(body: &Body, position: &[DVec3]) -> Vec<f64> {
     volumes
 }
 
-/// The volumes by their faces of elements that follow each other.
+/// Computes the volumes of consecutive elements from their faces.
 struct Measure<'a> {
     body: &'a Body,
     position: &'a [DVec3],
@@ -164,7 +165,8 @@ struct Measure<'a> {
 impl Work for Measure<'_> {
     type Output = ();
 
-    /// As many elements of one kind as there are lanes at a time, the others one by one: with the same bits.
+    /// Vectorised where as many consecutive elements as there are lanes have the same kind, else one by one; the bits
+    /// are the same.
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { body, position, first, volumes } = self;
@@ -213,7 +215,7 @@ impl Work for Measure<'_> {
 /// that is exactly the bilinear patch, so a hexahedron gets the volume of its trilinear map.
 pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> f64 {
     if kind == ElementKind::Polygon {
-        // Relative to the first node, so that distance from the origin costs no digits.
+        // Relative to the first node, to keep precision far from the origin.
         let origin = position[nodes[0] as usize];
         let at = |node: u32| position[node as usize] - origin;
         return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
@@ -221,8 +223,8 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
     inside(kind, &corners(nodes, position))
 }
 
-/// The corners of an element (m), relative to the first one, so that distance from the origin costs no digits. Elements of a
-/// kind have eight at most.
+/// The corners of an element (m), relative to the first one, to keep precision far from the origin. An element with a
+/// table of faces has at most eight.
 #[inline(always)]
 fn corners(nodes: &[u32], position: &[DVec3]) -> [[f64; 3]; 8] {
     let origin = position[nodes[0] as usize];
@@ -233,7 +235,7 @@ fn corners(nodes: &[u32], position: &[DVec3]) -> [[f64; 3]; 8] {
     corners
 }
 
-/// A number, or one in each lane.
+/// A scalar, or a vector of lanes.
 trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     fn new(value: f64) -> Self;
     fn over(self, divisor: f64) -> Self;
@@ -270,7 +272,7 @@ fn inside<T: Number>(kind: ElementKind, corners: &[[T; 3]; 8]) -> T {
     for face in element::face_table(kind) {
         let part = match **face {
             [a, b, c] => triple(at(corners, a), at(corners, b), at(corners, c)).over(6.0),
-            // Each of the four triangles of two corners that are next to each other and a third is in two fans.
+            // Each of the four triangles of two adjacent corners and a third one occurs in two fans.
             [a, b, c, d] => {
                 let (a, b, c, d) = (at(corners, a), at(corners, b), at(corners, c), at(corners, d));
                 (triple(a, minus(b, d), c) + triple(b, minus(c, a), d)).over(12.0)
@@ -331,7 +333,7 @@ mod tests {
         Diagnose::new(&body).state(State::at_rest(rest).nodes(), DVec3::ZERO, &Report::default()).0
     }
 
-    /// Seven corners have no faces of their own: the affine estimate stands in.
+    /// An element with seven corners has no table of faces: its volume is the affine estimate.
     fn heptad(thickness: f64) -> Vec<DVec3> {
         let tilt = DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize();
         let corner = |at: u32| {
@@ -374,7 +376,7 @@ mod tests {
         assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
     }
 
-    /// Of every kind one by one, and in runs longer and shorter than the lanes of any set.
+    /// Elements of every kind, one by one and in runs longer and shorter than the lanes of any vector set.
     #[test]
     fn every_set_measures_the_same_volumes() {
         let place = |at: u32| (at.wrapping_mul(2_654_435_761) >> 8) as f64 / f64::from(1u32 << 24);

@@ -1,5 +1,5 @@
-//! The diagnostics: numbers that describe a state. One table says of each what it is called, its unit, what it means and
-//! how it is computed; files, strips, figures, goldens and the schema follow from it.
+//! The diagnostics: numbers that describe a state. One table defines the name, key, unit, meaning and formula of each;
+//! files, strips, figures, goldens and the schema are derived from it.
 
 use super::model::Report;
 use super::snapshot::Placement;
@@ -11,17 +11,17 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::cell::LazyCell;
 use std::fmt;
 
-/// Something that is computed when it is first asked for.
+/// A value that is computed when it is first used.
 pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 
-/// What diagnostics are computed from.
+/// The quantities from which diagnostics are computed.
 pub(super) struct Facts<'a> {
     /// Mass of each node (kg).
     pub(super) mass: &'a [f64],
     pub(super) state: Nodes<'a>,
     /// Acceleration of gravity (m/s²).
     pub(super) gravity: DVec3,
-    /// What the model says of the state.
+    /// Energy and residuals from the model.
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
     pub(super) volumes: Lazy<'a, Vec<f64>>,
@@ -34,11 +34,11 @@ pub(super) struct Facts<'a> {
     pub(super) centred: &'a [DVec3],
 }
 
-/// An element counts as turned over when its signed volume is below minus this fraction of that at rest.
+/// An element has turned over if its signed volume is below minus this fraction of that at rest.
 ///
-/// Of an element pressed exactly flat, round-off leaves about 1e-16 of either sign, or 1e-12 where the body is ten thousand times
-/// its size away from the origin: it would flicker between turned over and not. An element that really turns over passes
-/// this bound a billionth of its height later.
+/// For an element pressed exactly flat, round-off gives about 1e-16 with either sign, or 1e-12 if the body is ten
+/// thousand times its size away from the origin. Without the margin its classification would be random. For an element
+/// that really turns over the margin is only a billionth of its height.
 const ROUND_OFF: f64 = 1e-9;
 
 pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
@@ -46,7 +46,7 @@ pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
 }
 
 impl Facts<'_> {
-    /// The sum over all nodes of something that follows from mass (kg), position (m) and velocity (m/s), in their order.
+    /// The sum over all nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
     fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
         let Nodes { position, velocity } = self.state;
         let mut sum = T::default();
@@ -73,16 +73,16 @@ impl Facts<'_> {
 /// The value of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// How many.
+    /// A count.
     Count(usize),
     /// A number; NaN where a model or a body has none.
     Number(f64),
-    /// A vector, which has three columns in files and is shown by its length.
+    /// A vector: three columns in files; where one number is shown, its length.
     Vector(DVec3),
 }
 
 impl Value {
-    /// As one number.
+    /// One number: for vectors, the length.
     pub(crate) fn size(self) -> f64 {
         match self {
             Self::Count(count) => count as f64,
@@ -110,34 +110,34 @@ impl From<DVec3> for Value {
     }
 }
 
-/// How far a diagnostic gets, besides `diagnostics.csv` and whatever shows it over time.
+/// Where a diagnostic is written, besides `diagnostics.csv` and charts over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Reach {
-    /// No farther.
+    /// Nowhere else.
     Frames,
-    /// Into goldens. One more there is another format of theirs.
+    /// Also to goldens. Adding one changes the format of goldens.
     Goldens,
-    /// Into these, and into what is said of single states: `run.json`, and the JSON of figures.
+    /// Also to goldens and to summaries of single states: `run.json`, and the JSON of figures.
     Summaries,
 }
 
-/// Makes of each entry a field of [`Diagnostics`] and a [`Diagnostic`]. An entry is what it means, with its unit in
-/// brackets; its name in code, its key in files and its type; what a reader calls it; its unit; how far it gets; and how it
-/// is computed from the facts and from entries before it.
+/// Defines a field of [`Diagnostics`] and a variant of [`Diagnostic`] for each entry. An entry has its meaning, with
+/// the unit in parentheses; its name in code, its key in files and its type; its name in captions; its unit; its
+/// [`Reach`]; and its formula, which can use the facts and the entries before it.
 macro_rules! diagnostics {
     ($facts:ident: $(
         $(#[doc = $meaning:literal])+
         $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
     )+) => {
-        /// Numbers that describe a state, in SI units; in the plane volumes are areas. What a model or a body does not have
-        /// is NaN: elastic energy and `residual` of some models, the volume ratio of a cloth.
+        /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
+        /// body does not have is NaN: the elastic energy and `residual` of some models, the volume ratio of a cloth.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
         }
 
         impl Diagnostics {
-            /// Those that are wanted; the others are zero.
+            /// The wanted diagnostics; the others are zero.
             pub(super) fn of($facts: &Facts<'_>, is_wanted: impl Fn(Diagnostic) -> bool) -> Self {
                 $(let $key: $type = if is_wanted(Diagnostic::$variant) { $value } else { Default::default() };)+
                 Self { $($key),+ }
@@ -152,7 +152,7 @@ macro_rules! diagnostics {
         }
 
         impl Diagnostic {
-            /// All of them, in the order of files.
+            /// All diagnostics, in the order of files.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
             /// Its value.
@@ -162,35 +162,35 @@ macro_rules! diagnostics {
                 }
             }
 
-            /// What it is called in files.
+            /// Its name in files.
             pub fn key(self) -> &'static str {
                 match self {
                     $(Self::$variant => stringify!($key),)+
                 }
             }
 
-            /// What a reader calls it.
+            /// Its name in captions.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)+
                 }
             }
 
-            /// Its unit; empty for a pure number.
+            /// Its unit; empty for a dimensionless number.
             pub fn unit(self) -> &'static str {
                 match self {
                     $(Self::$variant => $unit,)+
                 }
             }
 
-            /// What it means, in a sentence with its unit.
+            /// Its meaning: a sentence with the unit.
             pub fn meaning(self) -> &'static str {
                 match self {
                     $(Self::$variant => concat!($($meaning),+).trim_ascii(),)+
                 }
             }
 
-            /// How far it gets.
+            /// Where it is written.
             pub(crate) fn reach(self) -> Reach {
                 match self {
                     $(Self::$variant => Reach::$reach,)+
@@ -219,20 +219,20 @@ diagnostics! { facts:
     AngularMomentum, angular_momentum: DVec3, "angular momentum", "kg m²/s", Frames =
         facts.sum(|mass, position, velocity| position.cross(velocity) * mass);
 
-    /// The largest angular acceleration that approximation errors of the rotations amount to (rad/s²), α of Eq. (18).
+    /// The largest angular acceleration that errors of the rotations cause (rad/s²), α of Eq. (18).
     Residual, residual: f64, "residual α", "rad/s²", Frames = facts.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
 
-    /// How many elements have turned over.
+    /// Number of elements that have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
         facts.turned_over().filter(|&turned| turned).count();
 
-    /// Total signed volume over the rest value; in the plane, area.
+    /// Total signed volume divided by that at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.iter().sum::<f64>() / facts.volume_at_rest;
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
 
-    /// The sum of all energies (J).
+    /// Total energy (J): kinetic, elastic and gravitational.
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
 }
 
@@ -242,23 +242,23 @@ impl Diagnostic {
         self.value(all).size()
     }
 
-    /// Those that get at least so far.
+    /// Those that are written at least so widely.
     pub(crate) fn within(reach: Reach) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.reach() >= reach)
     }
 }
 
-/// Some diagnostics of a state. It is written as a table from keys to numbers.
+/// Some diagnostics of a state. Serialised as a table from keys to numbers.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Chosen(Vec<(Diagnostic, Value)>);
 
 impl Chosen {
-    /// Those that get at least so far.
+    /// Those that are written at least so widely.
     pub(crate) fn within(reach: Reach, all: &Diagnostics) -> Self {
         Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
     }
 
-    /// The same, each from a text; `None` where one is no number, or a count that is not whole.
+    /// The same, each parsed from a text; `None` if a text is not a number, or if a count is not whole.
     pub(crate) fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
         let read = |(at, diagnostic): (usize, Diagnostic)| {
             let text = text_of(at, diagnostic)?;

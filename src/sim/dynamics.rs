@@ -1,17 +1,16 @@
-//! Any way of advancing a state: forces with an integrator, or whatever else gives the same steps faster or other ones
-//! better.
+//! The interface of whatever advances a state: the reference code with its integrators, and the vectorised kernels.
 
 use super::body::{Body, bounds};
 use super::crew::Crew;
 use super::state::{Nodes, State};
 use super::system::{Surroundings, System};
 
-/// A way of advancing. It takes its own from the state and may hold the nodes itself while it works.
+/// A way of advancing a state. It may keep the nodes in its own arrays between calls.
 pub(super) trait Dynamics: Send + Sync {
-    /// Takes so many steps from where it stands, and counts them. The crew may be put to work.
+    /// Takes `count` steps from the present state, and counts them. It may use the threads of the crew.
     ///
     /// # Errors
-    /// When a node would become faster than the limit: it then stands before that step.
+    /// When a node would become faster than the limit: the state is then the one before that step.
     fn advance(
         &mut self,
         system: &System,
@@ -21,31 +20,31 @@ pub(super) trait Dynamics: Send + Sync {
         crew: &mut Crew,
     ) -> Result<(), Runaway>;
 
-    /// Writes into the state what it holds itself.
+    /// Writes the state back, if it is kept elsewhere.
     fn settle(&mut self, _state: &mut State) {}
 
-    /// Steps taken, of which the state may not know yet.
+    /// The number of steps taken, which may be ahead of that of the state until [`Self::settle`] is called.
     fn steps(&self, state: &State) -> u64 {
         state.steps
     }
 
-    /// The state was replaced by another one.
+    /// Called after the state was replaced by another one: forgets everything derived from the old one.
     fn restart(&mut self) {}
 }
 
-/// A node whose new velocity is no number or beyond all reason: the step is not taken.
+/// A node whose new velocity is NaN or above the limit. The step is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Runaway {
     /// The first such node.
     pub(super) node: usize,
 }
 
-/// Beyond which speed a node is lost, so that a run that blows up stops while its last state can still be drawn.
+/// The greatest speed of a node that counts as a result. Above it the run has diverged; it stops while its last state
+/// can still be drawn.
 ///
-/// Swinging through its whole extent, a body moves at 2π extents per cycle. The factor leaves a wide margin above that,
-/// and keeps the last state within some extents. What it had at the start and what gravity, obstacles and kinematic
-/// constraints add
-/// comes on top.
+/// A body that oscillates through its whole extent moves at 2π extents per cycle. The factor leaves a wide margin above
+/// that, and keeps the last state within some extents. Initial speeds and the speeds due to gravity, obstacles and
+/// kinematic constraints are added.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SpeedLimit {
     own: f64,
@@ -53,11 +52,11 @@ pub(super) struct SpeedLimit {
 }
 
 impl SpeedLimit {
-    /// For a node of one element; more elements pull harder, and its frequency grows with the root of their number.
+    /// For a node of one element. The frequency of a node grows with the square root of the number of its elements.
     const EXTENTS_PER_CYCLE: f64 = 50.0;
     const MARGIN: f64 = 10.0;
 
-    /// For one part from its start, with the shortest period (s) of its model.
+    /// The limit for one part from its initial state, with the shortest period (s) of its model.
     pub(super) fn new(body: &Body, initial: Nodes<'_>, period: f64, surroundings: &Surroundings, step: f64) -> Self {
         let (low, high) = bounds(initial.position);
         let extent = body.extent().max((high - low).max_element());
@@ -67,13 +66,13 @@ impl SpeedLimit {
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
         let Surroundings { gravity, obstacles, grips } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
-            // A half-space turns under a body that is somewhere near.
+            // A half-space is infinite: what counts is its rotation near the body.
             let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
             let near = (low - obstacle.pivot).length().max((high - obstacle.pivot).length());
             (&obstacle.motion, if reach.is_finite() { reach } else { near + extent })
         });
         let dragging = grips.iter().map(|grip| (&grip.motion, extent));
-        // What it meets in one step is never faster than its whole way in that step.
+        // Even a sudden motion moves nodes within one step by no more than its whole path.
         let moving = pushing.chain(dragging).map(|(motion, distance)| {
             let way = motion.longest_way(distance);
             (way, motion.greatest_speed(distance).min(way / step))
@@ -86,7 +85,7 @@ impl SpeedLimit {
         Self { own, gravity: Self::MARGIN * gravity.length() }
     }
 
-    /// For all parts together.
+    /// The larger of two limits, for all parts together.
     pub(super) fn max(self, other: Self) -> Self {
         Self { own: self.own.max(other.own), gravity: self.gravity.max(other.gravity) }
     }

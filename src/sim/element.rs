@@ -1,4 +1,4 @@
-//! The kinds of elements: what their faces and edges are.
+//! The kinds of elements, with their faces and edges.
 
 /// Whether a body lives in the plane or in space.
 ///
@@ -11,35 +11,36 @@ pub enum Dimension {
     Space,
 }
 
-/// What an element is, which decides its faces, its edges and how its volume is measured.
+/// The kind of an element, which defines its faces, its edges and how its volume is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ElementKind {
     /// Two nodes.
     Segment,
     /// Three or more nodes in the plane, counter-clockwise.
     Polygon,
-    /// Three nodes in space: a face without a volume, with two equal sides.
+    /// Three nodes in space: a two-sided face without a volume.
     Triangle,
-    /// Four nodes in space; node 3 lies on the side to which the triangle 0, 1, 2 turns counter-clockwise.
+    /// Four nodes in space; seen from node 3, the triangle 0, 1, 2 is counter-clockwise.
     Tetrahedron,
     /// Five nodes in space: a quadrilateral 0, 1, 2, 3 in order around, and the apex 4.
     Pyramid,
     /// Six nodes in space: a triangle 0, 1, 2 and the opposite one 3, 4, 5.
     Wedge,
-    /// Eight nodes in space in bit order: x fastest, then y, then z.
+    /// Eight nodes in space, numbered with x fastest, then y, then z.
     Hexahedron,
-    /// Any other number of nodes in space, in any order. Its faces are those of its convex hull at rest, and so are its
-    /// edges. Nodes within the hull are on none of them: of the named springs only those through the element hold them.
+    /// Any other number of nodes in space, in any order. Its faces and edges are those of its convex hull at rest.
+    /// Nodes inside the hull are on no edge: of the named springs only `edges+body-diagonals` and `all` attach to them.
     Other,
 }
 
-/// What elements of four, five, six and eight nodes in space are.
+/// How elements of four, five, six and eight nodes in space are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solids {
-    /// Tetrahedra, pyramids, wedges and hexahedra, whose nodes stand in an order of their own.
+    /// As tetrahedra, pyramids, wedges and hexahedra, with the order of nodes of their kind.
     #[default]
     Ordered,
-    /// The convex hulls of their nodes, like elements of any other number: octahedra and bipyramids, too.
+    /// As the convex hulls of their nodes, like elements with other numbers of nodes: for example octahedra and
+    /// bipyramids.
     Convex,
 }
 
@@ -60,7 +61,7 @@ pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
 
 /// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
 ///
-/// A polygon is its own single face and has no entry here, nor has what no table can hold; see [`Elements`](super::topology::Elements).
+/// Polygons, segments and other elements have no table; see [`Elements`](super::topology::Elements).
 pub(super) fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     match kind {
         ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
@@ -89,8 +90,8 @@ pub(super) fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
     }
 }
 
-/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; a polygon is its
-/// own face.
+/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; the only face of a
+/// polygon is itself.
 pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
     if kind == ElementKind::Polygon {
         return visit(nodes);

@@ -1,4 +1,4 @@
-//! Scalar fields over a body: what a picture can colour it by.
+//! Scalar fields over a body, by which a picture can be coloured.
 
 use super::body::Body;
 use super::rotation::{self, moment};
@@ -12,19 +12,20 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Field {
-    /// How far each element is from its shape at rest: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero
-    /// for any rigid motion, `a` for an element scaled by `1 + a`.
+    /// Relative deformation of each element: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero for any
+    /// rigid motion, and `a` for an element scaled by `1 + a`.
     Strain,
-    /// Distance of each node from where the best rigid placement of the whole rest shape has it (m).
+    /// Distance of each node from its position in the best rigid placement of the whole rest shape (m).
     Displacement,
     /// Speed of each node (m/s).
     Speed,
-    /// Elastic energy of each node (J): of each element's energy the part of its own distance from the equilibrium
-    /// shape, of each spring's energy a half. The sum over all nodes is the elastic energy of the body.
+    /// Elastic energy of each node (J). A node has the part of an element's energy that belongs to its own displacement
+    /// from the equilibrium shape, and half of a spring's energy. The sum over all nodes is the elastic energy of the
+    /// body.
     ElasticEnergy,
 }
 
-/// To what the numbers of a field belong.
+/// Where the values of a field are defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Support {
     /// One for each node.
@@ -34,7 +35,7 @@ pub(crate) enum Support {
 }
 
 impl Field {
-    /// To what its numbers belong.
+    /// Where its values are defined.
     pub(crate) fn support(self) -> Support {
         match self {
             Self::Strain => Support::Elements,
@@ -42,7 +43,7 @@ impl Field {
         }
     }
 
-    /// What a reader calls it.
+    /// Its name in captions.
     pub fn name(self) -> &'static str {
         match self {
             Self::Strain => "strain",
@@ -52,7 +53,7 @@ impl Field {
         }
     }
 
-    /// Its unit; empty for a pure number.
+    /// Its unit; empty for a dimensionless number.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Strain => "",
@@ -62,7 +63,7 @@ impl Field {
         }
     }
 
-    /// The field at a state. `energies` is each node's part of the elastic energy (J), for the field that shows it.
+    /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`].
     pub(super) fn values(self, body: &Body, state: Nodes<'_>, placement: &Placement, energies: Vec<f64>) -> Vec<f64> {
         match self {
             Self::Strain => body.elements.iter().map(|nodes| strain(body, nodes, state.position)).collect(),
@@ -76,7 +77,7 @@ impl Field {
     }
 }
 
-/// The distance of an element from its shape at rest, as a part of its size; see [`Field::Strain`].
+/// The relative deformation of an element; see [`Field::Strain`].
 fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
     let centred = |points: &[DVec3]| {
         let corners = nodes.iter().map(|&node| points[node as usize]);

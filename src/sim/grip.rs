@@ -1,20 +1,20 @@
-//! Kinematic constraints: nodes that are held, or grabbed, dragged along a path and let go (the manipulation of the
-//! paper's title).
+//! Kinematic constraints: nodes that are held, or gripped, dragged along a path and released (the manipulation in the
+//! title of the paper).
 
 use super::motion::{Interval, Motion, Pose};
 use super::state::State;
 use glam::DVec3;
 
-/// Nodes that follow a path from one time to another, whatever forces act on them.
+/// A kinematic constraint: from one time to another its nodes follow a path, whatever forces act on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grip {
     /// The nodes.
     pub nodes: Vec<u32>,
-    /// When they are gripped (s).
+    /// When the nodes are gripped (s).
     pub from: f64,
-    /// When they are let go (s); infinite for never.
+    /// When they are released (s); infinite for never.
     pub until: f64,
-    /// How they move. Only the displacement since `from` counts; it rotates about the mean of the nodes as they were gripped.
+    /// How they move. Only the displacement since `from` matters. It rotates about the mean of the gripped positions.
     pub motion: Motion,
 }
 
@@ -31,14 +31,14 @@ impl Grip {
     }
 }
 
-/// What a grip remembers: whether it holds its nodes (0 or 1), then where each was when it was gripped (m).
+/// The memory of a grip: whether it is active (0 or 1), then the position of each node when it was gripped (m).
 impl Grip {
-    /// How many numbers it remembers.
+    /// Length of the memory.
     pub(super) fn width(&self) -> usize {
         1 + 3 * self.nodes.len()
     }
 
-    /// Its memory at the start. What it holds from the beginning is brought to a stop.
+    /// The initial memory. Nodes that are held from the start get zero velocity.
     pub(super) fn start(&self, state: &mut State) -> Vec<f64> {
         let mut memory = vec![0.0; self.width()];
         if self.holds(0.0) {
@@ -48,19 +48,20 @@ impl Grip {
         memory
     }
 
-    /// Takes the nodes where they are at the start of a step, if it is to hold them at its end (s).
+    /// Grips the nodes at their positions at the start of a step, if they are to be held at its end (s).
     pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl FnMut(u32) -> DVec3) {
         if self.takes(end, memory) {
             self.take(memory, position);
         }
     }
 
-    /// Whether it takes its nodes at the beginning of a step that ends at a time (s).
+    /// Whether the nodes are gripped at the start of a step that ends at a time (s).
     pub(super) fn takes(&self, end: f64, memory: &[f64]) -> bool {
         memory[0] == 0.0 && self.moves(end)
     }
 
-    /// Whether it moves nodes in a step that ends at a time (s): not in the one that ends just as it grips them.
+    /// Whether the grip moves nodes in a step that ends at a time (s): not in a step that ends exactly when they are
+    /// gripped.
     pub(super) fn moves(&self, end: f64) -> bool {
         self.from < end && end <= self.until
     }
@@ -72,8 +73,8 @@ impl Grip {
         }
     }
 
-    /// For each node that it holds at the end of a step: where it is then (m), and its velocity (m/s), the way that it has
-    /// gone in the step over the step: with that it flies on when it is let go.
+    /// For each node that is held at the end of a step: its position then (m), and its velocity (m/s), which is its
+    /// displacement in the step divided by the step. With that velocity it moves on when it is released.
     pub(super) fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
         let Interval { begin, end, step } = interval;
         let is_held = self.moves(end) && memory[0] == 1.0;
@@ -88,14 +89,14 @@ impl Grip {
         })
     }
 
-    /// Moves what it holds at the end of a step.
+    /// Writes the positions and velocities of the nodes that are held at the end of a step.
     pub(super) fn drag(&self, interval: Interval, memory: &[f64], position: &mut [DVec3], velocity: &mut [DVec3]) {
         for (node, to, speed) in self.moved(interval, memory) {
             (position[node], velocity[node]) = (to, speed);
         }
     }
 
-    /// Gives what it holds at the end of a step the grip's velocity again.
+    /// Writes the velocities of the nodes that are held at the end of a step, after the integrator has changed them.
     pub(super) fn hold(&self, interval: Interval, memory: &[f64], velocity: &mut [DVec3]) {
         for (node, _, speed) in self.moved(interval, memory) {
             velocity[node] = speed;

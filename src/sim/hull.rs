@@ -1,27 +1,27 @@
-//! Convex hulls of a few points, with faces that are polygons: what the faces of an element of any shape are.
+//! Convex hulls of a few points, with polygonal faces: the faces of elements of any shape.
 //!
-//! Libraries (`chull`, `parry3d-f64`) give triangles. To join those that are coplanar to round-off, and to leave out nodes
-//! along edges and within faces, takes the tolerances that are most of this file; and their order of faces, on which springs
-//! and sums depend, may change with any version.
+//! Libraries (`chull`, `parry3d-f64`) return triangles. Merging those that are coplanar to round-off, and removing
+//! nodes along edges and inside faces, needs the tolerances that are most of this file. Their order of faces, on which
+//! springs and sums depend, may also change between versions.
 
 use super::element::{ElementKind, around};
 use super::lists::IndexLists;
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// Points this part of the size of their box from a plane lie in it. A millionth is well above what single precision
-/// or six typed digits leave, and well below what a picture shows. The others are tried when rounding at the very
-/// edge of the first leaves a hull that does not close.
+/// A point is in a plane if its distance, relative to the size of the points' box, is at most this. A millionth is well
+/// above the error of single precision or of six typed digits, and well below what a picture shows. The other
+/// tolerances are tried if the hull does not close because distances are close to the first one.
 const TOLERANCES: [f64; 4] = [1e-6, 1e-5, 1e-8, 1e-10];
 
-/// The faces of those elements of a body whose number of nodes says nothing about them: of their convex hulls at rest.
+/// The faces of the elements of kind [`ElementKind::Other`]: those of their convex hulls at rest.
 ///
-/// A body without such elements has none, and pays nothing.
+/// Empty, and without cost, for a body without such elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hulls {
-    /// Those elements, in rising order.
+    /// These elements, in rising order.
     elements: Vec<u32>,
-    /// Where the faces of each begin, and where those of the last end.
+    /// Where the faces of each element begin; the last number is where all end.
     starts: Vec<usize>,
     /// The nodes of each face, counter-clockwise from outside.
     faces: IndexLists,
@@ -47,8 +47,8 @@ impl Hulls {
         hulls
     }
 
-    /// The faces of one element: none if it has a kind of its own, or if all its nodes are on a line; a single one if
-    /// they are in a plane.
+    /// The faces of one element: none if it has a table of faces or if all its nodes are on a line; one if they are in
+    /// a plane.
     pub fn of(&self, element: usize) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         let faces = match self.elements.binary_search_by(|&other| (other as usize).cmp(&element)) {
             Ok(at) => self.starts[at]..self.starts[at + 1],
@@ -58,20 +58,20 @@ impl Hulls {
     }
 }
 
-/// The corners of the box around `points`, low and high; zero for no points.
+/// The corners of the bounding box of `points`, low and high; zero for no points.
 pub(crate) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(&first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((first, first), |(low, high), &point| (low.min(point), high.max(point)))
 }
 
-/// The faces of the convex hull of points as places in their list, each from its lowest place, counter-clockwise seen
-/// from outside, in rising order.
+/// The faces of the convex hull of points, as indices of points, sorted. Each is counter-clockwise seen from outside
+/// and begins with its lowest index.
 ///
-/// Coplanar faces are one polygon. Points in a plane have one face, which turns as they are listed; points on a line
-/// have none. Points within the hull, within a face or along an edge are corners of nothing.
+/// Coplanar faces are merged into one polygon. Points in a plane have one face, oriented as they are listed; points on
+/// a line have none. Points inside the hull, inside a face or along an edge are not corners.
 ///
-/// Faces are found one beside the other by turning a plane about each edge ("gift wrapping"), which takes the product
-/// of the numbers of points and faces.
+/// Faces are found one from another by rotating a plane about each edge (gift wrapping), whose cost is proportional to
+/// the product of the numbers of points and faces.
 pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
     let (low, high) = bounds(points);
     let size = (high - low).max_element();
@@ -90,10 +90,10 @@ pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
     faces
 }
 
-/// Points in a box of size one, and how far from a plane a point may be to lie in it.
+/// Points in a box of size one, and the greatest distance from a plane at which a point counts as in it.
 struct Cloud<'p> {
     points: &'p [DVec3],
-    /// Places of points, none of which lies where an earlier one does.
+    /// Indices of points, without those that coincide with an earlier one.
     places: Vec<u32>,
     tolerance: f64,
 }
@@ -118,7 +118,7 @@ impl<'p> Cloud<'p> {
         self.points[place as usize]
     }
 
-    /// The place for which something is largest, the lowest of several.
+    /// The index for which `distance` is largest, and that distance; the lowest index if there are several.
     fn farthest(&self, places: &[u32], distance: impl Fn(DVec3) -> f64) -> Option<(u32, f64)> {
         let measured = places.iter().map(|&place| (place, distance(self.at(place))));
         measured.reduce(|best, other| if other.1 > best.1 { other } else { best })
@@ -127,7 +127,7 @@ impl<'p> Cloud<'p> {
     /// The faces, or `None` if they do not close.
     fn faces(&self) -> Option<Vec<Vec<u32>>> {
         let centre = self.places.iter().map(|&place| self.at(place)).sum::<DVec3>() / self.places.len() as f64;
-        // The point farthest from any other is a corner of the hull beyond doubt.
+        // The point farthest from the centre is a corner of the hull.
         let (corner, reach) = self.farthest(&self.places, |point| point.distance(centre))?;
         let origin = self.at(corner);
         let (far, length) = self.farthest(&self.places, |point| point.distance(origin))?;
@@ -147,7 +147,7 @@ impl<'p> Cloud<'p> {
         self.around(first)
     }
 
-    /// The outline of points in a plane in the direction in which most of them are listed.
+    /// The outline of points in a plane, with the orientation in which they are listed.
     fn as_listed(&self, mut outline: Vec<u32>) -> Vec<u32> {
         let area = |places: &[u32]| {
             let next = places.iter().cycle().skip(1);
@@ -159,9 +159,9 @@ impl<'p> Cloud<'p> {
         outline
     }
 
-    /// A face at a corner of the hull through which a plane with this normal touches it nowhere else.
+    /// A face at a corner of the hull. A plane with this normal touches the hull only at that corner.
     fn first_face(&self, corner: u32, normal: DVec3) -> Option<Vec<u32>> {
-        // The plane turned about any line in it until it meets a second point.
+        // Rotates the plane about any line in it until it touches a second point.
         let line = normal.any_orthonormal_vector();
         let (normal, inside) = self.turned(self.at(corner), line, normal)?;
         let origin = self.at(corner);
@@ -174,18 +174,19 @@ impl<'p> Cloud<'p> {
         self.beside([corner, far], normal)
     }
 
-    /// The other face at an edge of a face with this outward normal, around which the edge runs counter-clockwise.
+    /// The face on the other side of an edge of a face with this outward normal, in which the edge is
+    /// counter-clockwise.
     fn beside(&self, [from, to]: [u32; 2], normal: DVec3) -> Option<Vec<u32>> {
         let edge = (self.at(to) - self.at(from)).normalize();
         let (normal, inside) = self.turned(self.at(from), edge, normal)?;
         self.polygon(&inside, normal, to, Some(from))
     }
 
-    /// A plane that touches the hull at a line is turned about it, away from the side to the left of the line, until
-    /// it touches again: its outward normal and the points in it.
+    /// Rotates a plane that touches the hull at a line about that line, away from the side to the left of the line,
+    /// until it touches the hull again. Returns its outward normal and the points in it.
     fn turned(&self, origin: DVec3, line: DVec3, normal: DVec3) -> Option<(DVec3, Vec<u32>)> {
         let right = line.cross(normal);
-        // Where a point is seen along the line: to the right of it and below the plane.
+        // The position of a point seen along the line: to the right of it and below the plane.
         let seen = |place: u32| {
             let relative = self.at(place) - origin;
             let aside = from_line(relative, line).length() > self.tolerance;
@@ -202,7 +203,7 @@ impl<'p> Cloud<'p> {
                 first = Some((place, (x, y)));
             }
         }
-        // The plane through a point, the points in it, and whether there are others above it.
+        // The plane through a point, the points in it, and whether there are points above it.
         let through = |place: u32| {
             let normal = from_line(self.at(place) - origin, line).cross(line).try_normalize()?;
             let (mut inside, mut is_above) = (Vec::new(), false);
@@ -217,7 +218,7 @@ impl<'p> Cloud<'p> {
         };
         let (first, _) = first?;
         let (mut normal, mut inside, mut is_above) = through(first)?;
-        // The point farthest from the line says best how the plane lies.
+        // The point farthest from the line determines the plane most precisely.
         let (far, _) = self.farthest(&inside, |point| from_line(point - origin, line).length())?;
         if far != first {
             (normal, inside, is_above) = through(far)?;
@@ -225,8 +226,8 @@ impl<'p> Cloud<'p> {
         (!is_above).then_some((normal, inside))
     }
 
-    /// The outline of points in a plane, counter-clockwise about its normal, from a corner on and, when one is given,
-    /// on to a second one.
+    /// The outline of points in a plane, counter-clockwise about its normal, from a first corner and, if it is given, a
+    /// second one.
     fn polygon(&self, inside: &[u32], normal: DVec3, start: u32, second: Option<u32>) -> Option<Vec<u32>> {
         let mut outline = vec![start];
         let mut next = second;
@@ -244,7 +245,7 @@ impl<'p> Cloud<'p> {
         None
     }
 
-    /// The corner after another: all points lie to the left of the line to it. Of those on the line the farthest.
+    /// The next corner: all points lie to the left of the line to it. The farthest, if several lie on the line.
     fn next_corner(&self, inside: &[u32], normal: DVec3, last: u32) -> Option<u32> {
         let origin = self.at(last);
         let others = || inside.iter().copied().filter(|&place| place != last);
@@ -260,12 +261,12 @@ impl<'p> Cloud<'p> {
         self.farthest(&on_line.collect::<Vec<_>>(), |point| point.distance(origin)).map(|(place, _)| place)
     }
 
-    /// All faces, from a first one on; `None` if they do not close.
+    /// All faces, starting with a first one; `None` if they do not close.
     fn around(&self, first: Vec<u32>) -> Option<Vec<Vec<u32>>> {
         let most = 2 * self.places.len();
         let mut faces = Vec::new();
         let mut edges: HashSet<[u32; 2]> = HashSet::new();
-        // Edges with the normal of the face on one side, whose other side may be open.
+        // Edges whose second face may not have been found yet, with the normal of the first.
         let mut open: Vec<([u32; 2], DVec3)> = Vec::new();
         let mut found = Some(first);
         loop {
@@ -295,13 +296,13 @@ impl<'p> Cloud<'p> {
         }
         let corners: HashSet<u32> = edges.iter().map(|edge| edge[0]).collect();
         let closed = edges.iter().all(|&[from, to]| edges.contains(&[to, from]));
-        // Euler: nodes − edges + faces = 2 for anything that closes like a ball.
+        // Euler: nodes − edges + faces = 2 for any closed surface without holes.
         let is_ball = closed && corners.len() + faces.len() == edges.len() / 2 + 2;
         (is_ball && faces.len() >= 4).then_some(faces)
     }
 }
 
-/// The part of a vector that is square to a line of unit direction.
+/// The component of a vector perpendicular to a line with a unit direction.
 fn from_line(vector: DVec3, line: DVec3) -> DVec3 {
     vector - line * vector.dot(line)
 }
@@ -311,7 +312,7 @@ mod tests {
     use super::*;
     use glam::DQuat;
 
-    /// Numbers from 0 to 1 that look random.
+    /// Pseudo-random numbers from 0 to 1.
     struct Noise(u64);
 
     impl Noise {
@@ -331,7 +332,7 @@ mod tests {
         fans.map(|[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
     }
 
-    /// Each edge in both directions, Euler's number, and nothing outside.
+    /// Checks that each edge occurs in both directions, Euler's formula, and that no point is outside.
     fn assert_hull(points: &[DVec3], faces: &[Vec<u32>], slack: f64) {
         assert!(faces.len() >= 4, "{faces:?} of {points:?}");
         let mut edges: Vec<[u32; 2]> = Vec::new();
@@ -339,7 +340,7 @@ mod tests {
             edges.extend(around(face));
             let at = |n: usize| points[face[n] as usize];
             let (low, high) = bounds(points);
-            // The largest triangle of the face says best how it lies.
+            // The largest triangle of the face determines its normal most precisely.
             let normals = (2..face.len()).map(|n| (at(n - 1) - at(0)).cross(at(n) - at(0)));
             let normal = normals.reduce(|a, b| if b.length() > a.length() { b } else { a }).unwrap().normalize();
             let highest = points.iter().map(|&point| normal.dot(point - at(0))).fold(f64::MIN, f64::max);
@@ -406,7 +407,7 @@ mod tests {
         for (points, expected) in [
             (dodecahedron(), vec![5; 12]),
             (grid(2).collect(), vec![4; 6]),
-            // Nodes within faces, along edges and in the middle are corners of nothing.
+            // Nodes inside faces, along edges and in the middle are not corners.
             (grid(3).collect(), vec![4; 6]),
             (grid(5).collect(), vec![4; 6]),
             (prism(5).collect(), vec![4, 4, 4, 4, 4, 5, 5]),
@@ -428,7 +429,7 @@ mod tests {
         for case in 0..4000 {
             let count = 4 + case % 23;
             // Coarse grids give many coplanar, collinear and equal points; a little noise at and below the tolerance
-            // decides at random what is flat.
+            // makes it random which of them count as coplanar.
             let grid = [0.0, 2.0, 3.0, 5.0][case / 2 % 4];
             let shake = [0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3][case % 8];
             let squeeze = [1.0, 1e-2, 1e-4, 3e-6][case / 3 % 4];

@@ -1,8 +1,8 @@
-//! Vectors of doubles, and the choice of the widest that the processor has.
+//! Vectors of doubles, and the choice of the widest vector set that the processor supports.
 //!
 //! A kernel is written once, generic over [`Lanes`], as a [`Work`]; [`Set::run`] compiles it for every vector set and
-//! runs the one chosen. Each operation is one IEEE operation per lane, rounded once, so a kernel in which no lane depends
-//! on the others has the same bits for every set. Not a number has no fixed bits.
+//! runs the chosen one. Each operation is one IEEE operation per lane, rounded once, so a kernel whose lanes are
+//! independent has the same bits for every set. The bits of NaN are not defined.
 
 #![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 #![expect(unsafe_code, reason = "vector instructions, which a processor may lack, and unchecked loads and stores")]
@@ -10,8 +10,8 @@
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// An array of two, three, four or eight values, each by an expression of its index. Not `array::map`: its closures are functions of
-/// their own, compiled without the vector set, and not always made part of the kernel.
+/// An array of two, three, four or eight values, each by an expression of its index. `array::map` is not used because
+/// closures are separate functions, compiled without the vector set and not always inlined.
 macro_rules! each {
     (2, $at:ident => $value:expr) => {
         [
@@ -72,7 +72,7 @@ macro_rules! each {
 }
 pub(in crate::sim) use each;
 
-/// A loop over 0, 1, 2, written out: a compiler that keeps it a loop keeps its lanes in memory.
+/// An unrolled loop over 0, 1, 2: if the compiler keeps a loop, it keeps its vectors in memory.
 macro_rules! thrice {
     ($at:ident => $body:expr) => {{
         {
@@ -91,10 +91,10 @@ macro_rules! thrice {
 }
 pub(in crate::sim) use thrice;
 
-/// The most lanes that any set has. Arrays padded to a multiple of it suit all.
+/// The largest number of lanes of any set. Arrays padded to a multiple of it suit all sets.
 pub(in crate::sim) const MOST: usize = 8;
 
-/// A vector of doubles, and what can be done with every lane of it.
+/// A vector of doubles, with operations on each lane.
 ///
 /// Every function is `#[inline(always)]`, so that it becomes part of a function compiled for its set. Only [`Set::run`]
 /// may name an implementation.
@@ -113,21 +113,21 @@ pub(in crate::sim) trait Lanes:
     /// # Safety
     /// They are readable.
     unsafe fn load(from: *const f64) -> Self;
-    /// What [`Self::load_beyond`] needs to know of a distance.
+    /// A precomputed distance for [`Self::load_beyond`].
     type Distance: Copy;
     /// The distance of so many values, less than [`MOST`].
     fn distance(values: usize) -> Self::Distance;
-    /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where lanes fill a cache
-    /// line it reads two of them whole, of which the second begins `line` values after the first: to load across lines, or
-    /// across what was just stored, takes much longer. Else values lie one behind the other.
+    /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where a vector is a
+    /// cache line, this reads two whole lines, the second of which is `line` values after the first: loads that cross
+    /// lines, or cross data that were just stored, are much slower. With narrower vectors the values are consecutive.
     ///
     /// # Safety
-    /// [`MOST`] values are readable from either place, or twice as many from the first.
+    /// [`MOST`] values are readable from both places, or twice as many from the first.
     unsafe fn load_beyond(from: *const f64, distance: Self::Distance, line: usize) -> Self;
     /// Writes [`Self::WIDTH`] values to memory, of any alignment.
     ///
     /// # Safety
-    /// They are writable, by nobody else.
+    /// They are writable, and no other thread accesses them.
     unsafe fn store(self, to: *mut f64);
     /// `self · factor + summand`, rounded once.
     fn mul_add(self, factor: Self, summand: Self) -> Self;
@@ -139,13 +139,13 @@ pub(in crate::sim) trait Lanes:
     fn div(self, divisor: Self) -> Self;
     /// The square root.
     fn sqrt(self) -> Self;
-    /// The greater of both; `other` where one is no number.
+    /// The greater of both; `other` if one is NaN.
     fn max(self, other: Self) -> Self;
-    /// Without its sign.
+    /// The absolute value.
     fn abs(self) -> Self;
-    /// `self < other`; false where one is no number.
+    /// `self < other`; false if one is NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`; false where one is no number.
+    /// `self <= other`; false if one is NaN.
     fn le(self, other: Self) -> Self::Mask;
     /// `self` where `mask` is true, `other` elsewhere.
     fn select(self, mask: Self::Mask, other: Self) -> Self;
@@ -160,7 +160,7 @@ pub(in crate::sim) trait Lanes:
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
-    /// Asks for a cache line that will be read soon. It may be anywhere.
+    /// Prefetches a cache line that will be read soon. The address need not be valid.
     #[inline(always)]
     fn expect(_: *const f64) {}
     /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
@@ -191,10 +191,10 @@ pub(in crate::sim) trait Lanes:
         }
         columns.map(Self::from_array)
     }
-    /// Writes columns as rows of eight doubles, the first lane's first.
+    /// Writes columns as rows of eight doubles, the row of the first lane first.
     ///
     /// # Safety
-    /// Each row is writable, by nobody else.
+    /// Each row is writable, and no other thread accesses it.
     #[inline(always)]
     unsafe fn put_rows(columns: [Self; 8], row: impl Fn(usize) -> *mut f64) {
         let columns = columns.map(Self::to_array);
@@ -203,10 +203,10 @@ pub(in crate::sim) trait Lanes:
             unsafe { *row(lane).cast::<[f64; 8]>() = columns.map(|column| column[lane]) };
         }
     }
-    /// Adds columns to rows of four doubles, one row after the other: two may be the same.
+    /// Adds columns to rows of four doubles, one row after the other, as two rows may be the same.
     ///
     /// # Safety
-    /// Each row is writable, by nobody else.
+    /// Each row is writable, and no other thread accesses it.
     #[inline(always)]
     unsafe fn add_rows(columns: [Self; 4], row: impl Fn(usize) -> *mut f64) {
         let columns = columns.map(Self::to_array);
@@ -237,15 +237,15 @@ pub(in crate::sim) trait Lanes:
     const ALL: u32 = (1 << Self::WIDTH) - 1;
 }
 
-/// Something to be computed with the lanes of some set.
+/// A computation that can be compiled for the lanes of each set.
 pub(in crate::sim) trait Work {
-    /// What comes out.
+    /// Its result.
     type Output;
-    /// Computes it. Implementations are `#[inline(always)]`.
+    /// Computes the result. Implementations are `#[inline(always)]`.
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// A vector set that this processor has.
+/// A vector set that this processor supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::sim) struct Set(Kind);
 
@@ -260,11 +260,11 @@ enum Kind {
     Neon,
 }
 
-/// The most lanes that [`Set::best`] may have.
+/// The greatest number of lanes of [`Set::best`].
 pub(super) static WIDEST: AtomicUsize = AtomicUsize::new(MOST);
 
 impl Set {
-    /// The widest that this processor has and [`WIDEST`] allows.
+    /// The widest set that this processor supports and [`WIDEST`] allows.
     pub(in crate::sim) fn best() -> Self {
         let widest = WIDEST.load(Ordering::Relaxed);
         Self::all().filter(|set| set.lanes() <= widest).last().unwrap_or(Self(Kind::Portable))
@@ -283,7 +283,7 @@ impl Set {
         }
     }
 
-    /// All that this processor has, the narrowest first. None changes a bit of a result.
+    /// All sets that this processor supports, the narrowest first. Results have the same bits for all of them.
     pub(in crate::sim) fn all() -> impl Iterator<Item = Self> {
         let kinds = [
             Some(Kind::Portable),
@@ -294,7 +294,7 @@ impl Set {
             #[cfg(target_arch = "aarch64")]
             Some(Kind::Neon),
         ];
-        // Miri interprets; it knows few vector instructions.
+        // The interpreter Miri supports few vector instructions.
         kinds.into_iter().flatten().filter(|&kind| !cfg!(miri) || kind == Kind::Portable).map(Self)
     }
 
@@ -303,7 +303,7 @@ impl Set {
     pub(in crate::sim) fn run<W: Work>(self, work: W) -> W::Output {
         match self.0 {
             Kind::Portable => work.run::<portable::Vector>(),
-            // SAFETY: `all` has found these features in the processor, and no other set can be made.
+            // SAFETY: sets are made only by `all`, which has found these features in the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx2 => unsafe { x86::avx2(work) },
             // SAFETY: as above.
@@ -337,7 +337,7 @@ macro_rules! operators {
     };
 }
 
-/// Plain arrays, for any processor. Where it has no fused operations a library computes the same bits.
+/// Arrays, for any processor. Without fused operations a library computes the same bits.
 mod portable {
     use super::*;
     use std::array::from_fn;
@@ -463,7 +463,7 @@ mod x86 {
     /// Runs `work` compiled for AVX2.
     ///
     /// # Safety
-    /// The processor has these features.
+    /// The processor supports these features.
     #[target_feature(enable = "avx2,fma")]
     pub(super) unsafe fn avx2<W: Work>(work: W) -> W::Output {
         work.run::<Avx2>()
@@ -472,7 +472,7 @@ mod x86 {
     /// Runs `work` compiled for AVX-512.
     ///
     /// # Safety
-    /// The processor has these features.
+    /// The processor supports these features.
     #[target_feature(enable = "avx512f,avx2,fma")]
     pub(super) unsafe fn avx512<W: Work>(work: W) -> W::Output {
         work.run::<Avx512>()
@@ -483,8 +483,8 @@ mod x86 {
     #[derive(Clone, Copy)]
     pub(super) struct Avx512(__m512d);
 
-    // SAFETY of every block below: only `avx2` and `avx512` name these types, and their callers vouch for the processor.
-    // Pointers are the caller's of `load` and `store`.
+    // SAFETY of every block below: only `avx2` and `avx512` name these types, and their callers ensure that the
+    // processor supports them. For pointers see the conditions of `load` and `store`.
     operators! { Avx2,
         Add add (a, b) unsafe { _mm256_add_pd(a, b) };
         Sub sub (a, b) unsafe { _mm256_sub_pd(a, b) };
@@ -498,7 +498,7 @@ mod x86 {
         -a unsafe { _mm512_castsi512_pd(_mm512_xor_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(i64::MIN))) }
     }
 
-    /// Four rows as columns.
+    /// Transposes four rows.
     #[inline(always)]
     fn transposed(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [Avx2; 4] {
         unsafe {
@@ -513,7 +513,7 @@ mod x86 {
         }
     }
 
-    /// What stands in each quarter of four vectors.
+    /// Transposes the quarters of four vectors.
     #[inline(always)]
     fn quarters(a: __m512d, b: __m512d, c: __m512d, d: __m512d) -> [Avx512; 4] {
         unsafe {
@@ -528,11 +528,11 @@ mod x86 {
         }
     }
 
-    /// Eight rows as columns.
+    /// Transposes eight rows.
     #[inline(always)]
     fn transposed_8(r: [__m512d; 8]) -> [Avx512; 8] {
         unsafe {
-            // Pairs of rows, the even columns and the odd ones; then what stands in the same place of all pairs.
+            // Interleaves pairs of rows, the even columns and the odd ones; then collects the same column of all pairs.
             let [c0, c2, c4, c6] = quarters(
                 _mm512_unpacklo_pd(r[0], r[1]),
                 _mm512_unpacklo_pd(r[2], r[3]),
@@ -616,12 +616,13 @@ mod x86 {
         }
         #[inline(always)]
         fn shift_in(self, previous: Self) -> Self {
-            // The upper half of the one and the lower half of the other, then the odd of that and the even of `self`.
+            // The upper half of `previous` and the lower half of `self`, then the odd lanes of that and the even ones
+            // of `self`.
             Self(unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous.0, self.0), self.0) })
         }
         #[inline(always)]
         fn shift_out(self, next: Self) -> Self {
-            // The odd of `self`, and the even of its upper half and the lower half of the other.
+            // The odd lanes of `self`, and the even ones of its upper half and the lower half of `next`.
             Self(unsafe { _mm256_shuffle_pd::<0b0101>(self.0, _mm256_permute2f128_pd::<0x21>(self.0, next.0)) })
         }
         #[inline(always)]
@@ -778,7 +779,7 @@ mod x86 {
         }
         #[inline(always)]
         unsafe fn columns_4(row: impl Fn(usize) -> *const f64) -> [Self; 4] {
-            // Rows n and n + 2 side by side, so that what is unpacked has pairs of neighbours in its quarters.
+            // Rows n and n + 2 side by side, so that unpacking gives pairs of adjacent rows in the quarters.
             let [a, b, _, _, c, d, _, _] = each!(8, lane => unsafe {
                 let low = _mm512_castpd256_pd512(_mm256_loadu_pd(row(lane)));
                 _mm512_insertf64x4::<1>(low, _mm256_loadu_pd(row((lane + 2) % MOST)))
@@ -828,7 +829,7 @@ mod neon {
     #[derive(Clone, Copy)]
     pub(super) struct Vector(float64x2_t);
 
-    // SAFETY of every block below: every processor of this architecture has NEON. Pointers are the caller's.
+    // SAFETY of every block below: every processor of this architecture has NEON. For pointers see `load` and `store`.
     operators! { Vector,
         Add add (a, b) unsafe { vaddq_f64(a, b) };
         Sub sub (a, b) unsafe { vsubq_f64(a, b) };
@@ -936,7 +937,7 @@ mod tests {
         type Output = Vec<Vec<f64>>;
         #[inline(always)]
         fn run<L: Lanes>(self) -> Vec<Vec<f64>> {
-            // Eight lanes of each, in as many vectors as that takes.
+            // Eight lanes of each operation, in as many vectors as the width needs.
             let mut all = vec![Vec::new(); 19];
             let mut previous = L::splat(9.0);
             for first in (0..MOST).step_by(L::WIDTH) {
@@ -1006,7 +1007,7 @@ mod tests {
             [1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0].to_vec(),
             a.to_vec(),
         ];
-        // Not a number has no fixed bits.
+        // The bits of NaN are not defined.
         let bits = |all: &[Vec<f64>]| -> Vec<Vec<u64>> {
             all.iter()
                 .map(|one| one.iter().map(|v| if v.is_nan() { u64::MAX } else { v.to_bits() }).collect())

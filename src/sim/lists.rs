@@ -1,4 +1,4 @@
-//! Many short lists of indices in one piece of memory.
+//! Many short lists of indices in one allocation.
 
 /// Lists of indices of varying length, stored one behind the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,12 +25,12 @@ impl IndexLists {
         self.offsets.len() - 1
     }
 
-    /// Whether there is no list at all.
+    /// Whether there are no lists.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Where list `at` stands in [`Self::indices`].
+    /// The range of list `at` in [`Self::indices`].
     pub(crate) fn range(&self, at: usize) -> std::ops::Range<usize> {
         self.offsets[at]..self.offsets[at + 1]
     }

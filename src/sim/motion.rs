@@ -1,36 +1,36 @@
-//! Motions of obstacles and of grips.
+//! Prescribed motions of obstacles and kinematic constraints.
 
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A rigid displacement: a rotation about a pivot, then a shift.
+/// A rigid displacement: a rotation about a pivot, then a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// The shift (m).
+    /// The translation (m).
     pub shift: DVec3,
     /// The rotation about the pivot.
     pub rotation: DQuat,
 }
 
 impl Pose {
-    /// Where it was at the beginning.
+    /// No displacement.
     pub const NONE: Self = Self { shift: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
-    /// Where a point (m) of the thing is, which without the displacement is at `point`.
+    /// Where a point (m) of the body is moved to.
     pub fn apply(&self, pivot: DVec3, point: DVec3) -> DVec3 {
         pivot + self.shift + self.rotation * (point - pivot)
     }
 
-    /// The point (m) of the thing that the displacement has brought to `point`.
+    /// The point (m) of the body that is moved to `point`.
     pub(crate) fn undo(&self, pivot: DVec3, point: DVec3) -> DVec3 {
         pivot + self.rotation.conjugate() * (point - pivot - self.shift)
     }
 }
 
-/// A rigid displacement as typed: the rotation is a vector, so that it may go round more than once.
+/// A rigid displacement as written in a scene: the rotation is a vector, so that it can be more than one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Offset {
-    /// The shift (m).
+    /// The translation (m).
     pub shift: DVec3,
     /// Rotation vector: axis times angle (rad).
     pub rotation: DVec3,
@@ -46,31 +46,31 @@ impl Offset {
     }
 }
 
-/// One step in time.
+/// The time interval of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval {
-    /// When it begins (s).
+    /// Its start (s).
     pub begin: f64,
-    /// When it ends (s).
+    /// Its end (s).
     pub end: f64,
-    /// How long it takes (s): ΔT, of which the times above are multiples, rounded.
+    /// Its length ΔT (s). Start and end are multiples of it, rounded.
     pub step: f64,
 }
 
-/// An offset at a time.
+/// A displacement at a time: a key of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// When (s).
+    /// The time (s).
     pub time: f64,
-    /// Where.
+    /// The displacement.
     pub offset: Offset,
 }
 
-/// How a path runs from one key to the next.
+/// How a path is interpolated between keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ease {
-    /// From rest to rest: the share of the way is `(1 − cos πs)/2` after the share `s` of the time.
+    /// Starts and ends at rest: after the fraction `s` of the time the path has covered the fraction `(1 − cos πs)/2`.
     #[default]
     Smooth,
     /// At constant speed.
@@ -80,13 +80,13 @@ pub enum Ease {
 impl Ease {
     fn share(self, s: f64) -> f64 {
         match self {
-            // To the same bits on every machine: this library computes its cosine in plain arithmetic.
+            // With the same bits on every machine: this library uses basic arithmetic only.
             Self::Smooth => 0.5 * (1.0 - libm::cos(PI * s)),
             Self::Linear => s,
         }
     }
 
-    /// The greatest speed between two keys over the mean one.
+    /// The greatest speed between two keys divided by the mean speed.
     fn peak(self) -> f64 {
         match self {
             Self::Smooth => 0.5 * PI,
@@ -95,45 +95,46 @@ impl Ease {
     }
 }
 
-/// A path through space and time.
+/// A displacement as a function of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Motion {
-    /// It stays where it is.
+    /// No motion.
     #[default]
     Still,
-    /// From key to key, whose times rise. Before the first key it is at the first one, after the last at the last.
+    /// From key to key, with rising times. Before the first key the displacement is that of the first, after the last
+    /// key that of the last.
     Keys {
-        /// The keys, one or more.
+        /// The keys, at least one.
         keys: Vec<Key>,
-        /// How it runs between them.
+        /// The interpolation between them.
         ease: Ease,
-        /// Whether the path begins again at the first key's time when it has reached the last one's.
+        /// Whether the path starts again at the first key when it has reached the last one.
         repeat: bool,
     },
-    /// To and fro about where it is: `sin(2π t / period + phase)` times an offset.
+    /// An oscillation about the initial position: `sin(2π t / period + phase)` times an amplitude.
     Swing {
-        /// Duration of one swing to and fro (s).
+        /// Period (s).
         period: f64,
-        /// Where in the swing it is at time zero (rad).
+        /// Phase at time zero (rad).
         phase: f64,
-        /// The farthest offset.
+        /// The greatest displacement.
         amplitude: Offset,
     },
 }
 
 impl Motion {
-    /// Staying at an offset.
+    /// A constant displacement.
     pub fn at(offset: Offset) -> Self {
         Self::Keys { keys: vec![Key { time: 0.0, offset }], ease: Ease::Linear, repeat: false }
     }
 
-    /// Where it is at a time (s).
+    /// The displacement at a time (s).
     pub fn pose(&self, time: f64) -> Pose {
         match self {
             Self::Still => Pose::NONE,
             Self::Keys { keys, ease, repeat } => along(keys, *ease, *repeat, time).pose(),
             Self::Swing { period, phase, amplitude } => {
-                // Whole swings first: what is left has all its digits however long it has swung.
+                // Whole periods are removed first, so that the rest is precise at any time.
                 let swings = time / period;
                 let share = libm::sin(TAU * (swings - swings.floor()) + phase);
                 Offset::default().lerp(*amplitude, share).pose()
@@ -141,8 +142,9 @@ impl Motion {
         }
     }
 
-    /// The longest way (m) from one point of the path to another, at a distance from the pivot (m). A grip may stretch a
-    /// body as far, and when it lets go nodes fly back at a speed that no bound by the size of the body at rest allows.
+    /// The greatest distance (m) between two points of the path, at a distance from the pivot (m). A kinematic
+    /// constraint may stretch a body by as much, and the speed of nodes after their release has no bound by the size of
+    /// the body at rest.
     pub(crate) fn longest_way(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length().min(PI) * distance;
         match self {

@@ -1,4 +1,4 @@
-//! One body among those that are advanced together.
+//! One of the bodies that are advanced together.
 
 use super::body::Body;
 use super::diagnose::Diagnose;
@@ -7,21 +7,21 @@ use super::state::Nodes;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// One body in a simulation, and where its nodes and its memory lie in the [`State`](super::State).
+/// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
 pub struct Part {
     /// The body.
     pub body: Arc<Body>,
-    /// Its model's forces.
+    /// The forces of its model.
     pub forces: Box<dyn ForceModel>,
-    /// Its nodes among all.
+    /// The range of its nodes.
     pub nodes: Range<usize>,
-    /// Its model's memory among [`Memory::model`](super::state::Memory::model).
+    /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).
     pub memory: Range<usize>,
     pub(super) diagnose: Diagnose,
 }
 
 impl Part {
-    /// The part's own nodes.
+    /// The nodes of the part.
     pub(super) fn nodes_of<'a>(&self, all: Nodes<'a>) -> Nodes<'a> {
         Nodes { position: &all.position[self.nodes.clone()], velocity: &all.velocity[self.nodes.clone()] }
     }

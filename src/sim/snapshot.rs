@@ -1,53 +1,53 @@
-//! What one run looks like at one moment: all that drawing, diagnostics and files ever see of a simulation.
+//! A [`Snapshot`] of a run: what drawing, diagnostics and files read of a simulation.
 
 pub(crate) use super::diagnostics::Diagnostic;
 pub use super::diagnostics::Diagnostics;
 use glam::{DMat3, DVec3};
 
-/// Where and when a run blew up. That is a result, not an error.
+/// Where and when a run diverged. This is a result, not an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divergence {
-    /// Time of the first step whose result could not be kept (s).
+    /// Time of the end of the first step that was rejected (s).
     pub time: f64,
     /// Number of that step, counted from 1.
     pub step: u64,
-    /// The part of a node which left all bounds, counted from 0.
+    /// The part of the node that exceeded the speed limit, counted from 0.
     pub part: usize,
-    /// The first element of that part that holds the node; `None` if it belongs to no element.
+    /// The first element of that part that contains the node; `None` if it belongs to no element.
     pub element: Option<usize>,
 }
 
-/// Whether a run goes on.
+/// Whether a run has diverged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Status {
-    /// All is well.
+    /// It has not.
     #[default]
     Ok,
-    /// It blew up; the snapshot shows its last finite state.
+    /// It has; the snapshot has its last finite state.
     Diverged(Divergence),
 }
 
-/// One run at one moment.
+/// The state of one run at one moment, with its diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
-    /// The step after which this is (0: the start).
+    /// Number of steps taken (0: the start).
     pub step: u64,
-    /// Time of that step (s). A diverged run keeps the clock of the scene: its last state is shown at later times.
+    /// Time of that step (s). The clock of a diverged run keeps counting: its last state is shown at later times.
     pub time: f64,
     /// Position of each node (m).
     pub position: Vec<DVec3>,
     /// Velocity of each node (m/s).
     pub velocity: Vec<DVec3>,
-    /// Whether each element has changed sign by more than round-off, to below −1e-9 of the value at rest; see
+    /// Whether each element has turned over: its signed volume is below −1e-9 of that at rest; see
     /// [`Diagnostics::turned_over`].
     pub turned_over: Vec<bool>,
-    /// Where the best rigid placement of the rest shape is.
+    /// The best rigid placement of the rest shape.
     pub placement: Placement,
-    /// The field that was asked for, a number for each node or each element; empty if none was.
+    /// The values of the requested field, one for each node or each element; empty if no field was requested.
     pub field: Vec<f64>,
     /// Energies, momenta and measures of shape.
     pub diagnostics: Diagnostics,
-    /// Whether the run goes on.
+    /// Whether the run has diverged.
     pub status: Status,
 }
 
@@ -63,19 +63,19 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Where a point of the rest shape (m) is placed.
+    /// The position of a point of the rest shape (m) in this placement.
     pub fn place(&self, rest: DVec3) -> DVec3 {
         self.centre + self.turn * (rest - self.rest_centre)
     }
 }
 
-/// One frame of a scene: every run asked for, at the same moment.
+/// One frame of a scene: the requested runs at the same moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Number of the frame (0: the start).
     pub index: u64,
-    /// Time of the step that the frame shows (s), by the first run's clock: drawing never changes the steps, so it is
-    /// the nearest one to the frame's nominal time.
+    /// Time of the step that the frame shows (s), by the clock of the first run. Frames do not change the steps, so
+    /// this is the time of the step nearest to the frame's nominal time.
     pub time: f64,
     /// The runs shown, in the scene's order.
     pub runs: Vec<RunFrame>,

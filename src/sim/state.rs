@@ -1,35 +1,36 @@
-//! All that changes in a simulation: the [`State`].
+//! The [`State`]: everything that changes in a simulation.
 
 use super::snapshot::{Divergence, Status};
 use glam::DVec3;
 
-/// All that persists from one step to the next. A run goes on from a copy of its state, also from one that was written
-/// and read back, with the same bits as if it had never stopped.
+/// Everything that persists from one step to the next. A run continued from a copy of its state, or from a state that
+/// was written and read back, has the same bits as one that never stopped.
 ///
-/// As a start it has positions and velocities alone; a [`World`](super::World) adds the rest.
+/// An initial state has only positions and velocities; a [`World`](super::World) adds the rest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
     /// Position of each node (m), part after part.
     pub position: Vec<DVec3>,
     /// Velocity of each node (m/s).
     pub velocity: Vec<DVec3>,
-    /// Steps taken. The clock goes on after a divergence.
+    /// Steps taken. After a divergence the clock keeps counting.
     pub steps: u64,
-    /// Whether it goes on.
+    /// Whether the run has diverged.
     pub status: Status,
-    /// What models, constraints and the integrator remember.
+    /// The memory of models, constraints and the integrator.
     pub memory: Memory,
 }
 
-/// What is remembered from one step to the next besides positions and velocities. Who writes a part of it says what the
-/// numbers mean.
+/// What persists from one step to the next besides positions and velocities. The model, the constraint or the
+/// integrator that writes its part defines what the numbers mean.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
     /// Of the elastic models, part after part, such as the last rotation of each element.
     pub model: Vec<f64>,
-    /// Of the kinematic constraints, one after the other: where nodes were gripped.
+    /// Of the kinematic constraints, one after the other: whether each is active, and the positions of its nodes when
+    /// it became active.
     pub constraints: Vec<f64>,
-    /// Of the integrator; empty if it has to begin anew.
+    /// Of the integrator; empty if it has to start anew.
     pub integrator: Vec<f64>,
 }
 
@@ -43,12 +44,12 @@ pub struct Nodes<'a> {
 }
 
 impl State {
-    /// A start with positions (m) and velocities (m/s).
+    /// An initial state with positions (m) and velocities (m/s).
     pub fn new(position: Vec<DVec3>, velocity: Vec<DVec3>) -> Self {
         Self { position, velocity, ..Self::default() }
     }
 
-    /// The nodes at `position` (m), at rest.
+    /// An initial state with the nodes at rest at `position` (m).
     pub fn at_rest(position: Vec<DVec3>) -> Self {
         let velocity = vec![DVec3::ZERO; position.len()];
         Self::new(position, velocity)
@@ -59,7 +60,7 @@ impl State {
         Nodes { position: &self.position, velocity: &self.velocity }
     }
 
-    /// The state as bytes, for [`Self::from_bytes`]: a header, then every number as 64 bits, the lowest byte first.
+    /// The state as bytes, for [`Self::from_bytes`]: a header, then every number as 64 bits, little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Memory { model, constraints, integrator } = &self.memory;
         let (diverged, [time, step, part, element]) = match self.status {
@@ -76,7 +77,7 @@ impl State {
         MARK.iter().copied().chain(words.flatten()).collect()
     }
 
-    /// The state that [`Self::to_bytes`] wrote; `None` if the bytes are anything else.
+    /// Reads what [`Self::to_bytes`] wrote; `None` if the bytes are anything else.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (words, []) = bytes.strip_prefix(MARK)?.as_chunks::<8>() else { return None };
         let (header, words) = words.split_at_checked(HEADER)?;
@@ -84,7 +85,7 @@ impl State {
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
         let [nodes, model, constraints, integrator] = lengths.map(|length| usize::try_from(length).ok());
         let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?]);
-        // Counts come from outside: they are compared with what is there before anything is taken.
+        // The counts are untrusted: they are checked against the length of the input before anything is allocated.
         let mut rest = words;
         let mut take = |count: usize| -> Option<Vec<f64>> {
             let (taken, others) = rest.split_at_checked(count)?;
@@ -106,9 +107,9 @@ impl State {
     }
 }
 
-/// How the bytes of a state begin.
+/// The first bytes of every state.
 const MARK: &[u8] = b"localshape state 2\n";
-/// Words before the numbers.
+/// Number of 64-bit words in the header.
 const HEADER: usize = 10;
 
 #[cfg(test)]
@@ -145,7 +146,7 @@ mod tests {
         };
         assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
         assert!(State::from_bytes(&changed(0, b'L')).is_none());
-        // Counts that no memory could hold, and a status that does not exist.
+        // Counts too large for any memory, and a status that does not exist.
         assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
         assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
     }

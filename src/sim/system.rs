@@ -1,4 +1,4 @@
-//! What is advanced together: bodies with their models, and what acts on them.
+//! What is advanced together: bodies with their models, obstacles and kinematic constraints.
 
 use super::contact::{ContactStage, Obstacle};
 use super::grip::Grip;
@@ -15,7 +15,7 @@ pub(crate) struct Surroundings {
     pub gravity: DVec3,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
-    /// What holds and drags nodes, after all obstacles.
+    /// Kinematic constraints, applied after all obstacles.
     pub grips: Vec<Grip>,
 }
 
@@ -26,21 +26,21 @@ pub(super) struct System {
     pub(super) mass: Vec<f64>,
     /// Acceleration of gravity (m/s²).
     pub(super) gravity: DVec3,
-    /// What nodes bounce off.
+    /// Contact with obstacles.
     pub(super) contact: Box<dyn ContactStage>,
-    /// What holds and drags nodes, after all contact.
+    /// Kinematic constraints, applied after contact.
     pub(super) grips: Vec<Grip>,
     /// Time step ΔT (s).
     pub(super) step: f64,
 }
 
 impl System {
-    /// The step after so many.
+    /// The time interval of the step after `steps` steps.
     pub(super) fn interval(&self, steps: u64) -> Interval {
         Interval { begin: steps as f64 * self.step, end: (steps + 1) as f64 * self.step, step: self.step }
     }
 
-    /// The part that a node belongs to, and the first element there that holds it.
+    /// The part that a node belongs to, and the first element of that part that contains it.
     pub(super) fn place_of(&self, node: usize) -> (usize, Option<usize>) {
         let part = self.parts.partition_point(|part| part.nodes.end <= node);
         let Part { body, nodes, .. } = &self.parts[part];
@@ -72,13 +72,13 @@ impl System {
         }
     }
 
-    /// Whether a grip takes its nodes at the beginning of the step after so many.
+    /// Whether a grip becomes active at the beginning of the step after `steps` steps.
     pub(super) fn takes(&self, steps: u64, memory: &[f64]) -> bool {
         let end = self.interval(steps).end;
         self.grips(memory).any(|(grip, memory)| grip.takes(end, memory))
     }
 
-    /// Whether a grip holds nodes at the end of the step after so many.
+    /// Whether a grip holds nodes at the end of the step after `steps` steps.
     pub(super) fn holds(&self, steps: u64) -> bool {
         let end = self.interval(steps).end;
         self.grips.iter().any(|grip| grip.moves(end))
@@ -104,8 +104,8 @@ impl System {
         }
     }
 
-    /// Contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is that with which each node
-    /// has moved in the step; `None` if it has moved at constant velocity.
+    /// Applies contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is the constant
+    /// one of each node in the step; `None` if nodes moved at constant velocity.
     pub(super) fn constrain(
         &self,
         interval: Interval,
@@ -120,7 +120,7 @@ impl System {
         }
     }
 
-    /// Gives the nodes that grips hold at the end of a step the velocities of the grips again.
+    /// Writes the velocities of the nodes that grips hold at the end of a step, after the integrator has changed them.
     pub(super) fn hold(&self, interval: Interval, after: &mut State) {
         let State { velocity, memory: Memory { constraints, .. }, .. } = after;
         for (grip, memory) in self.grips(constraints) {

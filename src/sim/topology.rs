@@ -11,11 +11,11 @@ use std::collections::HashMap;
 /// The faces of a body, each stored once, whether inside it or on its surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faces {
-    /// The corners of each face, counter-clockwise seen from outside the element it is [`Self::inner`] of.
+    /// The corners of each face, counter-clockwise seen from outside its [`Self::inner`] element.
     pub nodes: IndexLists,
-    /// The element that the face bounds and looks out of; `None` for a face given without one.
+    /// The element that the face bounds, with the face normal pointing out of it; `None` for a listed face without one.
     pub inner: Vec<Option<u32>>,
-    /// The element on the other side, into which the face looks; `None` on the surface of the body.
+    /// The element on the other side, into which the normal points; `None` on the surface of the body.
     pub outer: Vec<Option<u32>>,
 }
 
@@ -24,9 +24,9 @@ pub struct Faces {
 pub struct Elements<'a> {
     /// The nodes of each element.
     pub nodes: &'a IndexLists,
-    /// What each element is.
+    /// The kind of each element.
     pub kinds: &'a [ElementKind],
-    /// The faces of those of no particular kind.
+    /// The faces of the elements of kind [`ElementKind::Other`].
     pub hulls: &'a Hulls,
     /// Rest position of each node (m).
     pub rest: &'a [DVec3],
@@ -50,7 +50,7 @@ impl Elements<'_> {
         edges
     }
 
-    /// Calls `visit` with each edge of one element, smaller node first; some edges of a hull come twice.
+    /// Calls `visit` with each edge of one element, smaller node first; some edges of a hull are visited twice.
     fn for_each_edge(&self, element: usize, mut visit: impl FnMut([u32; 2])) {
         let nodes = &self.nodes[element];
         match self.kinds[element] {
@@ -61,7 +61,7 @@ impl Elements<'_> {
         }
     }
 
-    /// Whether an element is a face itself, with two equal sides, so that it bounds nothing.
+    /// Whether an element is a single face, which bounds no volume.
     pub(crate) fn is_flat(&self, element: usize) -> bool {
         match self.kinds[element] {
             ElementKind::Polygon | ElementKind::Triangle => true,
@@ -70,10 +70,12 @@ impl Elements<'_> {
         }
     }
 
-    /// Every face of the elements once, with the elements on its two sides. Order: by element, then as in its table.
+    /// Every face of the elements once, with the elements on its two sides. Sorted by element, then as in the table of
+    /// its kind.
     pub(crate) fn shared_faces(&self) -> Faces {
         let mut faces = Faces::default();
-        // Those that wait for their other side. Elements that are faces themselves stay single.
+        // Faces whose other side has not been found yet. An element that is a single face shares it with no other
+        // element.
         let mut waiting = Alike::new(self.rest.len());
         for (owner, element) in (0u32..).zip(0..self.nodes.len()) {
             let is_flat = self.is_flat(element);
@@ -95,14 +97,14 @@ impl Elements<'_> {
 
     /// The springs of a named topology on all elements: each pair once, smaller node first, in rising order.
     pub fn springs(&self, topology: Springs) -> Vec<[u32; 2]> {
-        // Counted by their first nodes, which sorts them by these; the few of each node are sorted by themselves.
+        // Counting sort by the first node; the few springs of each node are then sorted by the second one.
         let mut ends = vec![0; self.rest.len() + 1];
         self.for_each_spring(topology, |[first, _]| ends[first as usize + 1] += 1);
         for node in 0..self.rest.len() {
             ends[node + 1] += ends[node];
         }
         let mut seconds = vec![0; ends[self.rest.len()]];
-        // Where the next one of each node goes; at last, where the node's end.
+        // Where the next spring of each first node is stored; after the loop, where the springs of the node end.
         self.for_each_spring(topology, |[first, second]| {
             let next = &mut ends[first as usize];
             seconds[*next] = second;
@@ -121,8 +123,8 @@ impl Elements<'_> {
 
     /// The diagonals of a polygon from one corner: one for a quadrilateral, none for a triangle.
     ///
-    /// The corner is the one with the least coordinates at rest, x before y before z, so that the springs do not depend
-    /// on how nodes are numbered.
+    /// The corner is the one with the least coordinates at rest (x, then y, then z), so that the springs do not depend
+    /// on the numbering of nodes.
     fn fan<'f>(&self, face: &'f [u32]) -> impl Iterator<Item = [u32; 2]> + 'f {
         let least = |&one: &usize, &other: &usize| {
             let [one, other] = [face[one], face[other]].map(|node| (self.rest[node as usize].to_array(), node));
@@ -147,12 +149,13 @@ impl Elements<'_> {
         match topology {
             Springs::Edges | Springs::All => {}
             Springs::EdgesOneDiagonal if kind == ElementKind::Hexahedron => {
-                // Section 3.6 of the paper does not say which diagonals Fig. 4(b) has; this choice shows its result.
+                // Section 3.6 of the paper does not state which diagonals Fig. 4(b) has; this choice reproduces its
+                // result.
                 every_pair(&[0, 3, 5, 6].map(|at: usize| nodes[at])).for_each(visit);
             }
             Springs::EdgesOneDiagonal => self.for_each_face(element, |face| self.fan(face).for_each(&mut visit)),
             Springs::EdgesFaceDiagonals => self.for_each_face(element, |face| diagonals(face).for_each(&mut visit)),
-            // All corners of a polygon share its one face.
+            // All corners of a polygon share its only face.
             Springs::EdgesBodyDiagonals if kind == ElementKind::Polygon => {}
             Springs::EdgesBodyDiagonals => {
                 let mut in_faces = Vec::new();
@@ -178,8 +181,8 @@ fn every_pair(nodes: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     (0..nodes.len()).flat_map(move |a| (0..a).map(move |b| ordered([nodes[a], nodes[b]])))
 }
 
-/// Faces given by hand, each with the elements that hold all its nodes: the first one out of which it looks, and the
-/// first one into which it looks. `looks_out` says which of them an element is.
+/// Listed faces, each with the elements that contain all its nodes: the first element out of which its normal points,
+/// and the first one into which it points. `looks_out` returns whether the normal points out of an element.
 pub(crate) fn assign_faces(
     given: &IndexLists,
     elements: &IndexLists,
@@ -211,16 +214,16 @@ pub enum Springs {
     /// One spring on each edge.
     #[serde(rename = "edges")]
     Edges,
-    /// Edges and one diagonal of each face, as Fig. 4(b) draws them. On a hexahedron these are the six edges of
-    /// the tetrahedron on corners 0, 3, 5, 6, so that inner faces carry both diagonals; on any other
-    /// quadrilateral the diagonal through the corner with the least coordinates at rest (x, then y, then z), and on
-    /// a face of more corners all diagonals from there.
+    /// Edges and one diagonal of each face, as drawn in Fig. 4(b). On a hexahedron these are the six edges of the
+    /// tetrahedron on corners 0, 3, 5, 6, so that faces between elements have both diagonals; on any other
+    /// quadrilateral the diagonal through the corner with the least coordinates at rest (x, then y, then z), and on a
+    /// face of more corners all diagonals from that corner.
     #[serde(rename = "edges+one-diagonal")]
     EdgesOneDiagonal,
     /// Edges and both diagonals of each face.
     #[serde(rename = "edges+face-diagonals")]
     EdgesFaceDiagonals,
-    /// Edges and the diagonals through the element: those pairs of nodes that share no face.
+    /// Edges and the diagonals through the element: pairs of nodes that share no face.
     #[serde(rename = "edges+body-diagonals")]
     EdgesBodyDiagonals,
     /// Every pair of nodes of an element.
@@ -233,7 +236,7 @@ mod tests {
     use super::*;
     use std::sync::LazyLock;
 
-    /// Elements that need no hull.
+    /// Elements whose kinds have tables of faces.
     fn elements<'a>(nodes: &'a IndexLists, kinds: &'a [ElementKind]) -> Elements<'a> {
         static NONE: LazyLock<Hulls> = LazyLock::new(Hulls::default);
         Elements { nodes, kinds, hulls: &NONE, rest: &[DVec3::ZERO; 16] }
@@ -272,7 +275,7 @@ mod tests {
             sides.sort_unstable();
             sides.dedup();
             assert_eq!(element.edges_of(0), sides, "{kind:?}");
-            // Euler: nodes − edges + faces = 2 for anything that closes like a ball.
+            // Euler: nodes − edges + faces = 2 for any closed surface without holes.
             assert_eq!(own.len() + faces.len(), element.edges_of(0).len() + 2, "{kind:?}");
         }
     }

@@ -1,14 +1,14 @@
-//! What a reader calls the parts of a body, choices and units, and how many digits of a number are shown.
+//! Names of the parts of a body, of choices and of units, and rounding of numbers, for captions and messages.
 
 use super::body::{Body, ElementKind};
 use glam::DVec3;
 use serde::Serialize;
 
-/// How many elements of each kind a body has, and what a reader calls that many: polygons by the number of their sides,
-/// cubes when all hexahedra are ones, and squares when all quadrilaterals are.
+/// The number of elements of each kind, with the name of the kind, singular or plural. Polygons are named by their
+/// number of sides; hexahedra are cubes if all of them are, and quadrilaterals are squares if all of them are.
 pub(crate) fn elements(body: &Body) -> Vec<(usize, &'static str)> {
     use ElementKind::*;
-    // A polygon by its sides, whatever is beyond hexagons being one; others by their kind alone.
+    // Polygons with more than six sides are one group.
     let group = |nodes: &[u32], kind| if kind == Polygon { (kind, nodes.len().min(7)) } else { (kind, 0) };
     let of = |wanted| {
         body.elements
@@ -65,7 +65,7 @@ fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
         && is_at(7, xy + z)
 }
 
-/// A choice as it is typed in a scene.
+/// The value of an enum as written in a scene.
 pub(crate) fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
@@ -74,13 +74,13 @@ pub(crate) fn typed(choice: &impl Serialize) -> String {
 const PREFIXES: [(f64, &str); 7] =
     [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
 
-/// The SI prefix that leaves one to three digits before the point of a size, and its factor.
+/// The SI prefix that leaves one to three digits before the decimal point, and its factor.
 pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
-    // Rounding may leave a size a little below a power of a thousand.
+    // Rounding may have made the number slightly less than a power of a thousand.
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
-/// A number with so many significant digits.
+/// A number rounded to so many significant digits.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }

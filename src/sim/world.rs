@@ -1,4 +1,4 @@
-//! The world of one run. Its step is section 2 of the paper: forces, motion, collisions.
+//! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 use super::body::Body;
 use super::crew::Crew;
@@ -18,47 +18,48 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How a run is stepped.
+/// How a run is advanced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stepping {
-    /// The way of stepping.
+    /// The integration method.
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
-    /// How a step is computed. A model without vectorised steps ([`ElasticModel::known`]), or several bodies together, take
-    /// the plain code.
+    /// Which code computes a step. The reference code is used for a model without vectorised steps
+    /// ([`ElasticModel::known`]) and for several bodies together.
     pub kernel: Kernel,
 }
 
 impl Stepping {
-    /// In the fastest way.
+    /// With the fastest code.
     #[cfg(test)]
     pub(crate) fn new(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, kernel: Kernel::default() }
     }
 }
 
-/// How a step is computed. The choice moves states by round-off in each step, which chaotic motion enlarges.
+/// Which code computes a step. The choice changes states by round-off in each step, which chaotic motion amplifies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
-    /// Vectorised, with the same bits on every machine and for any number of threads. Shape-based models with the rotations
-    /// `exact` and `arctangent`, undamped or with `damping_of = "relative-motion"`, and mass-spring have it.
+    /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
+    /// shape-based models with `rotation = "exact"` or `"arctangent"` that are undamped or have `damping_of =
+    /// "relative-motion"`.
     #[default]
     Fast,
-    /// The plain code that reads like the paper. The other rotations and the damping of deformation have nothing else.
+    /// The reference code, written like the equations of the paper. All models have it.
     Reference,
 }
 
 impl Kernel {
-    /// The fastest one for a model.
+    /// The fastest one that a model has.
     pub fn of(model: &dyn ElasticModel) -> Self {
         if model.known().is_some() { Self::Fast } else { Self::Reference }
     }
 }
 
-/// A moment of simulated time: so many counts of a clock that counts at a rate, such as frames. A run with fixed steps shows
-/// at a moment its nearest step.
+/// A moment of simulated time: a count at a rate, such as a frame number and frames per second. A run with fixed steps
+/// has at a moment the state of its nearest step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Counts since the start.
@@ -80,8 +81,8 @@ impl Moment {
     }
 }
 
-/// Bodies with their elastic models, on their way through time. It cannot fail: when it blows up it stops at its last
-/// finite state and says so.
+/// Bodies with their elastic models, as they move in time. Stepping cannot fail: a world that diverges stops at its
+/// last finite state, and [`Self::status`] reports it.
 pub struct World {
     system: System,
     dynamics: Box<dyn Dynamics>,
@@ -93,7 +94,7 @@ pub struct World {
 }
 
 impl World {
-    /// A body at `initial`, about to be stepped.
+    /// A world of one body, with the initial positions and velocities `initial`.
     ///
     /// # Panics
     /// If `initial` has not one position and one velocity per node.
@@ -107,8 +108,8 @@ impl World {
         Self::of_parts(&[(Arc::clone(body), model)], initial, surroundings, stepping)
     }
 
-    /// Several bodies, each with its model, about to be stepped together. `initial` has the nodes of the first, then those
-    /// of the second, and so on; in this order grips count nodes, too.
+    /// A world of several bodies, each with its model, which are advanced together. `initial` has the nodes of the
+    /// first body, then those of the second, and so on; grips number nodes in the same order.
     ///
     /// # Panics
     /// If `initial` has not one position and one velocity per node.
@@ -158,36 +159,36 @@ impl World {
         Self { system, dynamics, crew: Crew::new(1), limit: limit.unwrap_or_default(), field: None, state }
     }
 
-    /// Lends it threads for vectorised steps, as far as there is work for them. They change no bit. Before, and with
-    /// [`Kernel::Reference`], the calling thread and its pool do all.
+    /// Sets the threads for vectorised steps, which use as many as the body is large enough for. They do not change any
+    /// bit. By default one thread is used; [`Kernel::Reference`] uses the thread pool of the caller (rayon) instead.
     pub fn set_crew(&mut self, crew: Crew) {
         self.crew = crew;
     }
 
-    /// The threads that were lent.
+    /// The threads for vectorised steps.
     pub fn crew(&mut self) -> &mut Crew {
         &mut self.crew
     }
 
-    /// Makes snapshots show a field from now on, or none.
+    /// Sets the field that snapshots contain from now on; `None` for no field.
     pub(crate) fn show(&mut self, field: Option<Field>) {
         self.field = field;
     }
 
-    /// Goes on by a number of steps. A diverged world only lets its clock go on.
+    /// Advances by a number of steps. After a divergence only the clock advances.
     pub fn advance(&mut self, steps: u64) {
         self.advance_steps(steps);
         self.dynamics.settle(&mut self.state);
     }
 
-    /// Goes on towards a moment by a number of steps at most, and returns whether it is there. However the way is cut up,
-    /// the states have the same bits.
+    /// Advances towards a moment by at most `most_steps` steps, and returns whether it has been reached. The states
+    /// have the same bits however the steps are divided into calls.
     ///
     /// # Panics
     /// If the moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
         let left = self.steps_at(moment).checked_sub(self.steps()).expect("moments are taken in rising order");
-        // What blew up only lets its clock go on.
+        // After a divergence only the clock advances, which takes no time.
         let most_steps = if self.state.status == Status::Ok { most_steps } else { u64::MAX };
         self.advance_steps(left.min(most_steps));
         let is_there = left <= most_steps;
@@ -197,7 +198,7 @@ impl World {
         is_there
     }
 
-    /// How many steps have been taken at a moment.
+    /// The number of steps taken at a moment.
     pub(crate) fn steps_at(&self, moment: Moment) -> u64 {
         moment.step(self.system.step)
     }
@@ -218,7 +219,7 @@ impl World {
         }
     }
 
-    /// Steps taken so far, also on the way to a moment.
+    /// Number of steps taken, also between moments.
     pub fn steps(&self) -> u64 {
         match self.state.status {
             Status::Ok => self.dynamics.steps(&self.state),
@@ -226,16 +227,16 @@ impl World {
         }
     }
 
-    /// The state at the last moment that was reached.
+    /// The state when [`Self::advance`] returned, or when the last moment was reached.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Goes on from another state of the same bodies under the same conditions. A time step that is another one would shift
-    /// its clock.
+    /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as
+    /// the time of a state is its number of steps times the time step.
     ///
     /// # Panics
-    /// If it is a state of something else.
+    /// If the state does not have the numbers of nodes and of memory of these bodies.
     pub fn set_state(&mut self, state: State) {
         let lengths = |state: &State| {
             let Memory { model, constraints, .. } = &state.memory;
@@ -250,14 +251,15 @@ impl World {
         self.dynamics.restart();
     }
 
-    /// Whether it goes on.
+    /// Whether the run has diverged.
     pub fn status(&self) -> Status {
         self.state.status
     }
 
-    /// What the model of a part says of the present state: its energy, and the error α of Eq. (18) with the rotations of
-    /// the forces here. Every integrator evaluates its forces here, so asked before each step this is α at every
-    /// evaluation, with velocity Verlet as with both Euler methods. Costs about one evaluation, and changes nothing.
+    /// Energy of the present state, and the residual α of Eq. (18) with the rotations that the forces have in this
+    /// state. Every integrator evaluates its forces at the state before a step. So if this is called before each step,
+    /// it gives α at every evaluation, for velocity Verlet as for both Euler methods. It costs about one evaluation and
+    /// changes nothing.
     ///
     /// # Panics
     /// If there is no such part.
@@ -265,9 +267,9 @@ impl World {
         self.report_with(&self.system.parts[part], &mut |_, _, _| {})
     }
 
-    /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must have been one of an Euler method,
-    /// with its nodes at `before` (m) when it began; empty for a model without rotations. It takes the rotations of the step
-    /// itself, and so costs much less than [`Self::report`].
+    /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
+    /// that began with the nodes at `before` (m); empty for a model without rotations. It uses the rotations of the
+    /// step itself, and so costs much less than [`Self::report`].
     pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
         let part = &self.system.parts[0];
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
@@ -277,24 +279,24 @@ impl World {
         part.forces.report(part.nodes_of(self.state.nodes()), &self.state.memory.model[part.memory.clone()], share)
     }
 
-    /// The numbers of the present moment alone, of the first part, without copies of all positions and velocities.
+    /// The diagnostics of the first part in the present state, without copying positions and velocities.
     pub fn diagnostics(&self) -> Diagnostics {
         let part = &self.system.parts[0];
         part.diagnose.state(part.nodes_of(self.state.nodes()), self.system.gravity, &self.report(0)).0
     }
 
-    /// Some of them; the others are zero. What none of them needs is not computed.
+    /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
     pub(crate) fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
         let part = &self.system.parts[0];
         part.diagnose.some(part.nodes_of(self.state.nodes()), self.system.gravity, || self.report(0), wanted)
     }
 
-    /// The present moment of the first part with its diagnostics.
+    /// The present state of the first part with its diagnostics.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot_of(0)
     }
 
-    /// The present moment of a part with its diagnostics.
+    /// The present state of a part with its diagnostics.
     ///
     /// # Panics
     /// If there is no such part.

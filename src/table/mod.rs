@@ -1,8 +1,8 @@
-//! The paper's numbers beside ours: Table 1, and the cost of the shape model over that of springs.
+//! The paper's numbers compared with ours: Table 1, and the ratio of computation times of the shape model and springs.
 //!
-//! A table is measured through a callback that is told of the work done and may stop it, and then says itself as text.
-//! It knows neither files nor the command line. All simulation is that of [`Scene::world`](crate::scene::Scene::world)
-//! on scenes that these tables write themselves.
+//! A measurement reports its progress to a callback that may stop it; its result is then formatted. It does not depend
+//! on files or the command line. All simulations use [`Scene::world`](crate::scene::Scene::world) with scenes that this
+//! module writes.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -18,10 +18,10 @@ pub(crate) use spread::Spread;
 
 use crate::scene::{Limits, Scene};
 
-/// Told how much work was just done; `false` stops the measurement. Called from any thread.
+/// Called with the amount of work just done, from any thread; `false` stops the measurement.
 pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
-/// A scene of our own, which has no mistakes.
+/// A scene written by this module, which has no mistakes.
 fn scene(text: &str, name: &str) -> Scene {
     Scene::parse(text, name, &Limits::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
 }

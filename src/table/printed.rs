@@ -19,9 +19,9 @@ pub(crate) struct Printed {
 pub(crate) struct Row {
     /// Its letter.
     pub name: &'static str,
-    /// "Number of iteration": how often Eq. (15) is solved at each evaluation.
+    /// "Number of iteration": the number of passes, each of which solves Eq. (15), at each evaluation.
     pub passes: u32,
-    /// For each of [`STIFFNESSES`] the time step ΔT (s), as printed, and what the paper found.
+    /// For each of [`STIFFNESSES`] the time step ΔT (s), as printed, and the paper's results.
     pub cases: [(f64, Printed); 3],
 }
 
@@ -77,7 +77,7 @@ pub(crate) const ROWS: [Row; 4] = {
     ]
 };
 
-/// A figure of the paper in three digits, or fewer where its six decimals end before.
+/// A number of the paper with three digits, or fewer where its six decimals end before.
 pub(super) fn as_printed(number: f64) -> String {
     let short = format!("{number:.2e}");
     let exponent = short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);

@@ -1,11 +1,11 @@
-//! The ratio of computation times that section 4 of the paper ends with: 1.05 for the shape model over mass-spring.
+//! The ratio of computation times at the end of section 4 of the paper: 1.05 for the shape model and mass-spring.
 //!
-//! The paper tells neither body, springs nor machine. Here a block of cubes stands on a floor, the shape model with two
-//! passes of Eq. (15), as the paper advises, both models vectorised; whole steps are timed, as a simulation takes them, and each named
-//! arrangement of springs has its own ratio. All models take turns, a few milliseconds each, and each ratio is one of
-//! neighbours in time, so that what else the machine does hits both. On one thread its processor time is taken, which
-//! does not count while others have the processor; on more threads, and where the system does not tell, it is time on
-//! the wall.
+//! The paper gives neither body, springs nor machine. Here a block of cubes stands on a floor, the shape model has two
+//! passes of Eq. (15), as the paper advises, and both models are vectorised. Whole steps are timed, as in a simulation,
+//! and each named arrangement of springs has its own ratio. The models are measured in turns of a few milliseconds, and
+//! each ratio is one of adjacent turns, so that other load of the machine affects both. With one thread, processor time
+//! is measured, which does not include other processes; with more threads, or if the system does not provide it, wall
+//! time.
 
 use super::sheet::figure;
 use super::{Sheet, Spread, Watch, scene};
@@ -16,10 +16,10 @@ use crate::sim::words::typed;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// The names of the table's files: itself, and the same as CSV.
+/// The names of the table's files: Markdown and CSV.
 pub const FILES: [&str; 2] = ["ratio.md", "ratio.csv"];
 
-/// The mark of the Markdown file, by which it is known again: how it is made.
+/// The mark of the Markdown file, which records the options of the table.
 pub fn mark(threads: usize) -> String {
     match threads {
         1 => "localshape table ratio".to_owned(),
@@ -27,7 +27,7 @@ pub fn mark(threads: usize) -> String {
     }
 }
 
-/// The computation time of the shape model over that of mass-spring, as printed in section 4.
+/// Computation time of the shape model divided by that of mass-spring, as printed in section 4.
 pub const PRINTED: f64 = 1.05;
 
 /// The arrangements of springs that are compared.
@@ -39,56 +39,56 @@ pub const SPRINGS: [Springs; 5] =
 pub struct Protocol {
     /// Cubes along each side of the blocks.
     pub sides: Vec<u32>,
-    /// How often all models take their turns.
+    /// The number of turns of each model.
     pub rounds: u32,
     /// Cubes times steps in one turn.
     pub turn: u64,
 }
 
 impl Default for Protocol {
-    /// From a body that fits any cache to one that fits few.
+    /// From a body that fits into any cache to one that fits into few.
     fn default() -> Self {
         Self { sides: vec![3, 10, 20], rounds: 41, turn: 640_000 }
     }
 }
 
 impl Protocol {
-    /// How many turns there are in all: what [`measure`] tells its watch comes to this.
+    /// The total number of turns, which is the sum of what [`measure`] reports.
     pub fn work(&self) -> u64 {
         self.sides.len() as u64 * u64::from(self.rounds) * (1 + SPRINGS.len() as u64)
     }
 }
 
-/// The shape model against one arrangement of springs on one block.
+/// The shape model and one arrangement of springs on one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// Cubes along each side.
     pub side: u32,
-    /// Where the springs are.
+    /// The arrangement of springs.
     pub springs: Springs,
-    /// How many there are.
+    /// The number of springs.
     pub count: usize,
     /// Time of the shape model for one cube and step (ns).
     pub shape: Spread,
     /// Time of mass-spring for one cube and step (ns).
     pub mass_spring: Spread,
-    /// The first over the second, turn by turn.
+    /// The first divided by the second, turn by turn.
     pub ratio: Spread,
 }
 
-/// What was measured with.
+/// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Time {
-    /// Time of one thread on a processor.
+    /// Processor time of one thread.
     Processor,
-    /// Time on the wall.
+    /// Wall time.
     Wall,
 }
 
 impl Time {
-    /// One clock for all turns, so that no ratio is one of two kinds: the processor's for one thread, if the system
-    /// tells it.
+    /// One kind of time for all turns, so that no ratio mixes two: processor time for one thread, if the system
+    /// provides it.
     fn of(threads: usize, told: bool) -> Self {
         if threads == 1 && told { Self::Processor } else { Self::Wall }
     }
@@ -100,7 +100,7 @@ impl Time {
         }
     }
 
-    /// In seconds. Should a system stop telling, the wall goes on.
+    /// In seconds. Wall time, should the system stop providing processor time.
     fn of_spent(self, spent: Spent) -> f64 {
         spent.cpu.filter(|_| self == Self::Processor).unwrap_or(spent.wall)
     }
@@ -116,8 +116,8 @@ pub struct Ratios {
     pub comparisons: Vec<Comparison>,
 }
 
-/// Measures the ratios on the pool of threads that it is called on; `None` if `watch`, which is told of each turn, stops
-/// it.
+/// Measures the ratios with the rayon thread pool of the caller; `None` if `watch`, which is called after each turn,
+/// stops the measurement.
 pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Ratios> {
     let mut comparisons = Vec::new();
     let threads = rayon::current_num_threads();
@@ -163,17 +163,17 @@ fn block(side: u32) -> Scene {
     scene(&text, "ratio")
 }
 
-/// The time of each run's turns (ns for one cube and step), round by round.
+/// The times of each run's turns (ns for one cube and step), round by round.
 fn take_turns(scene: &Scene, protocol: &Protocol, time: Time, watch: &Watch<'_>) -> Option<Vec<Vec<f64>>> {
     let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
     let mut times = vec![Vec::new(); worlds.len()];
     let cubes = scene.body.elements.len() as u64;
     let steps = (protocol.turn / cubes).max(1);
-    // The first time that memory is touched is nobody's turn.
+    // The first access to memory is not timed.
     worlds.iter_mut().for_each(|world| world.advance(1));
     for round in 0..protocol.rounds as usize {
         for turn in 0..worlds.len() {
-            // Nobody always follows the same one.
+            // The order is rotated, so that no model always follows the same one.
             let run = (round + turn) % worlds.len();
             let clock = Clock::thread();
             worlds[run].advance(steps);
@@ -228,7 +228,7 @@ impl Ratios {
         text
     }
 
-    /// The table for programs, all digits.
+    /// The table as CSV data, with all digits.
     fn sheet(&self) -> Sheet {
         let row = |one: &Comparison| {
             [
@@ -254,7 +254,7 @@ impl Ratios {
         Sheet::of(self.comparisons.iter().map(row))
     }
 
-    /// The table as one document.
+    /// The table as one JSON document.
     pub fn json(&self) -> Value {
         let row = |one: &Comparison| {
             json!({
@@ -312,7 +312,7 @@ mod tests {
         }
     }
 
-    /// One that blew up would take its steps in no time.
+    /// After a divergence steps would take no time.
     #[test]
     fn no_block_blows_up_while_it_is_timed() {
         let Protocol { sides, rounds, turn } = Protocol::default();

@@ -3,14 +3,14 @@
 /// A table of texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sheet {
-    /// What stands over the columns.
+    /// The headings of the columns.
     pub heads: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Sheet {
-    /// The table of rows of which each cell stands beside the head of its column.
+    /// A table from rows of cells, each with the heading of its column.
     pub(crate) fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, String); N]>) -> Self {
         let mut sheet = Self::default();
         for row in rows {
@@ -29,7 +29,7 @@ impl Sheet {
         String::from_utf8(bytes).expect("made of texts")
     }
 
-    /// As Markdown, its first `left` columns to the left and the others, numbers, to the right.
+    /// As Markdown, with the first `left` columns aligned left and the others, numbers, aligned right.
     pub(crate) fn markdown(&self, left: usize) -> String {
         let escaped = |cell: &str| cell.replace('|', "\\|");
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
@@ -41,10 +41,10 @@ impl Sheet {
     }
 }
 
-/// A number for people: three significant digits, the same on every machine.
+/// A number with three significant digits, the same on every machine.
 pub(super) fn figure(number: f64) -> String {
     let short = format!("{number:.2e}");
-    // Read off the rounded number: a logarithm would round the powers of ten as its platform likes.
+    // The exponent is read from the rounded text: a logarithm could round powers of ten differently on each platform.
     match short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()) {
         Some(_) if number == 0.0 => "0".to_owned(),
         Some(exponent @ -3..=5) => format!("{number:.*}", (2 - exponent).max(0) as usize),

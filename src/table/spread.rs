@@ -1,4 +1,4 @@
-//! How far apart numbers lie.
+//! The distribution of numbers.
 
 use serde::Serialize;
 
@@ -7,26 +7,25 @@ use serde::Serialize;
 pub struct Spread {
     /// The least.
     pub least: f64,
-    /// A quarter of them lies below.
+    /// The lower quartile.
     pub lower: f64,
-    /// A half of them lies below.
+    /// The median.
     pub median: f64,
-    /// Three quarters of them lie below.
+    /// The upper quartile.
     pub upper: f64,
     /// The greatest.
     pub most: f64,
 }
 
 impl Spread {
-    /// The spread of `values`; not-a-number everywhere for none. Quantiles between two values lie on the line between
-    /// them, as in most programs.
+    /// The quantiles of `values`, interpolated linearly, as in most programs; NaN for no values.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sorted.sort_by(f64::total_cmp);
         let quantile = |quarters: usize| {
             let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
             let (below, rest) = (last * quarters / 4, (last * quarters % 4) as f64 / 4.0);
-            // What lies above does not count for one that is met: it may be no number.
+            // At an exact position the value above has no weight: it may be NaN.
             if rest == 0.0 {
                 return sorted[below];
             }
@@ -49,7 +48,7 @@ mod tests {
         let one = Spread::of([5.0]);
         assert_eq!((one.least, one.median, one.most), (5.0, 5.0, 5.0));
         assert!(Spread::of([]).median.is_nan());
-        // What is no number is the greatest.
+        // NaN is sorted as the greatest.
         let odd = Spread::of([1.0, f64::NAN, 2.0]);
         assert!((odd.least, odd.median) == (1.0, 2.0) && odd.most.is_nan());
     }

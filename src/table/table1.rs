@@ -1,10 +1,10 @@
-//! Table 1 of the paper (section 4): how far the rotations that Eq. (15) finds are from the true ones.
+//! Table 1 of the paper (section 4): the errors of the rotations from Eq. (15).
 //!
 //! One free cube of side 0.1 m with 1 kg in each corner falls, until its lowest corner has fallen 1 m, "ten times the
-//! height of the size of the cube", onto a floor that gives back everything. For 10 s from the step that ends with the
-//! first contact, α of Eq. (18) is taken at every evaluation of the forces. Semi-implicit Euler, no damping, no
-//! friction. The paper tells neither how the cube was turned nor how often this was done, and the motion is chaotic:
-//! so there are many starts at rest, turned at random. The cubes of several starts are simulated together.
+//! height of the size of the cube", onto a floor with restitution 1. For 10 s from the step that ends with the first
+//! contact, α of Eq. (18) is computed at every evaluation of the forces. Semi-implicit Euler, no damping, no friction.
+//! The paper gives neither the orientation of the cube nor the number of starts, and the motion is chaotic: so there
+//! are many starts at rest, with random orientations. The cubes of several starts are simulated together.
 
 pub(crate) use super::printed::{Printed, ROWS, Row, STIFFNESSES};
 use super::{Spread, Watch, scene};
@@ -17,40 +17,40 @@ use glam::{DVec3, DVec4, Vec4Swizzles};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The names of the table's files: itself, the same as CSV, and each start as CSV.
+/// The names of the table's files: Markdown, the same as CSV, and each start as CSV.
 pub(crate) const FILES: [&str; 3] = ["table1.md", "table1.csv", "table1-orientations.csv"];
 
-/// A way to find the rotation of an element.
+/// A method that computes the rotation of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Solver {
-    /// What scenes call it: `rotation = "…"` in a shape-based model.
+    /// Its name in scenes: `rotation = "…"` in a shape-based model.
     pub name: &'static str,
-    /// In words.
+    /// Its description.
     pub words: &'static str,
-    /// Whether it is made of passes, of which there may be one or more. Without them rows C and D are row A.
+    /// Whether it has passes. Without them rows C and D are the same as row A.
     pub has_passes: bool,
 }
 
-/// The paper's solver as read here, then better ones.
+/// The paper's solver, then more accurate ones.
 pub(crate) const SOLVERS: [Solver; 3] = [
     Solver { name: "arctangent", words: "Eq. (15)", has_passes: true },
     Solver { name: "symmetric", words: "Eq. (15) with the symmetric part of its matrix", has_passes: true },
     Solver { name: "exact", words: "exact rotation", has_passes: false },
 ];
 
-/// What is measured.
+/// The parameters of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Protocol {
-    /// How many starts, turned at random: each is the same in any number of them, on every machine.
+    /// Number of starts with random orientations. A start does not depend on their number or on the machine.
     pub orientations: u32,
-    /// Time measured from the first contact on (s).
+    /// Duration of the measurement from the first contact (s).
     pub duration: f64,
     /// The largest k/m that is measured (1/s²).
     pub stiffest: f64,
 }
 
 impl Default for Protocol {
-    /// The paper's 10 s and all its k/m.
+    /// The paper's 10 s and all its values of k/m.
     fn default() -> Self {
         Self { orientations: 51, duration: 10.0, stiffest: f64::INFINITY }
     }
@@ -59,7 +59,7 @@ impl Default for Protocol {
 /// One solver in one row at one k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
-    /// How rotations are found.
+    /// The method that computes rotations.
     pub solver: Solver,
     /// The row.
     pub row: Row,
@@ -78,12 +78,12 @@ impl Case {
         self.row.cases[self.stiffness].0
     }
 
-    /// What the paper found, if this is its solver.
+    /// The paper's result, if this is its solver.
     pub(crate) fn printed(&self) -> Option<Printed> {
         (self.solver == SOLVERS[0]).then_some(self.row.cases[self.stiffness].1)
     }
 
-    /// How often Eq. (15) is solved; `None` for solvers that do without.
+    /// Number of passes, each of which solves Eq. (15); `None` for solvers without passes.
     pub(crate) fn passes(&self) -> Option<u32> {
         self.solver.has_passes.then_some(self.row.passes)
     }
@@ -95,7 +95,7 @@ impl Case {
 }
 
 impl Protocol {
-    /// Everything that is measured for each start, solver by solver, k/m by k/m, row by row.
+    /// All cases that are measured for each start, sorted by solver, k/m and row.
     pub(crate) fn cases(&self) -> Vec<Case> {
         let wanted = |stiffness: &usize| STIFFNESSES[*stiffness] <= self.stiffest;
         let mut cases = Vec::new();
@@ -108,23 +108,23 @@ impl Protocol {
         cases
     }
 
-    /// How often α is taken in one course of a case.
+    /// Number of evaluations of α in one start of a case.
     fn evaluations(&self, case: &Case) -> u64 {
         (self.duration / case.step()).round() as u64
     }
 
-    /// How often α is taken in all: what [`measure`] tells its watch comes to this.
+    /// Total number of evaluations of α, which is the sum of what [`measure`] reports.
     pub(crate) fn work(&self) -> u64 {
         u64::from(self.orientations) * self.cases().iter().map(|case| self.evaluations(case)).sum::<u64>()
     }
 
-    /// The mark of the Markdown file, by which it is known again: how it is made.
+    /// The mark of the Markdown file, which records the options of the table.
     pub(crate) fn mark(&self) -> String {
         format!("localshape table table1 --orientations {}", self.orientations)
     }
 }
 
-/// How the cube is turned at the start.
+/// The initial orientation of the cube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Orientation {
     /// The axis, a unit vector.
@@ -134,13 +134,13 @@ pub(crate) struct Orientation {
 }
 
 impl Orientation {
-    /// One of endlessly many, evenly spread over all rotations: the first of the points hashed for its number that lies
-    /// in the unit ball of four dimensions, as a quaternion.
+    /// A sequence of uniformly distributed rotations: the first hashed point for this number that is in the unit ball
+    /// of four dimensions, as a quaternion.
     pub(crate) fn random(number: u32) -> Self {
         const SEED: u32 = 1;
         let coordinate = |usage: u64| 2.0 * random::unit(SEED, u64::from(number), usage) - 1.0;
         let point = |attempt: u64| DVec4::from_array([0, 1, 2, 3].map(|axis| coordinate(4 * attempt + axis)));
-        // Near the middle a direction has few digits.
+        // Near the centre directions have few digits.
         let usable = |point: &DVec4| (1e-6..=1.0).contains(&point.length_squared());
         let point = (0..).map(point).find(usable).expect("three of ten points lie in the ball");
         let vector = point.xyz();
@@ -148,10 +148,10 @@ impl Orientation {
     }
 }
 
-/// What one start came to in one case.
+/// The result of one start in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Course {
-    /// How often α was taken; fewer than wanted if it blew up. If never, all that follows is not-a-number.
+    /// Number of evaluations of α; fewer than planned if the simulation diverged. If zero, the numbers below are NaN.
     pub evaluations: u64,
     /// Its mean (rad/s²).
     pub mean: f64,
@@ -159,11 +159,11 @@ pub(crate) struct Course {
     pub deviation: f64,
     /// Its maximum (rad/s²).
     pub maximum: f64,
-    /// Whether the simulation blew up.
+    /// Whether the simulation diverged.
     pub diverged: bool,
 }
 
-/// Table 1, measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Table1 {
     pub(super) protocol: Protocol,
@@ -173,7 +173,7 @@ pub(crate) struct Table1 {
     pub(super) courses: Vec<Course>,
 }
 
-/// What all starts came to in one case.
+/// The results of all starts in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Summary {
     /// The case.
@@ -184,12 +184,12 @@ pub(crate) struct Summary {
     pub deviation: Spread,
     /// Their maxima (rad/s²).
     pub maximum: Spread,
-    /// How many of them blew up.
+    /// Number of starts that diverged.
     pub diverged: usize,
 }
 
-/// Measures Table 1 on the pool of threads that it is called on; `None` if `watch`, which is told how many more times α
-/// was taken, stops it. The result has the same bits for any number of threads.
+/// Measures Table 1 with the rayon thread pool of the caller; `None` if `watch`, which is called with the number of
+/// further evaluations of α, stops the measurement. The result has the same bits for any number of threads.
 pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> {
     let cases = protocol.cases();
     let orientations: Vec<_> = (0..protocol.orientations).map(Orientation::random).collect();
@@ -206,8 +206,8 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> 
     Some(Table1 { protocol: *protocol, cases, orientations, courses })
 }
 
-/// So many cubes are simulated together, as one body: one by one, the way to each step takes as long as the step, and lanes
-/// have nothing to work on. They do not touch each other and have the same bits in any company.
+/// Number of cubes simulated together, as one body. With a single cube the overhead of a step would be as long as the
+/// step, and lanes would be unused. The cubes do not touch, and their bits do not depend on the others.
 const CROWD: usize = 16;
 
 /// The corners of a cube.
@@ -230,7 +230,7 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
     for case in cases {
         let (name, rotation, stiffness) = (case.name(), case.solver.name, case.stiffness_over_mass());
         let passes = case.passes().map_or(String::new(), |passes| format!(", passes = {passes}"));
-        // Chaotic motion would give other figures with other round-off; without passes α is nothing but round-off.
+        // Chaotic motion would give other numbers with other round-off; without passes α is round-off itself.
         let kernel = if case.solver.has_passes { "reference" } else { "fast" };
         text += &format!(
             "[[run]]
@@ -263,11 +263,11 @@ fn crowd<'a>(starts: impl Iterator<Item = &'a Scene>, first: &Scene) -> Scene {
     Scene { body: Arc::new(body), initial, ..first.clone() }
 }
 
-/// Lets starts, at least one, run their courses in one case.
+/// Simulates one or more starts in one case.
 fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -> Option<Vec<Course>> {
-    /// Steps after which the watch is asked.
+    /// Number of steps between calls of the watch.
     const SLICE: u64 = 512;
-    // Never one alone: that would be a lattice, which has a kernel of its own, with other round-off.
+    // Never one alone: that would be a lattice, whose kernel has different round-off.
     let cubes = starts.iter().chain(starts).take(starts.len().max(2));
     let mut world = crowd(cubes, &starts[0]).world(case);
     let mut has_landed = vec![false; starts.len()];
@@ -281,11 +281,11 @@ fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -
         if world.status() != Status::Ok {
             break;
         }
-        // Until the first has landed nobody asks.
+        // Not needed before the first cube has landed.
         let alphas = if has_landed.contains(&true) { world.residuals(&before) } else { Vec::new() };
         for (at, residuals) in residuals.iter_mut().enumerate() {
             if !has_landed[at] {
-                // Nothing but the floor sends a corner upwards.
+                // Only the floor can make a corner move upwards.
                 let velocities = &world.state().velocity[at * CORNERS..][..CORNERS];
                 has_landed[at] = velocities.iter().any(|velocity| velocity.y > 0.0);
             } else if residuals.taken < evaluations {
@@ -302,19 +302,19 @@ fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -
     }
     let diverged = world.status() != Status::Ok;
     if diverged && starts.len() > 1 {
-        // One stops all: each on its own.
+        // A divergence stops all cubes, so each start is repeated alone.
         let alone = |start| courses(std::slice::from_ref(start), case, evaluations, &|_| watch(0));
         let courses = starts.iter().map(alone).collect::<Option<Vec<_>>>()?.concat();
         return watch(all - told).then_some(courses);
     }
     if diverged && has_landed[0] {
-        // The step that was given up had evaluated its forces here.
+        // The rejected step had evaluated its forces in this state.
         residuals[0].add(world.report(0).residual(Report::ROTATION).unwrap_or(f64::NAN));
     }
     watch(all - told).then(|| residuals.into_iter().map(|one| one.course(diverged)).collect())
 }
 
-/// Values of α so far.
+/// Running statistics of α.
 #[derive(Clone, Copy, Debug, Default)]
 struct Residuals {
     taken: u64,
@@ -326,18 +326,18 @@ struct Residuals {
 impl Residuals {
     fn add(&mut self, residual: f64) {
         self.taken += 1;
-        // Welford 1962: no difference of large sums.
+        // Welford 1962: avoids differences of large sums.
         let before = residual - self.mean;
         self.mean += before / self.taken as f64;
         self.squares += before * (residual - self.mean);
-        // What is no number stays so, as in the mean.
+        // NaN is kept, as in the mean.
         self.maximum = match self.maximum {
             Some(maximum) if maximum.is_nan() || maximum > residual => Some(maximum),
             _ => Some(residual),
         };
     }
 
-    /// What they come to; not-a-number if there are none.
+    /// The statistics; NaN if there are no values.
     fn course(self, diverged: bool) -> Course {
         let Self { taken, mean, squares, maximum } = self;
         Course {
@@ -351,7 +351,7 @@ impl Residuals {
 }
 
 impl Table1 {
-    /// What all starts came to, case by case in the order of [`Protocol::cases`].
+    /// The results of all starts, case by case in the order of [`Protocol::cases`].
     pub(crate) fn summaries(&self) -> Vec<Summary> {
         let summary = |(at, &case): (usize, &Case)| {
             let courses = || self.courses.iter().skip(at).step_by(self.cases.len());
@@ -378,8 +378,8 @@ mod tests {
         let mean = all.iter().map(|one| one.axis).sum::<DVec3>() / f64::from(count);
         assert!(mean.length() < 0.05, "{mean}");
         assert!(all.iter().all(|one| (one.axis.length() - 1.0).abs() < 1e-15 && one.angle >= 0.0));
-        // Of evenly spread rotations the part (θ − sin θ)/π has an angle below θ; angles beyond half a turn are of the
-        // other axis.
+        // Of uniformly distributed rotations the fraction (θ − sin θ)/π has an angle below θ; angles beyond half a turn
+        // are those of the opposite axis.
         let below = all.iter().filter(|one| one.angle.min(std::f64::consts::TAU - one.angle) < 2.0).count();
         let expected = (2.0 - 2f64.sin()) / std::f64::consts::PI;
         assert!((below as f64 / f64::from(count) - expected).abs() < 0.03, "{below}");

@@ -1,4 +1,4 @@
-//! Table 1, measured, as texts: Markdown for people, CSV and JSON for programs.
+//! The measured Table 1 as Markdown, CSV and JSON.
 
 use super::printed::as_printed;
 use super::sheet::figure;
@@ -13,7 +13,7 @@ impl Table1 {
         [self.markdown(), self.summary_sheet().csv(), self.course_sheet().csv()]
     }
 
-    /// The table for people.
+    /// The table as Markdown.
     pub(crate) fn markdown(&self) -> String {
         let Protocol { orientations, duration, .. } = self.protocol;
         let plural = if orientations == 1 { "" } else { "s" };
@@ -74,7 +74,7 @@ impl Table1 {
         text
     }
 
-    /// The table for programs, all digits.
+    /// The table as CSV data, with all digits.
     fn summary_sheet(&self) -> Sheet {
         let number = |number: Option<f64>| number.map_or(String::new(), exact);
         let row = |Summary { case, mean, deviation, maximum, diverged }: Summary| {
@@ -102,7 +102,7 @@ impl Table1 {
         Sheet::of(self.summaries().into_iter().map(row))
     }
 
-    /// Each start in each case, all digits.
+    /// Each start in each case, with all digits.
     fn course_sheet(&self) -> Sheet {
         let row = |case: &Case, number: usize, course: &Course| {
             let Orientation { axis, angle } = self.orientations[number];
@@ -131,7 +131,7 @@ impl Table1 {
         Sheet::of(rows)
     }
 
-    /// The table as one document.
+    /// The table as one JSON document.
     pub(crate) fn json(&self) -> Value {
         let row = |summary: &Summary| {
             let Summary { case, mean, deviation, maximum, diverged } = summary;

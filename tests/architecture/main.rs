@@ -1,9 +1,9 @@
-//! Invariants of `ARCHITECTURE.md` that the compiler does not guard, read off the source.
+//! Invariants of `ARCHITECTURE.md` that the compiler does not check, tested on the source.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Every Rust file of a room, which is a folder or one file of `src`, with its text up to its tests.
+/// Every Rust file of a module, which is a folder or one file of `src`, with its text up to its tests.
 fn sources(room: &str) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     let room_at = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(room);
@@ -23,7 +23,7 @@ fn sources(room: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Lines of code, without comments, that hold one of the words.
+/// Lines of code, without comments, that contain one of the words.
 fn offenders(room: &str, words: &[&str]) -> Vec<String> {
     let mut lines = Vec::new();
     for (path, text) in sources(room) {
@@ -37,13 +37,13 @@ fn offenders(room: &str, words: &[&str]) -> Vec<String> {
     lines
 }
 
-/// What a room names of the crate, itself too if it does so by its whole path.
+/// The modules of the crate that a module uses; also itself, if it does so by a full path.
 fn rooms_named_by(room: &str) -> BTreeSet<String> {
     let mut rooms = BTreeSet::new();
     for (_, text) in sources(room) {
         let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
         for named in code.flat_map(|line| line.split("crate::").skip(1)) {
-            // A list in braces names several.
+            // A list in braces has several.
             assert!(!named.starts_with('{'), "one `use` for each room: {named}");
             rooms.insert(named.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect());
         }
@@ -71,7 +71,7 @@ fn only_gpu_and_render_name_wgpu() {
     }
 }
 
-/// Double precision becomes single precision in one file, so that it happens once and relative to the panel's origin.
+/// Double precision is converted to single precision in one file, relative to the panel's origin.
 #[test]
 fn one_place_narrows() {
     let narrowing = offenders("picture", &["as f32", "as_vec2(", "as_vec3(", "as_mat4(", "as_quat("]);
@@ -93,7 +93,7 @@ fn nothing_flows_back() {
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
     assert_eq!(offenders("output", &["crate::cli", "crate::table"]), [""; 0]);
-    // Pictures it is given; of `picture` it takes fonts.
+    // It is given pictures; of `picture` it uses fonts only.
     let outside = ["crate::sim", "crate::scene", "crate::gpu", "crate::render", "crate::cli"];
     assert_eq!(offenders("animation", &outside), [""; 0]);
     for room in ["history", "moments"] {
@@ -101,11 +101,11 @@ fn nothing_flows_back() {
         assert_eq!(offenders(room, &outside), [""; 0]);
     }
     assert_eq!(offenders("table", &["std::fs"]), [""; 0]);
-    // Of `output` it takes clocks and how numbers are written.
+    // Of `output` it uses clocks and the formatting of numbers only.
     assert_eq!(rooms_named_by("table"), BTreeSet::from(["output", "scene", "sim"].map(str::to_owned)));
 }
 
-/// What is simulated knows nothing of pictures: bodies, motions, obstacles, grips and steps, as typed and resolved.
+/// The simulation does not depend on pictures: bodies, motions, obstacles, grips and steps, as read and resolved.
 #[test]
 fn the_physics_of_a_scene_knows_no_drawing() {
     let files = ["file/body", "file/motion", "file/obstacle", "resolve/body", "resolve/elements", "resolve/grips"];
@@ -128,7 +128,7 @@ fn every_equation_can_be_found() {
     }
 }
 
-/// The front page of the documentation shows `examples/from_code.rs`, but for lines that it hides.
+/// The front page of the documentation has `examples/from_code.rs`, except for hidden lines.
 #[test]
 fn the_front_page_shows_the_example() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
@@ -141,7 +141,7 @@ fn the_front_page_shows_the_example() {
     assert_eq!(shown, code);
 }
 
-/// The dependency table of `CONTRIBUTING.md` names what the manifest has, and nothing else.
+/// The dependency table of `CONTRIBUTING.md` has the dependencies of the manifest, and no others.
 #[test]
 fn every_dependency_has_its_reason() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");

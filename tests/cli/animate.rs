@@ -1,4 +1,4 @@
-//! `animate`: what other decoders make of the files, and what is said of frames that do not fit.
+//! `animate`: the files as read by other decoders, and messages about frames that do not fit.
 
 use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, has_ffmpeg, lasting, python, run};
 use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
@@ -10,7 +10,7 @@ const SIZE: [u32; 2] = [64, 48];
 /// Frames of a folder.
 const COUNT: u64 = 12;
 
-/// A frame of a bright square on a course of colours, further to the right in each frame.
+/// A frame of a bright square on a colour gradient, further to the right in each frame.
 fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let moving = |x: u32, y: u32| (10..20).contains(&y) && (x as u64).wrapping_sub(3 * number) < 8;
@@ -20,7 +20,7 @@ fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
 
 fn tags(number: u64) -> Tags {
     Tags {
-        // Taken at the end of a step, as those of scenes.
+        // At the end of a step, like those of scenes.
         shows: Shown::Frame { frame: number, time: number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 } },
         scenes: vec!["5c".repeat(32)],
         states: vec![("ab".repeat(32), "Local shape".to_owned())],
@@ -34,14 +34,14 @@ fn put(place: &Place, folder: &str, number: u64, bytes: &[u8]) {
     std::fs::write(place.path(format!("{folder}/frame_{number:05}.png")), bytes).expect("a frame");
 }
 
-/// A place with a folder of frames at 30 a second.
+/// A place with a folder of frames at 30 per second.
 fn with_frames() -> Place {
     let place = Place::new();
     (0..COUNT).for_each(|number| put(&place, "in", number, &frame_file(SIZE, &pixels(number, SIZE), &tags(number))));
     place
 }
 
-/// The frames of an APNG as they are shown, each with its delay (s), and how often it is played.
+/// The frames of an APNG as displayed, each with its delay (s), and the number of plays.
 fn decode_apng(path: &Path) -> (Vec<(Vec<u8>, f64)>, u32) {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");
@@ -67,7 +67,7 @@ fn decode_apng(path: &Path) -> (Vec<(Vec<u8>, f64)>, u32) {
     (frames, control.num_plays)
 }
 
-/// The frames of a GIF as they are shown, each with its delay (hundredths of a second), and how often it is played again.
+/// The frames of a GIF as displayed, each with its delay (hundredths of a second), and the number of repetitions.
 fn decode_gif(path: &Path) -> (Vec<(Vec<u8>, u16)>, gif::Repeat) {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
@@ -132,7 +132,7 @@ fn a_gif_looks_like_its_frames_and_keeps_their_times() {
     }
     let delays: Vec<_> = frames.iter().map(|(_, delay)| *delay).collect();
     assert_eq!(delays, [3, 4, 3, 3, 4, 3, 3, 4, 3, 3, 4, 3]);
-    // Twice as fast there are more frames than hundredths allow.
+    // Twice as fast there are more frames than hundredths of a second.
     let ran = place.run("animate in -o out.gif --speed 2").good();
     assert!(ran.out.contains("6 pictures of 12 frames in 0.20 s"), "{}", ran.out);
     let (frames, repeat) = decode_gif(&place.path("out.gif"));
@@ -141,7 +141,7 @@ fn a_gif_looks_like_its_frames_and_keeps_their_times() {
     assert!(std::fs::read(place.path("out.gif")).unwrap().windows(8).any(|part| part == b"scene 5c"));
 }
 
-/// What stands still in a frame is shown in the same colours in every frame.
+/// Unmoved pixels have the same colours in every frame.
 #[test]
 fn nothing_flickers_where_nothing_moves() {
     let place = with_frames();
@@ -180,7 +180,7 @@ impl Reel for Drawn {
     }
 }
 
-/// By the library, for a file says by which command it was made, which names the threads.
+/// By the library, as the comment of a file has the command, and with it the number of threads.
 #[test]
 fn any_number_of_threads_makes_the_same_bytes() {
     let place = Place::new();
@@ -212,7 +212,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
     }
 }
 
-/// The same frames go into the animation whether they are kept or not.
+/// The animation is the same whether its frames are kept or not.
 #[test]
 fn rendering_makes_animations_meanwhile() {
     if !crate::render::can_draw() {
@@ -258,7 +258,7 @@ fn rendering_makes_sheets_meanwhile() {
     assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);
 }
 
-/// The frames that there are stay, and how to make an animation of them is told.
+/// Existing frames are kept, and the command that makes an animation of them is reported.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_rendering_makes_no_animation() {
@@ -332,7 +332,7 @@ fn folders_stand_side_by_side_and_may_be_scaled() {
     assert!(stacked[..one.len()] == one && stacked[one.len()..] == one);
     let small = size("in --width 32");
     assert_eq!(small.len(), 3 * 32 * 24);
-    // Far from the square the colours are a course down the picture.
+    // Far from the square there is a vertical colour gradient.
     let below = &small[3 * 32 * 20..3 * 32 * 20 + 3];
     assert!(below[0].abs_diff(250 - 40) <= 2 && below[2] == 240, "{below:?}");
 }
@@ -373,7 +373,7 @@ fn a_sheet_shows_frames_with_their_times() {
     ran.bad(2, &["a frame has no room on a sheet of 30×20; choose a larger --size"]);
 }
 
-/// A folder with an `ffmpeg` that is a script, and the command that finds it.
+/// A folder with a script as `ffmpeg`, and the command that uses it.
 #[cfg(unix)]
 fn with_script(place: &Place, script: &str, arguments: &str) -> Command {
     use std::os::unix::fs::PermissionsExt;
@@ -415,7 +415,7 @@ fn films_are_piped_to_ffmpeg() {
     assert!(place.read("arguments").contains("libvpx-vp9"));
 }
 
-/// With even sides, by the background, and this is what is told.
+/// Sides are made even by extending the background, and this is reported.
 #[cfg(unix)]
 #[test]
 fn films_of_odd_frames_are_padded() {
@@ -448,7 +448,7 @@ fn an_ffmpeg_that_is_missing_or_fails_is_told() {
         let ran = ran.bad(4, &["ffmpeg failed (exit status: 3)", "\n  complaint 3\n", "complaint 7"]);
         assert!(!ran.err.contains("complaint 2"), "the last lines only: {}", ran.err);
     }
-    // Some versions end well on a full disk, and leave a film that nothing can play.
+    // Some versions exit with success on a full disk, but the film cannot be played.
     let script = "cat > /dev/null; for last; do :; done; echo cut > \"$last\"; echo 'Error writing trailer of it' >&2";
     let ran = run(&mut with_script(&place, script, "animate in -o out.mp4"));
     ran.bad(4, &["ffmpeg failed", "Error writing trailer of it"]);
@@ -462,10 +462,10 @@ fn an_interrupted_film_leaves_nothing() {
     use crate::support::Running;
     for script in [
         "echo > started; cat > /dev/null",
-        // It takes no pictures; nor does another process that it has started.
+        // It reads no pictures; nor does its child process.
         "echo > started; exec sleep 60",
         "echo > started; sleep 60",
-        // It has taken all and does not end.
+        // It has read all pictures and does not end.
         "cat > /dev/null; echo > started; sleep 60",
     ] {
         let place = with_frames();
@@ -480,7 +480,7 @@ fn an_interrupted_film_leaves_nothing() {
     }
 }
 
-/// Nobody reads what goes to standard output: a second Ctrl-C, or the end of the reader, ends the program.
+/// If standard output blocks, a second Ctrl-C, or the end of the reader, ends the program.
 #[cfg(unix)]
 #[test]
 fn a_pipe_that_is_full_is_left() {
@@ -493,7 +493,7 @@ fn a_pipe_that_is_full_is_left() {
         let mut command = place.command(["animate", "in", "-o", "-", "--hold-last", "60"]);
         set_signals(&mut command, &[]);
         let mut running = Running::start_into(&mut command, writer);
-        // It writes, and what it writes is more than a pipe holds.
+        // It has written more than fits into a pipe.
         std::io::Read::read_exact(&mut reader, &mut [0; 9]).unwrap();
         std::thread::sleep(Duration::from_millis(500));
         signal(&running, &["INT"]);
@@ -509,7 +509,7 @@ fn a_pipe_that_is_full_is_left() {
     }
 }
 
-/// The real one, if it is there: what it makes has the right pictures at the right times.
+/// The real `ffmpeg`, if it exists: the film has the right pictures at the right times.
 #[test]
 fn films_and_all_else_are_read_by_other_programs() {
     let place = with_frames();
@@ -526,7 +526,7 @@ fn films_and_all_else_are_read_by_other_programs() {
     {
         let ran = place.run(&format!("animate odd -o {file}")).good();
         assert!(ran.out.starts_with(&format!("{file}  {}×{}, 12 pictures in 0.40 s", size[0], size[1])), "{}", ran.out);
-        // It is known as ours, and replaced.
+        // It is recognised as our own file, and replaced.
         place.run(&format!("animate odd -o {file} --frames 0-3")).good();
         place.run(&format!("animate odd -o {file}")).good();
         let mut decoder = Command::new("ffmpeg");
@@ -544,7 +544,7 @@ fn films_and_all_else_are_read_by_other_programs() {
             assert!(apart < 3.0, "{file}, frame {number}: {apart}");
         }
         if size != [63, 47] {
-            // Four pixels share a colour, but each has its own brightness: here that of the background.
+            // Four pixels share a colour, but each has its own luma: here that of the background.
             let corner = &frames[0][frames[0].len() - 3 * width..][..3];
             let brightness =
                 0.2126 * f64::from(corner[0]) + 0.7152 * f64::from(corner[1]) + 0.0722 * f64::from(corner[2]);

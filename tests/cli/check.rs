@@ -1,4 +1,4 @@
-//! `check`: what scenes hold, and every mistake in them.
+//! `check`: the contents of scenes, and every mistake in them.
 
 use crate::support::{Place, SMALL, numpy};
 
@@ -53,7 +53,7 @@ fn says_where_the_body_starts() {
     assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
 }
 
-/// Which runs are not vectorised is said, and those that cannot be are not asked to.
+/// Runs with the reference kernel are reported, and `kernel = "fast"` is refused where there are no vectorised steps.
 #[test]
 fn says_which_runs_take_the_plain_code() {
     let place = Place::with_small();
@@ -71,7 +71,7 @@ fn says_which_runs_take_the_plain_code() {
     }
 }
 
-/// A warning is told by every command that reads the scene to run it, and changes nothing else.
+/// A warning is reported by every command that runs the scene, and has no other effect.
 #[test]
 fn warns_of_what_is_probably_not_meant() {
     let place = Place::new();
@@ -90,7 +90,7 @@ fn warns_of_what_is_probably_not_meant() {
     assert_eq!(document["scenes"][0]["warnings"][0]["help"], "use at least 10 to show the end");
 }
 
-/// The example of `docs/bodies.md` makes the body that it says, by NumPy where there is one, and else as it once did.
+/// The example of `docs/bodies.md` makes the documented body: a stored archive of it, and a new one if there is NumPy.
 #[test]
 fn a_mesh_written_with_numpy() {
     let text = include_str!("../../docs/bodies.md");
@@ -119,7 +119,7 @@ fn a_mesh_written_with_numpy() {
 #[test]
 fn a_scene_that_cannot_be_read() {
     let place = Place::new();
-    // A link to itself cannot be followed, whoever asks.
+    // A link to itself cannot be followed by any user.
     std::os::unix::fs::symlink("loop.toml", place.path("loop.toml")).unwrap();
     place.run("check loop.toml").bad(4, &["loop.toml", "cannot be read"]);
 }

@@ -1,4 +1,4 @@
-//! `compare`: verdicts on pictures and folders of them.
+//! `compare`: results for pictures and folders of them.
 
 use crate::support::{Place, SMALL, frame_file, run};
 use localshape::internals::{Shown, Tags};
@@ -27,7 +27,7 @@ fn put(place: &Place, name: &str, bytes: &[u8]) {
     std::fs::write(path, bytes).unwrap();
 }
 
-/// The state of a run, with a whole digest.
+/// The state of a run, with a complete digest.
 const FULL: &str = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef run";
 
 const GREY: [u8; 16 * 8 * 3] = [120; 16 * 8 * 3];
@@ -55,11 +55,11 @@ fn two_pictures() {
     assert_eq!(told["pictures"][0]["runs"][0]["run"], "Local shape");
     assert_eq!((told["verdict"].as_str(), told["moved"][0]["first"].as_u64()), (Some("state moved"), Some(0)));
     assert_eq!(told["accept"], "localshape compare --bless-state a.png c.png");
-    // What was expected is told of another moment, not only that it moved.
+    // The expected moment is reported, not only that the state differs.
     put(&place, "late.png", &picture("one", "2", 6, &GREY));
     let late = place.run("compare a.png late.png");
     assert!(late.out.contains("\nlate.png shows frame 6 instead of frame 0\n"), "{late:?}");
-    // A page that cannot be written takes nobody's verdict away.
+    // If the page cannot be written, the result is still reported.
     let unwritable = place.run("compare a.png a.png --report none/page.html");
     assert_eq!((unwritable.status, unwritable.out.as_str()), (Some(4), "a.png: identical\n"), "{unwritable:?}");
     let quiet = place.run("compare a.png c.png -q");
@@ -132,7 +132,7 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     assert!(accepted.out.ends_with(told), "{accepted:?}");
     assert_eq!(written("was/same.png"), kept);
     assert_eq!(place.names("was"), ["drawn.png", "gone.png", "moved.png", "same.png"]);
-    // What was missing is still missed, and there is nothing that could be accepted.
+    // Missing pictures are still reported, and there is nothing to accept.
     let missed = place.run("compare was is");
     assert!(missed.status == Some(1) && !missed.out.contains("accept with"), "{missed:?}");
     assert_eq!(place.run("compare --bless was is").status, Some(1));
@@ -157,7 +157,7 @@ fn what_is_missing_fails_with_the_command_that_makes_it() {
         place.run(&format!("compare --bless {expected} {actual}")).good();
         place.run(&format!("compare {expected} {actual}")).good();
     }
-    // A path with spaces can be pasted as it is told.
+    // A path with spaces is quoted, so that it can be pasted.
     let ran = run(&mut place.command(["compare", "my golden", "is"]));
     assert!(ran.out.contains("--bless 'my golden' is\n"), "{ran:?}");
 }
@@ -173,7 +173,7 @@ fn no_damaged_picture_is_ever_accepted() {
     put(&place, "none/whole.png", &picture("one", "1", 0, &GREY));
     place.run("compare --bless-state none some").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
     assert!(!place.path("new.png").exists() && place.names("none") == ["whole.png"]);
-    // But a damaged golden can be renewed, if it is known that its state is lost.
+    // A damaged golden can be renewed, with a message that its state is lost.
     place
         .run("compare --bless cut.png was.png")
         .bad(1, &["the expected side is damaged", "--bless-state cut.png was.png"]);
@@ -181,7 +181,7 @@ fn no_damaged_picture_is_ever_accepted() {
     assert_eq!(place.run("compare cut.png was.png").good().out, "was.png: identical\n");
 }
 
-/// The states of a scene in a folder of its name, with frames that are drawn grey.
+/// The states of a scene in a folder with its name, with grey frames.
 fn put_scene(place: &Place, name: &str) {
     place.run(&format!("simulate {name}.toml --states -o {name} -q")).good();
     let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
@@ -192,7 +192,7 @@ fn put_scene(place: &Place, name: &str) {
     }
 }
 
-/// `step = "T/50"` is a part of the cycle of the stiffest run, so another stiffness of one run moves the others.
+/// `step = "T/50"` is a fraction of the period of the stiffest run, so another stiffness of one run changes the others.
 #[test]
 fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
     let place = Place::with_small();
@@ -212,12 +212,12 @@ fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
     let change = &document["moved"][0]["step"];
     assert_eq!((change["before"].as_f64(), change["after"].as_f64()), (Some(before), Some(after)));
     assert_eq!(change["parts"], 50.0);
-    // Of two single pictures, too.
+    // The same for two single pictures.
     let pair = told("small/frame_00003.png stiffer/frame_00003.png");
     assert!(pair.starts_with("frame_00003.png: state moved: Local shape, node "), "{pair}");
     assert!(pair.contains("\nLocal shape: its step changed from "), "{pair}");
     assert!(pair.contains("frame_00003.png shows frame 3 at 0.04976 s instead of 0.05027 s\n"), "{pair}");
-    // What is not known of these very pictures is not told.
+    // Nothing is reported that is not known of these pictures.
     let summary = place.read("small/run.json");
     let (step, cycle) = ("\"time_step\":", "\"cycle\":");
     assert!(summary.contains(step) && summary.contains(cycle));
@@ -236,17 +236,17 @@ fn a_run_that_moved_with_the_step_of_a_stiffer_one_says_so() {
 fn exact_states_tell_node_distance_and_first_frame() {
     let place = Place::new();
     let steady = SMALL.replace("\"T/50\"", "0.0012");
-    // The other run stays as it is.
+    // The other run is unchanged.
     let spring = "stiffness = 1e4, damping_ratio = 0.1, springs";
     place.write("steady.toml", &steady);
     place.write("stiffer.toml", &steady.replace(spring, &spring.replace("1e4", "1.1e4")));
     ["steady", "stiffer"].into_iter().for_each(|name| put_scene(&place, name));
     let found = place.run("compare steady stiffer --json").json();
     let [moved] = &found["moved"].as_array().unwrap()[..] else { panic!("one run: {found}") };
-    // The floor is touched at once, and then the springs act.
+    // The floor is touched in the first step, and then the springs act.
     assert_eq!((moved["run"].as_str(), moved["first"].as_u64()), (Some("Mass-spring"), Some(1)));
     assert_eq!(moved["displacement"]["precision"], 0.0);
-    // The distance as anybody can compute it from the archives.
+    // The distance computed from the archives.
     let positions = |name: &str, frame: u64| {
         let scene = Scene::load(&place.path(format!("{name}.toml")), &Limits::default()).unwrap();
         Runner::new(&scene, &[1]).frame(frame).runs[0].snapshot.position.clone()
@@ -265,7 +265,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
     // One picture of each, with the archives beside them.
     let pair = place.run("compare steady/frame_00006.png stiffer/frame_00006.png").out;
     assert!(pair.starts_with("frame_00006.png: state moved: Mass-spring, node "), "{pair}");
-    // States that are not those of the pictures beside them are not believed.
+    // Archives that do not match the pictures beside them are not used.
     std::fs::copy(place.path("stiffer/states.npz"), place.path("steady/states.npz")).unwrap();
     let told = place.run("compare steady stiffer").out;
     assert!(
@@ -278,7 +278,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
         let told = place.run("compare steady stiffer").out;
         assert!(told.contains("steady: states.npz ") && told.contains(words), "{told}");
     }
-    // Frames that are accepted bring their states along.
+    // Accepted frames include their states.
     place.run("compare --bless-state steady stiffer").good();
     for name in ["states.npz", "run.json", "diagnostics.csv"] {
         let [one, other] = ["steady", "stiffer"].map(|folder| std::fs::read(place.path(format!("{folder}/{name}"))));
@@ -287,7 +287,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
     place.run("compare steady stiffer").good();
 }
 
-/// Nothing excuses a difference between pictures of which nobody knows who drew them.
+/// Without knowledge of the adapters, a difference between pictures is a failure.
 #[test]
 fn foreign_pictures_pass_only_if_they_are_equal() {
     let place = Place::new();
@@ -312,7 +312,7 @@ fn foreign_pictures_pass_only_if_they_are_equal() {
     }
 }
 
-/// What is new is not what was expected, also if all that was expected is there.
+/// Additional pictures are a failure, even if all expected ones are there.
 #[test]
 fn a_run_that_only_the_new_side_has_is_no_pass() {
     let place = Place::new();
@@ -368,7 +368,7 @@ fn what_is_no_picture_never_passes() {
     flipped[middle] ^= 0x55;
     let mut header_lies = whole.clone();
     header_lies[16..24].copy_from_slice(&[0x7f, 0, 0, 0, 0x7f, 0, 0, 0]);
-    // The header with another size, or interlaced, and the checksum of that.
+    // The header with another size, or interlaced, with a valid checksum.
     let header = |change: &dyn Fn(&mut [u8])| {
         let mut file = whole.clone();
         change(&mut file);
@@ -404,7 +404,7 @@ fn what_is_no_picture_never_passes() {
             16 * 8 * 3,
         )
     };
-    // The text chunks of `whole` after another, and one of them with another letter and its old checksum.
+    // The text chunks of `whole` one after the other, and one of them changed without updating its checksum.
     let at = |what: &[u8]| whole.windows(what.len()).position(|part| part == what).unwrap();
     let (texts, data) = (at(b"tEXtlocalshape:scene") - 4, at(b"IDAT") - 4);
     let mut damaged = whole.clone();

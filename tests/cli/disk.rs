@@ -1,11 +1,11 @@
-//! A full disk: one message, nothing half-written, what was finished stays.
+//! A full disk: one message, no partial files, and finished files are kept.
 #![cfg(target_os = "linux")]
 
 use crate::support::{Place, Ran, frame_file, lasting, run, skip};
 use std::process::Command;
 
-/// Runs the program with its output in `out`, on a disk of `size` that goes when it ends, and then `after` in a shell.
-/// `None` if this machine does not let us make a disk.
+/// Runs the program with its output in `out`, on a temporary disk of `size`, and then `after` in a shell.
+/// `None` if this machine does not permit it.
 fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Option<Ran> {
     std::fs::create_dir_all(place.path("out")).unwrap();
     let program = env!("CARGO_BIN_EXE_localshape");
@@ -36,7 +36,7 @@ fn simulate_on_a_full_disk() {
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!(lines[..2], ["diagnostics.csv", "run.json"], "{ran:?}");
     assert!(lines[2].starts_with("Mass-spring,") && lines[2].ends_with(",ok"), "whole rows of whole frames: {ran:?}");
-    // There may be no room to say more than that it has not ended well.
+    // The final summary may not fit; then the one from the start remains.
     assert!(["\"outcome\": \"failed\",", "\"outcome\": \"unfinished\","].contains(&lines[3].trim()), "{ran:?}");
 }
 
@@ -74,7 +74,7 @@ fn animations_on_a_full_disk() {
     use localshape::internals::{Shown, Tags};
     let place = Place::new();
     for number in 0..4 {
-        // Noise, which takes room.
+        // Noise, which does not compress.
         let noise = (0..3 * 320 * 240_u32).map(|at| {
             let mixed = (at + number * 1_000_003).wrapping_mul(0x9e37_79b9);
             ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8

@@ -17,7 +17,7 @@ fn place() -> Place {
     place
 }
 
-/// What is told of a scene by itself is told of it in a figure and beside a golden, too.
+/// Warnings of a scene are also reported for figures and goldens with it.
 #[test]
 fn scenes_are_warned_of() {
     let place = place();
@@ -69,7 +69,7 @@ fn the_numbers_behind_a_figure_are_told() {
     assert_eq!(place.names("all"), ["fig1.png", "mine.png"]);
     let before = std::fs::read(place.path("all/mine.png")).unwrap();
     assert!(!before.windows(4).any(|bytes| bytes == b"tIME"));
-    // Once more, with another number of threads: the same bytes, and nothing is refused.
+    // Again with another number of threads: the same bytes, and nothing is refused.
     place.run("figure mine.toml -o all --size 320x200 --threads 2 -q").good();
     assert_eq!(std::fs::read(place.path("all/mine.png")).unwrap(), before);
     let dark = place.run("figure mine.toml -o dark --size 320x200 --theme dark -q").good();
@@ -116,7 +116,7 @@ fn files_of_others_are_kept() {
     place.run("figure mine.toml -o file/below").bad(4, &["file"]);
 }
 
-/// Diagrams too small for what they show are no empty pictures.
+/// A diagram that is too small for its contents is an error, not an empty picture.
 #[test]
 fn what_has_no_room_is_told() {
     if !can_draw() {

@@ -1,4 +1,4 @@
-//! Whose folder it is.
+//! Ownership of output folders.
 
 use crate::support::{Place, Running, lasting, run};
 use std::process::Command;
@@ -13,7 +13,7 @@ fn the_same_scene_replaces_its_files() {
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
 }
 
-/// States that are not those of the diagnostics beside them would mislead.
+/// States that do not match the diagnostics beside them would mislead.
 #[test]
 fn states_of_an_earlier_run_do_not_stay() {
     let place = Place::with_small();
@@ -42,7 +42,7 @@ fn another_scene_is_refused_unless_told() {
     assert_eq!(place.read("out/diagnostics.csv").lines().count(), 1 + 2 * 4);
 }
 
-/// Whoever edits a scene and runs it again wants just that, without being asked each time.
+/// A user who edits a scene and runs it again wants it replaced, without being asked each time.
 #[test]
 fn a_folder_named_after_its_scene_follows_the_file() {
     let place = Place::with_small();
@@ -59,7 +59,7 @@ fn a_folder_named_after_its_scene_follows_the_file() {
         assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
     }
     assert_ne!(place.json("output/small/run.json")["scene"]["digest"], first["scene"]["digest"]);
-    // What stays the same is not said to be replaced, and nothing is said where nothing should be.
+    // Unchanged results are not reported as replaced, and `--quiet` reports nothing.
     assert!(place.run("simulate small.toml").good().out.starts_with("Two cubes\n"));
     place.write("small.toml", &lasting("0.05"));
     assert_eq!(place.run("simulate small.toml -q").good().out, "");
@@ -67,7 +67,7 @@ fn a_folder_named_after_its_scene_follows_the_file() {
     place.write("elsewhere/small.toml", crate::support::SMALL);
     let other = place.run("simulate elsewhere/small.toml");
     other.bad(2, &["output/small holds the results of another scene (“Two cubes”, ", file.to_str().unwrap()]);
-    // So is one of which nobody knows where it came from.
+    // So is one of unknown origin.
     place.write("small.toml", crate::support::SMALL);
     let summary = place.read("output/small/run.json");
     let nameless: String = summary.lines().filter(|line| !line.contains("file\":")).collect();
@@ -88,7 +88,7 @@ fn a_project_that_has_moved_is_the_same() {
     place.write("after/small.toml", &lasting("0.05"));
     let told = "output/small: replacing results made by an earlier version of small.toml\n";
     assert!(simulate("after").good().out.starts_with(told));
-    // Where its results alone have moved, its full path tells.
+    // If only its results were moved, its full path identifies it.
     place.run("simulate after/small.toml -o results").good();
     std::fs::create_dir(place.path("below")).unwrap();
     std::fs::rename(place.path("results"), place.path("below/results")).unwrap();
@@ -96,7 +96,7 @@ fn a_project_that_has_moved_is_the_same() {
     place.run("simulate after/small.toml -o below/results").bad(2, &["an earlier version of small.toml"]);
 }
 
-/// What was put aside with `-o` may be what later versions are compared with.
+/// Results put aside with `-o` may be needed for comparison with later versions.
 #[test]
 fn a_folder_named_by_its_user_keeps_an_earlier_version() {
     let place = Place::with_small();
@@ -144,7 +144,7 @@ fn a_file_in_the_way() {
     assert_eq!(place.read("taken"), "a file");
 }
 
-/// To open a pipe is to wait for ever.
+/// Opening a pipe would block.
 #[cfg(unix)]
 #[test]
 fn pipes_under_our_names_are_told_at_once() {
@@ -174,7 +174,7 @@ fn pipes_under_our_names_are_told_at_once() {
     }
 }
 
-/// No file can take the place of a folder.
+/// A folder cannot be replaced by a file.
 #[test]
 fn folders_under_our_names_are_told_at_once() {
     for name in ["frame_00003.png", "run.json", "diagnostics.csv", "states.npz"] {
@@ -205,7 +205,7 @@ fn a_link_to_nothing_is_a_file_of_others() {
     }
 }
 
-/// One that is a scene is read, as of `localshape check <(./make-scene)`.
+/// A scene in a pipe is read, as with `localshape check <(./make-scene)`.
 #[cfg(unix)]
 #[test]
 fn a_scene_from_a_pipe() {
@@ -217,7 +217,7 @@ fn a_scene_from_a_pipe() {
     .good();
 }
 
-/// The lock goes with its holder, however that ends.
+/// The lock is released when its process ends in any way.
 #[cfg(unix)]
 #[test]
 fn one_program_at_a_time() {
@@ -240,7 +240,7 @@ fn one_program_at_a_time() {
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
 }
 
-/// Nobody comes between the look and the lock.
+/// No other process can interfere between the inspection and the lock.
 #[cfg(unix)]
 #[test]
 fn of_two_that_begin_together_one_is_refused() {

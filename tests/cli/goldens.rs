@@ -4,7 +4,7 @@ use crate::support::{Place, SMALL, frame_file, run, skip};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::internals::Pixels;
 
-/// A place with `small.toml`, if there is anything to draw with.
+/// A place with `small.toml`, if there is a graphics adapter.
 fn place() -> Option<Place> {
     match Gpu::new(&AdapterChoice::Cpu) {
         Ok(_) => Some(Place::with_small()),
@@ -35,7 +35,7 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     assert_eq!(place.names("golden"), names);
     let same = place.run("compare golden small.toml").good();
     assert_eq!(same.out, "3 pictures: 3 identical\n14 states are the same\n");
-    // Not among other files.
+    // It must not be in a folder with other files.
     place.write("other/notes.txt", "mine");
     let other = place.run("compare other small.toml");
     let told =
@@ -44,14 +44,15 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     place.run("compare --bless other small.toml").bad(1, &["nothing was accepted", "other has other files"]);
     assert_eq!(place.names("other"), ["notes.txt"]);
 
-    // Another stiffness of one run: which run, since when, which node, how far.
+    // Another stiffness of one run: reports the run, the first frame, the node and the distance.
     let stiffer = SMALL.replace("1e4, damping_ratio = 0.1, springs", "2e4, damping_ratio = 0.1, springs");
     place.write("stiffer.toml", &stiffer.replace("T/50", "T/71"));
     let slower = place.run("compare golden stiffer.toml").out;
     assert!(slower.contains("the scene files are not the same"), "{slower}");
     assert!(slower.contains("state moved: Mass-spring, first at frame"), "{slower}");
     assert!(slower.contains("the golden is of small.toml, and this is stiffer.toml"), "{slower}");
-    // Of a stiffer run the other one knows by the step that both share, unless the golden is too old to know.
+    // Whether a stiffer run changed another is decided by their common time step, unless the golden is too old to have
+    // it.
     place.write("small.toml", &stiffer);
     let shared = "(T/50 of the stiffest run)";
     assert_eq!(place.run("compare golden small.toml").out.matches(shared).count(), 2);
@@ -114,7 +115,7 @@ fn drawing_is_never_taken_for_physics() {
     );
     let large = place.run("compare golden small.toml --size 90x64");
     assert!(large.out.contains("same state, drawn differently: 90×64 pixels instead of 96×64"), "{large:?}");
-    // So they are accepted without a word about states, and with the size that was asked for.
+    // So they are accepted without a message about states, and with the requested size.
     let accepted = place.run("compare --bless golden small.toml --size 90x64").good();
     assert_eq!(accepted.out.matches("accepted").count(), 4, "{accepted:?}");
     place.run("compare golden small.toml").good();
@@ -133,7 +134,7 @@ fn only_what_failed_is_rewritten() {
     place.run("compare --bless golden small.toml").good();
     assert_eq!(std::fs::read(place.path("golden/frame_00004.png")).unwrap(), broken);
     assert_eq!(names.map(made), before);
-    // A damaged picture is no pass, and what state it showed is not known.
+    // A damaged picture fails, and the state that it shows is unknown.
     broken.truncate(200);
     std::fs::write(place.path("golden/frame_00004.png"), broken).unwrap();
     let damaged = place.run("compare golden small.toml");
@@ -142,10 +143,10 @@ fn only_what_failed_is_rewritten() {
     place.run("compare --bless-state golden small.toml").good();
     assert_eq!(names.map(made), before);
     place.run("compare golden small.toml").good();
-    // What was asked for is in the command that accepts it.
+    // The command that accepts it contains the options of this one.
     let other = place.run("compare golden small.toml --size 90x64 --samples 1 --frames 3").out;
     assert!(other.contains("--bless --frames 3 --size 90x64 --samples 1 golden small.toml\n"), "{other}");
-    // Nothing outside the golden is ever touched.
+    // Nothing outside the golden is changed.
     place.write("precious.png", "precious");
     let record = place.read("golden/golden.toml").replace("\"frame_00002.png\"", "\"../precious.png\"");
     place.write("golden/golden.toml", &record);
@@ -156,7 +157,7 @@ fn only_what_failed_is_rewritten() {
 #[test]
 fn whatever_is_lost_is_no_pass() {
     let Some(place) = with_golden() else { return };
-    // Pictures that say nothing of themselves, on either side.
+    // Pictures without metadata, on either side.
     let stripped = |from: &str, to: &str| {
         let pixels = Pixels::read(&place.path(from)).unwrap();
         let image = image::RgbImage::from_raw(pixels.size[0], pixels.size[1], pixels.bytes).unwrap();
@@ -170,7 +171,7 @@ fn whatever_is_lost_is_no_pass() {
     let untold = place.run("compare golden plain");
     assert!(untold.status == Some(1) && untold.out.contains("of which none is known here"), "{untold:?}");
     place.run("compare --bless golden plain").bad(1, &["nothing was accepted"]);
-    // States of some frames in an archive do not hide those of others.
+    // States of some frames in an archive do not hide missing ones of others.
     place.run("render small.toml -o part --states -q").good();
     place.run("simulate small.toml -o first --frames 0-3 --states -q").good();
     for name in ["states.npz", "diagnostics.csv"] {
@@ -187,7 +188,7 @@ fn whatever_is_lost_is_no_pass() {
     let moved = place.run("compare golden small.toml");
     assert!(moved.out.contains("state moved: Mass-spring, first at frame 5"), "{moved:?}");
     place.write("golden/golden.toml", &record);
-    // Frames of another scene, damaged ones and foreign ones among those that have no picture in the golden.
+    // Frames of another scene, damaged ones and other files among those that have no picture in the golden.
     place.write("other.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     place.run("render small.toml -o mixed --frames 2,4,6 -q").good();
     place.run("render other.toml -o other --frames 1,3,5 -q").good();
@@ -207,12 +208,12 @@ fn whatever_is_lost_is_no_pass() {
     ] {
         assert!(mixed.out.contains(told), "{told}: {mixed:?}");
     }
-    // A golden whose picture was drawn by somebody else than it records.
+    // A golden whose picture was drawn by another adapter than its record has.
     let strange = record.replacen("adapter = \"", "adapter = \"another ", 1);
     place.write("golden/golden.toml", &strange);
     let ran = place.run("compare golden small.toml");
     assert!(ran.status == Some(1) && ran.out.contains("another adapter drew this picture"), "{ran:?}");
-    // And one that lost its record.
+    // And one without its record.
     std::fs::remove_file(place.path("golden/golden.toml")).unwrap();
     place.run("compare golden small.toml").bad(2, &["golden is not a golden"]);
 }
@@ -253,7 +254,7 @@ fn a_golden_beside_a_folder_of_frames() {
     refused.bad(1, &["--bless-state golden all"]);
     place.run("compare --bless-state golden all").good();
     place.run("compare golden small.toml").good();
-    // Without the archive most states of the record are not known.
+    // Without the archive most states of the record are missing.
     place.write("small.toml", SMALL);
     place.run("render small.toml -o few --frames 2,4,6 -q").good();
     place.run("compare --bless-state golden few").bad(1, &["the golden records", "--states"]);
@@ -306,7 +307,7 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");
     assert!(shorter.out.contains("frame_00006.png: missing"), "{shorter:?}");
     assert!(shorter.out.contains("missing: 2 of 3 pictures are not as expected"), "{shorter:?}");
-    // Fewer states are other states.
+    // Fewer states count as changed states.
     place.run("compare --bless golden small.toml").bad(1, &["the state moved", "--bless-state"]);
     place.run("compare --bless-state golden small.toml").good();
     place.run("compare golden small.toml").good();

@@ -1,4 +1,4 @@
-//! `info`, `schema` and `completions`; and what becomes of results that nobody reads.
+//! `info`, `schema` and `completions`; and closed standard output.
 
 use crate::support::{Place, Running, run};
 
@@ -61,7 +61,7 @@ fn completions_for_each_shell() {
     place.run("completions csh").bad(2, &["csh", "bash"]);
 }
 
-/// A reader that has seen enough closes its end: that is no failure.
+/// A reader that closes the pipe early is not an error.
 #[test]
 fn a_closed_pipe_is_no_failure() {
     let place = Place::with_small();
@@ -70,7 +70,7 @@ fn a_closed_pipe_is_no_failure() {
         ["schema", "completions bash", "info", "check small.toml", "simulate small.toml other.toml", "--help"]
     {
         let mut command = place.command(arguments.split(' '));
-        // The end for reading is gone before the program writes a word.
+        // The reading end is closed before the program writes anything.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let ran = Running::start_into(&mut command, writer).wait();

@@ -1,4 +1,4 @@
-//! Signals: whole files only, whenever the program is stopped.
+//! Signals: files are complete, whenever the program is stopped.
 #![cfg(unix)]
 
 use crate::support::{Place, Ran, Running, lasting, run};
@@ -14,7 +14,7 @@ fn place_for_long() -> Place {
     place
 }
 
-/// Starts the program with what signals do by default, whatever they do to this test, and waits until a file is there.
+/// Starts the program with default signal handling, whatever that of this test, and waits until a file exists.
 pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Running {
     start_ignoring(&[], place, arguments, sign)
 }
@@ -28,31 +28,31 @@ fn start_ignoring(ignored: &'static [c_int], place: &Place, arguments: &str, sig
     running
 }
 
-/// What is ignored when a program starts is so in those that it starts, too, and no shell takes that back.
+/// Ignored signals are inherited by child processes, and no shell can undo that.
 #[allow(unsafe_code, reason = "what signals do is set between fork and exec, and there is no safe way to")]
 pub(crate) fn set_signals(command: &mut Command, ignored: &'static [c_int]) {
     use std::os::unix::process::CommandExt;
     let set = || {
         for signal in [SIGINT, SIGTERM, SIGHUP] {
             let action = if ignored.contains(&signal) { libc::SIG_IGN } else { libc::SIG_DFL };
-            // SAFETY: neither is a handler, and so nothing of this process is ever called.
+            // SAFETY: these are not handlers, so no code of this process is called.
             unsafe { libc::signal(signal, action) };
         }
         Ok(())
     };
-    // SAFETY: in the child, `signal` may be called, and nothing is allocated or locked.
+    // SAFETY: in the child, `signal` may be called; nothing is allocated or locked.
     unsafe { command.pre_exec(set) };
 }
 
-/// Sends signals by name, as quickly as can be.
+/// Sends signals by name, as fast as possible.
 pub(crate) fn signal(running: &Running, names: &[&str]) {
-    // The shell's own command, which is everywhere.
+    // The shell's built-in command, which always exists.
     let kill = |name: &&str| format!("kill -{name} {}", running.id());
     let line = names.iter().map(kill).collect::<Vec<_>>().join("; ");
     assert_eq!(run(Command::new("sh").args(["-c", &line])).status, Some(0), "{line}");
 }
 
-/// All files are there and say that the program was stopped.
+/// Checks that all files exist and record that the program was stopped.
 #[track_caller]
 fn is_whole(place: &Place, folder: &str, ran: &Ran) {
     assert!(ran.status == Some(130) && ran.out.contains("interrupted after"), "{ran:?}");
@@ -74,7 +74,7 @@ fn interrupted_and_terminated() {
     }
 }
 
-/// `timeout` sends its signal to the program and to the group that it is in.
+/// `timeout` sends its signal to the program and to its process group.
 #[test]
 fn the_same_request_twice_loses_nothing() {
     let place = place_for_long();
@@ -89,14 +89,14 @@ fn the_same_request_twice_loses_nothing() {
     }
 }
 
-/// As by `nohup`, and in the background of a script.
+/// Like `nohup`, and like the background of a script.
 #[test]
 fn what_is_ignored_stays_ignored_and_the_rest_is_heard() {
     let place = place_for_long();
     let arguments = "simulate long.toml --states -o out";
     let mut running = start_ignoring(&[SIGINT, SIGHUP], &place, arguments, "out/run.json");
     signal(&running, &["INT", "HUP"]);
-    // So long it would not have lived.
+    // By this time it would have been stopped.
     std::thread::sleep(Duration::from_millis(200));
     assert!(running.is_running());
     assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
@@ -104,12 +104,12 @@ fn what_is_ignored_stays_ignored_and_the_rest_is_heard() {
     is_whole(&place, "out", &running.wait());
 }
 
-/// If it does not end for all its requests, nothing that is finished is lost.
+/// Even if it does not end after several signals, finished files are kept.
 #[test]
 fn a_later_ctrl_c_ends_at_once() {
     use std::io::Write;
     let place = place_for_long();
-    // Nobody reads from a pipe that is full: the program waits for ever before its last word.
+    // Nobody reads from the full pipe, so the program blocks before it ends.
     let (reader, mut writer) = std::io::pipe().unwrap();
     let out = writer.try_clone().unwrap();
     std::thread::spawn(move || while writer.write_all(&[b' '; 4096]).is_ok() {});
@@ -146,7 +146,7 @@ fn later_scenes_are_not_begun() {
 fn killed() {
     let place = place_for_long();
     let mut running = start(&place, "simulate long.toml", "output/long/run.json");
-    // The summary is there before the diagnostics are begun; the first of these must have been written out.
+    // The summary is written before the diagnostics are begun; wait until some of these are on disk.
     running.until("diagnostics", |_| place.names("output/long").len() == 2);
     running.kill();
     let names = place.names("output/long");
@@ -157,7 +157,7 @@ fn killed() {
     assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
 }
 
-/// A frame that takes very long is given up.
+/// Drawing a frame that takes very long is interrupted.
 #[test]
 fn within_a_frame() {
     let place = Place::new();

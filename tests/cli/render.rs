@@ -1,10 +1,10 @@
-//! `render`: frames and what they say about themselves.
+//! `render`: frames and their metadata.
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
 use localshape::internals::{Shown, Tags, read_tags};
 use std::path::Path;
 
-/// Whether something can be drawn here; says so if not. Machines that must be able to say `LOCALSHAPE_REQUIRE_GPU=1`.
+/// Whether there is a graphics adapter; prints a message if not, and fails with `LOCALSHAPE_REQUIRE_GPU=1`.
 pub(crate) fn can_draw() -> bool {
     let found = Place::new().run("info --json").good().json();
     let any = !found["adapters"].as_array().unwrap().is_empty();
@@ -29,7 +29,7 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     ([info.width, info.height], bytes)
 }
 
-/// Frames without a background carry opacities; all else about them is as usual.
+/// Frames without a background have alpha; everything else is as usual.
 #[test]
 fn a_scene_without_a_background_makes_frames_with_opacities() {
     if !can_draw() {
@@ -52,7 +52,7 @@ fn a_scene_without_a_background_makes_frames_with_opacities() {
     assert_eq!(std::fs::read(&path).expect("a frame"), first, "the same bytes again");
 }
 
-/// A folder whose frames differ in size or runs would be no sequence.
+/// A folder whose frames differ in size or runs would not be a sequence.
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
     if !can_draw() {
@@ -68,7 +68,7 @@ fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
     assert_eq!(place.names("output/small").len(), 2 + 4);
     place.run("render small.toml --samples 1 --frames 1 --size 80x60 --overwrite").good();
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "frame_00001.png", "run.json"]);
-    // Numbers go beside any frames of the scene.
+    // Numbers can be beside any frames of the scene.
     place.run("simulate small.toml").good();
 }
 
@@ -145,7 +145,7 @@ fn some_frames_of_one_run_in_another_size() {
     assert_eq!(pixels(&path).0, [63, 41]);
     assert_eq!(tags(&path).states.iter().map(|(_, run)| run.as_str()).collect::<Vec<_>>(), ["Mass-spring"]);
 
-    // A frame drawn alone is the frame drawn with others.
+    // A frame drawn alone is equal to the same frame drawn with others.
     place.run("render small.toml --frames 4 --only Mass-spring --size 63x41 -o alone").good();
     assert!(std::fs::read(path).unwrap() == std::fs::read(place.path("alone/frame_00004.png")).unwrap());
 }
@@ -169,7 +169,7 @@ fn strips_are_the_same_whichever_frames_are_drawn() {
     place.run("render small.toml --samples 1 --frames 3 --size 320x180 -o without").good();
     let [with, without] = ["alone", "without"].map(|folder| pixels(&place.path(folder).join("frame_00003.png")).1);
     assert!(with != without);
-    // A strip changes no number.
+    // A strip does not change any number.
     place.run("simulate strip.toml -o numbers").good();
     assert_eq!(place.read("output/strip/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
 
@@ -233,7 +233,7 @@ fn wrong_options() {
     assert_eq!(place.names("."), ["small.toml"]);
 }
 
-/// Frames of another scene are not mixed with those of this one, also when the summary is gone.
+/// Frames of another scene are not mixed with those of this one, even if the summary is missing.
 #[test]
 fn frames_of_another_scene() {
     if !can_draw() {
@@ -250,7 +250,7 @@ fn frames_of_another_scene() {
     let frames: Vec<_> = place.names("out").into_iter().filter(|name| name.ends_with(".png")).collect();
     assert_eq!(frames.len(), 4, "{frames:?}");
 
-    // Of the same scene, other frames stay beside the new ones.
+    // Other frames of the same scene are kept.
     place.run("render other.toml -o out --frames 1 --samples 1").good();
     assert_eq!(place.names("out").len(), 4 + 2);
 }
@@ -302,7 +302,7 @@ fn interrupted_while_drawing() {
     }
 }
 
-/// What was made before is kept, and the summary says how it ended.
+/// Finished files are kept, and the summary has the outcome.
 #[cfg(unix)]
 #[test]
 fn a_frame_that_cannot_be_written() {
@@ -312,7 +312,7 @@ fn a_frame_that_cannot_be_written() {
     let place = Place::new();
     place.write("long.toml", &lasting("10"));
     let running = crate::interrupt::start(&place, "render long.toml -o out", "out/run.json");
-    // No file can take the place of a folder, which comes long before the frame.
+    // A folder cannot be replaced by a file; this fails early.
     place.write("out/frame_00300.png/notes.txt", "mine");
     running.wait().bad(4, &["cannot write out/frame_00300.png"]);
     assert_eq!(place.json("out/run.json")["outcome"], "failed");

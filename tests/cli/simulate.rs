@@ -11,7 +11,7 @@ use std::io::Read;
 const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
                      angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,status";
 
-/// The rows of a table without its heads.
+/// The rows of a table without its headings.
 fn rows(table: &str) -> Vec<Vec<&str>> {
     table.lines().skip(1).map(|line| line.split(',').collect()).collect()
 }
@@ -33,7 +33,7 @@ fn diagnostics_of_each_run_and_frame() {
     // Twelve nodes of one kilogram at 2 m/s.
     assert_eq!(rows[0][3].parse::<f64>().unwrap(), 24.0);
     assert_eq!(rows[0][7].parse::<f64>().unwrap(), -24.0);
-    // A model without rotations has no error in them.
+    // A model without rotations has no residual.
     assert!(rows.iter().all(|row| (row[12] == "nan") == (row[0] == "Mass-spring")), "{table}");
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
     assert!(rows.iter().all(|row| digits(row[2]) == 17 && digits(row[3]) == 17), "{table}");
@@ -45,7 +45,7 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().any(|row| number(row[4]) > 0.0 && number(row[5]) > 0.0), "{table}");
 }
 
-/// Each number stands below its name.
+/// Each number is in the column of its name.
 #[test]
 fn columns_are_what_their_heads_say() {
     let place = Place::with_small();
@@ -81,7 +81,7 @@ fn columns_are_what_their_heads_say() {
     }
 }
 
-/// A square pulled to one and a half of its width, in numbers that anyone can work out.
+/// A square stretched to 1.5 times its width, with results that can be computed by hand.
 #[test]
 fn volume_and_shape_of_a_square_pulled_wide() {
     let place = Place::new();
@@ -94,7 +94,7 @@ fn volume_and_shape_of_a_square_pulled_wide() {
     let table = place.read("output/wide/diagnostics.csv");
     let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
     let run = place.json("output/wide/run.json");
-    // Each node is a quarter of the pull away from where it would be in the square that fits best.
+    // Each node is a quarter of the extension away from its position in the best-fitting square.
     for (name, number) in [("volume_ratio", 1.5), ("shape_error", 0.05)] {
         let at = heads.iter().position(|head| *head == name).expect("a column");
         for row in rows(&table) {
@@ -164,7 +164,7 @@ fn json_is_one_document() {
     assert_eq!(place.names("both/other"), ["diagnostics.csv", "run.json"]);
 }
 
-/// What was finished before a failure is told, and the failure after it.
+/// Finished files are reported, and the failure after them.
 #[cfg(unix)]
 #[test]
 fn json_is_one_document_also_when_a_later_scene_fails() {
@@ -173,14 +173,14 @@ fn json_is_one_document_also_when_a_later_scene_fails() {
     place.write("third.toml", SMALL);
     let arguments = "simulate small.toml other.toml third.toml -o out --json";
     let running = crate::interrupt::start(&place, arguments, "out/other/run.json");
-    // No file can take the place of a folder, which comes long before the end.
+    // A folder cannot be replaced by a file; this fails early.
     place.write("out/other/diagnostics.csv/notes.txt", "mine");
     let ran = running.wait().bad(4, &["cannot write", "diagnostics.csv"]);
     let document = ran.json();
     let outcomes: Vec<_> = document["scenes"].as_array().unwrap().iter().map(|scene| &scene["outcome"]).collect();
     assert_eq!(outcomes, ["done", "failed"]);
     assert_eq!(document["scenes"][1]["files"], serde_json::json!([]));
-    // On the disk, too.
+    // The same on the disk.
     assert_eq!(place.json("out/small/run.json")["outcome"], "done");
     assert_eq!(place.json("out/other/run.json")["outcome"], "failed");
     assert!(!place.path("out/third").exists());
@@ -206,7 +206,7 @@ fn a_run_that_diverges_is_a_result() {
     assert!(place.read("output/wild/diagnostics.csv").trim_end().ends_with(",diverged"));
 }
 
-/// The ways to all values in a document: `runs[].last.time`.
+/// The paths of all values in a document: `runs[].last.time`.
 fn ways(document: &Value, before: &str) -> Vec<String> {
     match document {
         Value::Object(table) if !table.is_empty() => {
@@ -235,7 +235,7 @@ fn everything_in_the_files_is_documented() {
     place.run("simulate small.toml --states").good();
     let heads: Vec<_> = HEADS.split(',').collect();
     assert_eq!(documented("diagnostics.csv"), heads);
-    // Of each diagnostic the page says what the table in code says.
+    // The page gives for each diagnostic the meaning in the table of the code.
     for &diagnostic in Diagnostic::ALL {
         let (unit, sentence) = (diagnostic.unit(), diagnostic.meaning().trim_end_matches('.'));
         let meaning = sentence.replace(&format!(" ({unit})"), "");
@@ -249,7 +249,7 @@ fn everything_in_the_files_is_documented() {
         let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {columns} | "))).expect("its row");
         let (told_unit, told) = row.split_once("| ").expect("a unit");
         assert_eq!(told_unit.trim(), unit, "{columns}");
-        // Words within a table begin small.
+        // Cells of the table begin with lower case.
         let is_name = meaning[1..].starts_with(char::is_uppercase);
         let first = if is_name { meaning[..1].to_owned() } else { meaning[..1].to_lowercase() };
         assert!(told.starts_with(&(first + &meaning[1..])), "{told} / {meaning}");
@@ -268,7 +268,7 @@ fn everything_in_the_files_is_documented() {
     arrays.dedup();
     assert_eq!(told, arrays);
 
-    // A run that diverges says more, and so do times with pictures.
+    // A run that diverges has more keys, and so have times with pictures.
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
     place.run("simulate wild.toml").good();
     let mut run = place.json("output/wild/run.json");
@@ -290,7 +290,7 @@ fn everything_in_the_files_is_documented() {
     assert!(include_str!("../../README.md").contains("](docs/files.md)"));
 }
 
-/// One array of `states.npz`: its head and its numbers.
+/// One array of `states.npz`: its header and its numbers.
 fn array(place: &Place, file: &str, name: &str) -> (String, Vec<f64>) {
     let (head, numbers) = raw(place, file, name);
     (head, numbers.into_iter().map(f64::from_le_bytes).collect())
@@ -327,7 +327,7 @@ fn states_of_every_frame() {
     assert_eq!(position[..36].chunks(3).map(|node| node[1]).fold(f64::INFINITY, f64::min), 0.0);
 }
 
-/// Whoever has the states can draw them and knows their masses.
+/// The archive suffices to draw the body and has its masses.
 #[test]
 fn states_come_with_their_body() {
     let place = Place::with_small();
@@ -352,7 +352,7 @@ fn states_come_with_their_body() {
     assert!(faces.chunks(4).all(|face| !middle.iter().all(|node| face.contains(node))), "{faces:?}");
     let at = |node: i64, axis: usize| rest[3 * node as usize + axis];
     for face in faces.chunks(4) {
-        // Counter-clockwise from outside: the area looks away from the middle of the body.
+        // Counter-clockwise from outside: the normal points away from the centre of the body.
         let edge = |from: usize, axis: usize| at(face[from + 1], axis) - at(face[from], axis);
         let area = [0, 1, 2].map(|axis| {
             let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -398,7 +398,7 @@ fn states_of_runs_with_odd_names() {
     }
 }
 
-/// A run with a step of its own is shown at moments of its own.
+/// A run with another time step has its own times.
 #[test]
 fn states_of_runs_with_steps_of_their_own() {
     let place = Place::new();

@@ -1,4 +1,4 @@
-//! A place to run the program in, and what comes out of it.
+//! A folder to run the program in, and its output.
 
 use localshape::internals::{Compression, Tags, encode};
 use serde_json::Value;
@@ -83,7 +83,7 @@ impl Place {
         serde_json::from_str(&self.read(name)).expect("a JSON document")
     }
 
-    /// The names in a folder, hidden ones too, in order.
+    /// The names in a folder, including hidden ones, sorted.
     pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
         let mut names: Vec<_> =
@@ -96,7 +96,7 @@ impl Place {
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
         command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        // What whoever starts the tests likes best.
+        // Independent of the user's settings.
         for name in ["CLICOLOR", "CLICOLOR_FORCE", "NO_COLOR", "COLUMNS"] {
             command.env_remove(name);
         }
@@ -109,7 +109,7 @@ impl Place {
     }
 }
 
-/// So long the program may take for what a test asks of it, on a slow machine that has other things to do.
+/// Timeout of the program, for a slow and busy machine.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Runs a command to its end.
@@ -117,7 +117,7 @@ pub(crate) fn run(command: &mut Command) -> Ran {
     Running::start(command).wait()
 }
 
-/// A command on its way, which ends with the test, however that ends.
+/// A running command, which is killed at the end of the test, also after a panic.
 pub(crate) struct Running {
     child: Child,
     out: File,
@@ -125,7 +125,7 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    /// Starts a command. What it says goes into files: so nobody waits for it to be read.
+    /// Starts a command. Its output goes to files, so it never blocks on a full pipe.
     #[track_caller]
     pub(crate) fn start(command: &mut Command) -> Self {
         let out = tempfile::tempfile().expect("a file");
@@ -140,7 +140,7 @@ impl Running {
         let err = tempfile::tempfile().expect("a file");
         let into = err.try_clone().expect("the same file");
         let child = command.stdout(out).stderr(into).spawn().expect("the program starts");
-        // The command keeps its end of what it was given, and somebody may wait for that to be closed.
+        // The command keeps its end of a pipe open, and a reader may wait for it to be closed.
         command.stdout(Stdio::null());
         Self { child, out: tempfile::tempfile().expect("a file"), err }
     }
@@ -153,13 +153,13 @@ impl Running {
         self.child.try_wait().expect("a child of this process").is_none()
     }
 
-    /// Ends it at once.
+    /// Kills it.
     pub(crate) fn kill(&mut self) {
         self.child.kill().expect("a child of this process");
         self.child.wait().expect("a child of this process");
     }
 
-    /// Waits for something that it does.
+    /// Waits for a condition.
     #[track_caller]
     pub(crate) fn until(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
         let started = Instant::now();
@@ -185,13 +185,13 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // If it has ended, there is nothing to be done.
+        // If it has ended already, this does nothing.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// What a run of the program left on its outputs.
+/// The outputs of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) status: Option<i32>,
@@ -200,14 +200,14 @@ pub(crate) struct Ran {
 }
 
 impl Ran {
-    /// Ended well and said nothing on standard error.
+    /// Expects success and empty standard error.
     #[track_caller]
     pub(crate) fn good(self) -> Self {
         assert_eq!((self.status, self.err.as_str()), (Some(0), ""), "{self:?}");
         self
     }
 
-    /// Ended with a status and one message, which begins as errors do and holds all of `words`.
+    /// Expects an exit status and one error message that contains all of `words`.
     #[track_caller]
     pub(crate) fn bad(self, status: i32, words: &[&str]) -> Self {
         assert_eq!(self.status, Some(status), "{self:?}");
@@ -225,7 +225,7 @@ impl Ran {
     }
 }
 
-/// What `docs/files.md` lists in the section of a file, from the first column of its table.
+/// The first column of the table in `docs/files.md` about a file.
 pub(crate) fn documented(file: &str) -> Vec<String> {
     let text = include_str!("../../docs/files.md");
     let section = text.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
@@ -233,7 +233,7 @@ pub(crate) fn documented(file: &str) -> Vec<String> {
     cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
 }
 
-/// Says that a test did not do what it is for.
+/// Prints that a test was skipped.
 pub(crate) fn skip(why: &str) {
     eprintln!("SKIPPED: {why}");
 }
@@ -250,7 +250,7 @@ pub(crate) fn has_ffmpeg() -> bool {
     is_there
 }
 
-/// What runs a script in a folder by a Python that has NumPy, as [`python`].
+/// A command that runs a script in a folder by a Python with NumPy, as [`python`].
 pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
     python("numpy")
 }

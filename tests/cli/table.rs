@@ -1,11 +1,11 @@
-//! `table`: the paper's numbers beside ours, as files and on standard output.
+//! `table`: the paper's numbers compared with ours, as files and on standard output.
 
 use crate::support::{Place, documented};
 use localshape::internals::ratio;
 
 const FILES: [&str; 3] = ["table1-orientations.csv", "table1.csv", "table1.md"];
 
-/// The rows of the first table in a Markdown text, without heads and rule. All have as many cells as the heads.
+/// The rows of the first table in a Markdown text, without headings and rule. All have as many cells as the headings.
 fn markdown_rows(text: &str) -> Vec<Vec<&str>> {
     let table = text.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let rows: Vec<Vec<_>> = table.map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect()).collect();
@@ -13,7 +13,7 @@ fn markdown_rows(text: &str) -> Vec<Vec<&str>> {
     rows[2..].to_vec()
 }
 
-/// One start, all of Table 1: a second or two.
+/// One start of Table 1: a second or two.
 #[test]
 fn table1_is_the_same_for_any_number_of_threads_and_can_be_read() {
     let place = Place::new();
@@ -107,7 +107,7 @@ fn files_of_others_and_of_another_choice_are_refused_unless_told() {
     let place = Place::new();
     place.write("out/table1.csv", "mine");
     place.run("table table1 -o out").bad(2, &["out holds table1.csv", "not written by localshape", "--overwrite"]);
-    // For all tables nothing is made before every folder has been looked at.
+    // With all tables, every folder is inspected before anything is computed.
     place.write("all/ratio/ratio.md", "mine");
     place.run("table -o all").bad(2, &["ratio.md", "not written by localshape"]);
     assert_eq!(place.names("all"), ["ratio"]);
@@ -126,7 +126,7 @@ fn files_of_others_and_of_another_choice_are_refused_unless_told() {
     assert!(table["rows"][0]["mean"]["median"].as_f64().unwrap() > 0.1);
 }
 
-/// Nothing half-measured is written, and what was there stays.
+/// Nothing is written of an interrupted measurement, and earlier files are kept.
 #[cfg(unix)]
 #[test]
 fn interrupted() {

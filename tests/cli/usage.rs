@@ -1,4 +1,4 @@
-//! Wrong usage: every mistake has its words and ends with status 2.
+//! Wrong usage: every mistake has its message and exit status 2.
 
 use crate::support::{Place, SMALL, run};
 
@@ -77,7 +77,7 @@ fn two_scenes_for_one_folder() {
     assert!(ran.err.contains("scene; run them"), "{}", ran.err);
 }
 
-/// Colours are for people; what programs read has none.
+/// Colours are for terminals; redirected output has none.
 #[test]
 fn colours_that_are_forced_stay_out_of_results() {
     let place = Place::with_small();

@@ -1,11 +1,11 @@
-//! This project's own goldens: every primitive of drawing, every scene and every figure that ships.
+//! This project's own goldens: every primitive of drawing, every shipped scene and every shipped figure.
 //!
-//! Each has a folder `NAME/` here with small pictures and `golden.toml`, a record of all its states: so a failure says
-//! whether the physics moved, which node and since when, or only the drawing. Primitives are the scenes beside their
-//! goldens in `primitives/`.
+//! Each has a folder `NAME/` here with small pictures and `golden.toml`, a record of all its states: so a failure
+//! reports whether the physics changed, at which node and from which frame on, or only the drawing. Primitives are the
+//! scenes beside their goldens in `primitives/`.
 //!
-//! Missing goldens and pictures that are drawn differently are renewed by `UPDATE_GOLDENS=1 cargo test --release --test
-//! golden`, states that moved by `UPDATE_GOLDENS=state`; then look at every picture that changed.
+//! `UPDATE_GOLDENS=1 cargo test --release --test golden` renews missing goldens and pictures that are drawn
+//! differently, `UPDATE_GOLDENS=state` also changed states; then look at every picture that changed.
 #![cfg(feature = "render")]
 
 mod suite;
@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 /// The kind of adapter that draws the goldens.
 const USUAL: &str = "llvmpipe";
 
-/// All goldens together (bytes).
+/// Greatest size of all goldens together (bytes).
 const LARGEST: u64 = 2 * 1024 * 1024;
-/// One of them (bytes).
+/// Greatest size of one of them (bytes).
 const LARGEST_GOLDEN: u64 = 96 * 1024;
 
 fn root() -> &'static Path {
@@ -36,7 +36,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// A folder of goldens, a folder of what they are of, and how many pictures new ones have.
+/// A folder of goldens, the folder of their scenes, and the number of pictures of new ones.
 const SETS: [(&str, &str, u64); 4] = [
     ("tests/golden/primitives", "tests/golden/primitives", 1),
     ("tests/golden/scenes", "scenes", 2),
@@ -77,12 +77,12 @@ fn figures() {
     check("tests/golden/figures", None);
 }
 
-/// On whatever else this machine can draw with, above all a GPU, the states are the same to the bit and the pictures within
-/// what such adapters differ by.
+/// With other adapters of this machine, such as a GPU, states have the same bits, and pictures are within the tolerance
+/// for such adapters.
 #[test]
 fn other_adapters() {
     if std::env::var_os("UPDATE_GOLDENS").is_some() {
-        // The other tests are writing.
+        // The other tests write files.
         return;
     }
     let mut others: Vec<_> = gpu::adapters().0.into_iter().map(|adapter| adapter.name).collect();

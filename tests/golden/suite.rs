@@ -1,4 +1,4 @@
-//! The suite itself, as the tests of another project use it: what it says, what it makes, and what it refuses.
+//! The golden suite as a test of another project uses it: its output, its files, and what it refuses.
 
 use localshape::golden::Suite;
 use localshape::gpu::{AdapterChoice, Gpu};
@@ -17,11 +17,11 @@ const SCENE: &str = "
     model = { kind = 'shape-based', stiffness = 1e4 }
 ";
 
-/// What a test of another project would be. It runs in a process of its own, for it is told by the environment.
+/// A test as in another project. It runs in a separate process, as it is configured by environment variables.
 #[test]
 #[ignore = "started by the tests below"]
 fn of_another_project() {
-    // So that nobody waits for ever if it hangs.
+    // Ends the test if it hangs.
     std::thread::spawn(|| {
         std::thread::sleep(std::time::Duration::from_secs(300));
         std::process::abort();
@@ -33,12 +33,12 @@ fn of_another_project() {
     goldens.finish();
 }
 
-/// Runs it and returns whether it passed and what it said.
+/// Runs it and returns whether it passed, and its output.
 fn run(place: &TempDir, scenes: &str, update: &str) -> (bool, String) {
     let mut command = Command::new(std::env::current_exe().expect("this test"));
     command.args(["--exact", "suite::of_another_project", "--ignored", "--nocapture"]).current_dir(place.path());
     command.env("SCENES", scenes).env("UPDATE_GOLDENS", update).env("RUST_BACKTRACE", "0");
-    // Of the lack of a window drivers complain, which is nothing to those who draw without one.
+    // Drivers print warnings about a missing window, which do not matter here.
     command.env_remove("XDG_RUNTIME_DIR");
     let output = command.output().expect("this test starts");
     let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text")).concat();
@@ -50,7 +50,7 @@ fn write(place: &TempDir, name: &str, text: &str) {
     std::fs::write(place.path().join(name), text).expect("a file");
 }
 
-/// Whether there is anything to draw with; with `LOCALSHAPE_REQUIRE_GPU=1` there must be.
+/// Whether there is a graphics adapter; with `LOCALSHAPE_REQUIRE_GPU=1` there must be.
 fn can_draw() -> bool {
     let opened = Gpu::new(&AdapterChoice::Cpu);
     let is_required = std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some_and(|value| value == "1");
@@ -80,7 +80,7 @@ fn a_golden_is_missed_made_kept_renewed_and_guarded() {
     assert!(passed && text.contains("drop: accepted goldens/drop/frame_00002.png"), "{text}");
     assert!(run(&place, "drop.toml", "").0);
 
-    // Drawn differently: renewed if asked for.
+    // Drawn differently: renewed on request.
     write(&place, "drop.toml", &SCENE.replace("view.size", "view.theme = 'dark'\nview.size"));
     let (passed, text) = run(&place, "drop.toml", "");
     assert!(
@@ -90,7 +90,7 @@ fn a_golden_is_missed_made_kept_renewed_and_guarded() {
     assert!(place.path().join("reports/drop.html").exists());
     assert!(run(&place, "drop.toml", "1").0 && run(&place, "drop.toml", "").0);
 
-    // The state moved: not so easily.
+    // The state changed: this needs another request.
     write(&place, "drop.toml", &SCENE.replace("0.1, 0, 0]", "0.2, 0, 0]"));
     let record = std::fs::read(place.path().join("goldens/drop/golden.toml")).expect("a record");
     let (passed, text) = run(&place, "drop.toml", "1");
@@ -117,7 +117,7 @@ fn goldens_that_no_scene_stands_for_and_scenes_that_are_none_fail() {
     assert!(!passed && text.contains("two: two.toml:1:"), "{text}");
     assert!(text.contains("one: two scenes of this name share one golden"), "{text}");
     assert!(text.contains("three: ") && text.contains("three.toml"), "{text}");
-    // A picture cut short is no pass.
+    // A truncated picture fails.
     let picture = place.path().join("goldens/one/frame_00002.png");
     let bytes = std::fs::read(&picture).expect("a picture");
     std::fs::write(&picture, &bytes[..bytes.len() / 2]).expect("a picture");
@@ -147,7 +147,7 @@ fn without_an_adapter_states_are_compared() {
     let (passed, text) = blind("");
     assert!(passed && text.contains("states are compared, but no pictures"), "{text}");
     assert!(!blind("1").0);
-    // What is missing or damaged fails without a picture, too.
+    // Missing or damaged files fail without a picture, too.
     let golden = place.path().join("goldens/drop");
     std::fs::rename(&golden, place.path().join("kept")).expect("a golden");
     let (passed, text) = blind("");

@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 /// A block of 12³ boxes at rest on a floor.
 const CELLS: u64 = 12;
 
-/// What is counted: of the lattice, of the run, and instructions per element and step, at most: a tenth more than there were.
+/// Options of the lattice, options of the model, and the greatest number of instructions per element and step: a tenth
+/// more than when it was set.
 const CASES: [(&str, &str, u64); 5] = [
     ("", "kind = 'shape-based'", 294),
     ("", "kind = 'shape-based', rotation = 'arctangent'", 420),
@@ -28,7 +29,7 @@ fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
     Scene::parse(&text, "block", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What is counted, in a process of its own.
+/// Counted in a separate process.
 #[test]
 #[ignore = "for the other test"]
 fn steps() {
@@ -65,7 +66,7 @@ fn a_step_takes_no_more_instructions_than_it_did() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut slower = Vec::new();
     for (at, case) in CASES.into_iter().enumerate() {
-        // Making the body and the first steps cancel out.
+        // The difference cancels the setup and the first steps.
         let [few, many] = [10, 60].map(|steps| instructions(folder.path(), at, steps));
         let each = (many - few) / (50 * scene(case).body.elements.len() as u64);
         println!("{each} instructions per element and step, {} at most: {}{}", case.2, case.1, case.0);

@@ -9,8 +9,8 @@ use localshape::sim::world::Surroundings;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A free element scaled by `1 + a` breathes at exactly `ω = √(k/m)`, stepped as
-/// `x_n = a cos((n + ½) θ) / cos(θ/2)` with `cos θ = 1 − ω² ΔT²/2`.
+/// A free element scaled by `1 + a` oscillates at exactly `ω = √(k/m)`, in steps as `x_n = a cos((n + ½) θ) / cos(θ/2)`
+/// with `cos θ = 1 − ω² ΔT²/2`.
 #[test]
 fn a_free_element_breathes_at_exactly_its_frequency() {
     let (body, amplitude, stiffness) = (lattice(1, 0.1), 0.2, 1e4);
@@ -47,7 +47,7 @@ fn a_body_falls_as_the_sum_of_its_steps() {
     }
 }
 
-/// Two nodes held together by nothing that matters: the rebound height is `e² h` up to O(ΔT).
+/// Two nodes with a very soft spring: the rebound height is `e² h` up to O(ΔT).
 #[test]
 fn rebounds_reach_the_restitution_squared_of_the_height() {
     let mut elements = IndexLists::default();
@@ -83,7 +83,7 @@ fn friction_brakes_by_the_impulse_of_the_rebound_and_never_reverses() {
         assert!((position - DVec3::new(0.0, 0.005, 0.0)).length() < 1e-16);
         assert!((velocity - DVec3::new(0.0, 1.0, kept)).length() < 1e-14, "{friction}: {velocity}");
     }
-    // A node that is already leaving is put out and keeps its velocity.
+    // A node that is moving outward already is moved out and keeps its velocity.
     let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(1.0, 2.0, 3.0));
     floor(0.5, 0.3).at(0.0, 1.0).rebound(&mut position, &mut velocity, DVec3::ZERO);
     assert!((position.y - 0.005).abs() < 1e-17);
@@ -99,14 +99,14 @@ fn momentum_and_angular_momentum_stay_to_round_off() {
     let start = State::new(position, velocity);
     let step = TAU / 100.0 / 50.0;
     let spring = mass_spring(&body, 1e4, 0.0, Springs::EdgesOneDiagonal);
-    // The paper's rotations turn an element by what two passes leave; exact ones are what conserves exactly.
+    // After the paper's two passes a small torque remains; angular momentum is conserved only with exact rotations.
     let shape = localshape::sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
     for model in [&shape as &dyn localshape::sim::model::ElasticModel, &spring] {
         let mut world = free(&body, start.clone(), model, step);
         let before = world.snapshot().diagnostics;
         world.advance(1000);
         let after = world.snapshot().diagnostics;
-        // Some 4e4 kg m²/s of internal impulses go to and fro in that time; 1e-10 are ten round-offs of that.
+        // Internal impulses in that time sum to about 4e4 kg m²/s; 1e-10 is ten times their round-off.
         let drift = (after.momentum - before.momentum).length();
         assert!(drift < 1e-10, "{}: {drift:e}", model.describe(&body));
         let drift = (after.angular_momentum - before.angular_momentum).length();

@@ -1,5 +1,5 @@
-//! What any elastic model must do, whatever it is made of, on elements of every kind. A new model or reading joins by
-//! one line in [`cases`].
+//! The suite that every elastic model must pass, on elements of every kind. A new model or reading is added by one line
+//! in [`cases`].
 
 use super::example_model::Rods;
 use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
@@ -13,26 +13,26 @@ use std::sync::Arc;
 
 const STIFFNESS: f64 = 1e4;
 
-/// A model, and what is known not to hold of it.
+/// A model, and which properties it does not have.
 pub(crate) struct Case {
     pub(crate) model: Box<dyn ElasticModel>,
-    /// Whether its forces are the gradient of its energy. Those of Eq. (16) as printed are not: its matrix is no
-    /// rotation, so moving it along costs energy.
+    /// Whether its forces are the gradient of its energy. Those of Eq. (16) as printed are not: its matrix is not a
+    /// rotation, so rotating it costs energy.
     has_potential: bool,
-    /// Whether a body turned while it is simulated is at rest again. Under Eq. (16) it has swollen.
+    /// Whether a body that is rotated during a simulation is free of forces again. With Eq. (16) it has grown.
     forgets_turns: bool,
 }
 
-/// Every model and every reading, for a body.
+/// All models and readings, for a body.
 pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     let sound = |model: Box<dyn ElasticModel>| Case { model, has_potential: true, forgets_turns: true };
-    // Enough passes for round-off: the suite is about the model, not about the approximation of section 4.
+    // Enough passes for round-off: the suite tests the model, not the approximation of section 4.
     let shape = ShapeBased { passes: 8, ..shape_based(STIFFNESS, damping) };
     let mut all = vec![sound(Box::new(shape.clone()))];
     if damping > 0.0 {
         all.push(sound(Box::new(ShapeBased { damping_of: DampingReading::Deformation, ..shape.clone() })));
     }
-    // In the plane Eq. (9) is exact and there is nothing to read.
+    // In the plane Eq. (9) is exact, and there are no readings.
     if body.dimension == Dimension::Space {
         all.push(sound(Box::new(ShapeBased { rotation: RotationReading::VectorLength, passes: 12, ..shape.clone() })));
         for rotation in [RotationReading::Symmetric, RotationReading::Exact] {
@@ -107,7 +107,7 @@ pub(crate) fn bodies() -> Vec<Arc<Body>> {
         body(Dimension::Plane, &flat, &[&[0, 1, 2, 3, 4]]),
         body(Dimension::Plane, &flat, &[&[0, 1, 2], &[0, 2, 3, 4]]),
     ];
-    // The same with masses that differ: force balance must not depend on them.
+    // The same with different masses: the balance of forces must not depend on them.
     let unequal = bodies.iter().map(|body| {
         let mass = (1..=body.len()).map(|node| 0.3 + (node % 5) as f64).collect();
         Arc::new(Body { mass, ..Body::clone(body) })
@@ -117,7 +117,7 @@ pub(crate) fn bodies() -> Vec<Arc<Body>> {
     bodies
 }
 
-/// Six nodes that are no wedge, in no particular order.
+/// Six nodes that do not form a wedge, in any order.
 fn octahedron() -> Arc<Body> {
     let corners = [DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::X, DVec3::Y, -DVec3::Z];
     let elements = [&[0, 1, 2, 3, 4, 5][..]].into_iter().collect();
@@ -126,7 +126,7 @@ fn octahedron() -> Arc<Body> {
     Arc::new(body)
 }
 
-/// A displacement that keeps a body in the plane there.
+/// A displacement that keeps a plane body in its plane.
 fn in_dimension(body: &Body, v: DVec3) -> DVec3 {
     match body.dimension {
         Dimension::Plane => v.with_z(0.0),
@@ -202,7 +202,7 @@ fn damping_has_neither_resultant_nor_work_that_is_gained() {
     }
 }
 
-/// But for damping as printed, no model feels a rigid spin: it has no damping torque.
+/// Except for damping as printed, rigid rotation causes no damping torque.
 #[test]
 fn damping_of_deformation_and_of_springs_leaves_rigid_motion_alone() {
     for body in bodies() {
@@ -219,7 +219,7 @@ fn damping_of_deformation_and_of_springs_leaves_rigid_motion_alone() {
     }
 }
 
-/// A body that is turned while it is simulated, a little with each evaluation, has no force at the end.
+/// A body that is rotated during a simulation, a little with each evaluation, has no forces at the end.
 #[test]
 fn rotations_are_followed_all_the_way_round() {
     each(|body, Case { model, forgets_turns, .. }| {
@@ -233,7 +233,7 @@ fn rotations_are_followed_all_the_way_round() {
         let force = largest(&last);
         match forgets_turns {
             true => assert!(force < 1e-13 * STIFFNESS * 10.0, "{model:?}: {force:e}"),
-            // Some 17 % of the size of whatever lies across the axis.
+            // About 17 % of everything perpendicular to the axis.
             false => assert!(body.len() < 3 || force > 1e-3 * STIFFNESS * body.extent(), "{model:?}: {force:e}"),
         }
     });
@@ -250,8 +250,8 @@ fn the_energy_of_the_nodes_is_that_of_the_body() {
     });
 }
 
-/// The same nodes and the same memory give the same forces and the same next memory, to the bit, whatever was evaluated in
-/// between; and all of the next memory is written.
+/// The same nodes and the same memory give the same forces and the same next memory, bit for bit, whatever was
+/// evaluated in between; and the whole next memory is written.
 #[test]
 fn evaluations_leave_nothing_behind() {
     for body in bodies() {
@@ -268,7 +268,7 @@ fn evaluations_leave_nothing_behind() {
     }
 }
 
-/// Integrators that evaluate forces once where velocities do not count must be told the truth.
+/// `is_damped` must be right, as integrators evaluate forces only once for a model without damping.
 #[test]
 fn forces_depend_on_velocities_if_and_only_if_the_model_says_so() {
     for body in bodies() {
@@ -287,8 +287,8 @@ fn forces_depend_on_velocities_if_and_only_if_the_model_says_so() {
     }
 }
 
-/// Each node sums what acts on it in the order of the elements or springs, to the bit: so states do not depend on how the
-/// work is shared out, and goldens are the same for every version that keeps this order.
+/// The forces on a node are summed in the order of the elements or springs, bit for bit: so states do not depend on the
+/// number of threads, and goldens do not change between versions that keep this order.
 #[test]
 fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     let whole = lattice(2, 0.1);
@@ -318,7 +318,7 @@ fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     }
 }
 
-/// With all its nodes at one point an element keeps the rotation that it had.
+/// With all its nodes at one point an element keeps its last rotation.
 #[test]
 fn an_element_at_a_point_keeps_its_rotation() {
     for body in bodies().into_iter().filter(|body| body.elements.len() == 1) {
@@ -388,7 +388,7 @@ fn force_is_the_negative_gradient_of_energy() {
 fn the_order_of_nodes_and_elements_does_not_matter() {
     for body in bodies() {
         let count = body.len() as u32;
-        // A step without a common factor makes a permutation.
+        // A stride without a common factor gives a permutation.
         let step = [7, 5, 3, 1].into_iter().find(|step| !count.is_multiple_of(*step) || *step == 1).unwrap_or(1);
         let renamed = |node: u32| (node * step + 1) % count;
         let mut rest = vec![DVec3::ZERO; body.len()];
@@ -420,7 +420,7 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
     }
 }
 
-/// A model that scenes can name but this suite does not know would be tested by nobody.
+/// Fails if a model of the scene format is missing in this suite.
 #[test]
 fn every_model_of_the_scene_format_is_in_the_suite() {
     let schema = localshape::scene::schema();
@@ -430,8 +430,8 @@ fn every_model_of_the_scene_format_is_in_the_suite() {
     assert_eq!(named, ["shape-based", "mass-spring"], "add the model to `cases`, then here");
 }
 
-/// The same of the readings of a model, of the named springs and of the integrators: a new one fails here until the
-/// suites know it.
+/// The same for the readings of a model, the named springs and the integrators: a new one fails here until the suites
+/// include it.
 #[test]
 fn every_choice_of_the_scene_format_is_in_the_suites() {
     let schema = localshape::scene::schema();

@@ -32,7 +32,7 @@ fn a_moving_wall_gives_a_node_its_own_speed_and_the_rebound() {
         let height = 0.4 * speed;
         let (mut position, mut velocity) = (DVec3::new(0.3, height - 0.01, 0.0), DVec3::Y * before);
         rising.at(0.4, STEP).rebound(&mut position, &mut velocity, DVec3::ZERO);
-        // Relative to the wall: −e (v − u), and mirrored by e times the depth.
+        // Relative to the wall: −e (v − u), and reflected to e times the depth.
         let expected = speed - restitution * (before - speed);
         assert!((velocity - DVec3::Y * expected).length() < 1e-11, "{velocity} {expected}");
         assert!((position.y - (height + restitution * 0.01)).abs() < 1e-13, "{position}");
@@ -62,7 +62,7 @@ fn a_turning_table_carries_a_node_at_the_speed_of_the_place_where_it_stands() {
     let table = obstacle(floor(), 0.0, 1e3, steady(DVec3::ZERO, DVec3::Y * 4.0));
     let (mut position, mut velocity) = (DVec3::new(0.5, -0.001, 0.2), DVec3::new(0.0, -1.0, 0.0));
     table.at(0.7, STEP).rebound(&mut position, &mut velocity, DVec3::ZERO);
-    // The chord of the last step instead of the tangent: half a step's turn behind.
+    // The chord of the last step instead of the tangent: rotated by half a step.
     let chord = DQuat::from_rotation_y(-4.0 * STEP / 2.0) * DVec3::new(4.0 * 0.2, 0.0, -4.0 * 0.5);
     assert!((velocity - chord).length() < 1e-5, "{velocity} {chord}");
 }
@@ -103,7 +103,7 @@ fn every_shape_mirrors_the_depth_and_the_speed_along_its_normal() {
     }
 }
 
-/// A moving obstacle is a still one seen from a moving frame: to round-off for steady motion.
+/// A moving obstacle acts like a still one in a moving frame: to round-off for uniform motion.
 #[test]
 fn a_steadily_moving_obstacle_is_a_still_one_in_a_moving_frame() {
     let mut noise = Noise(4);
@@ -133,7 +133,7 @@ fn a_steadily_moving_obstacle_is_a_still_one_in_a_moving_frame() {
 
 #[test]
 fn obstacles_act_in_the_order_of_the_scene() {
-    // Between two walls that overlap, the last one has the last word.
+    // Between two walls that overlap, the last one decides.
     let left = obstacle(Shape::Plate { point: DVec3::ZERO, normal: DVec3::X }, 0.0, 0.0, Motion::Still);
     let right = obstacle(Shape::Plate { point: DVec3::X * -0.1, normal: -DVec3::X }, 0.0, 0.0, Motion::Still);
     for (order, end) in [([&left, &right], -0.1), ([&right, &left], 0.0)] {
@@ -145,20 +145,20 @@ fn obstacles_act_in_the_order_of_the_scene() {
     }
 }
 
-/// A steady shift of something that stands turned, `far` metres from where it was typed.
+/// A uniform translation of a rotated obstacle, `far` metres from its position in the scene.
 fn turned_and_shifting(far: f64) -> Motion {
     let shift = DVec3::new(0.2, -0.1, 0.3);
     let at = |time: f64| Key { time, offset: Offset { shift: shift * (time + far), rotation: DVec3::Y } };
     Motion::Keys { keys: vec![at(0.0), at(1.0)], ease: Ease::Linear, repeat: false }
 }
 
-/// About where it has brought what was near the origin.
+/// About the position to which it has moved what was near the origin.
 fn wall_place(far: Option<f64>) -> DVec3 {
     far.map_or(DVec3::ZERO, |far| DVec3::new(0.2, -0.1, 0.3) * far)
 }
 
-/// Where a rebound with `e = 0` puts a node, round-off decides on which side of the surface it lies. It must not decide
-/// what becomes of the node: one that approaches rebounds, one that does not stays as it is.
+/// Where a rebound with `e = 0` places a node, round-off decides on which side of the surface it is. The result must
+/// not depend on that: an approaching node rebounds, any other one is unchanged.
 #[test]
 fn a_node_on_the_surface_rebounds_if_it_approaches() {
     let mut noise = Noise(12);
@@ -180,7 +180,7 @@ fn a_node_on_the_surface_rebounds_if_it_approaches() {
             let place = wall_place(far) + noise.vector();
             let (mut position, mut velocity) = (place, DVec3::ZERO);
             let Some((contact, own)) = wall.contact(position) else { continue };
-            // Put on the surface.
+            // On the surface.
             wall.rebound(&mut position, &mut velocity, DVec3::ZERO);
             outside += usize::from(wall.contact(position).is_none());
             for (towards, after) in [(-1.0, 0.0), (1.0, 1.0)] {
@@ -196,14 +196,15 @@ fn a_node_on_the_surface_rebounds_if_it_approaches() {
     }
 }
 
-/// A node that has fallen into a floor within a step, and the same fall with the impact found inside the step: with any
-/// restitution the heights that both reach afterwards are the same.
+/// A node that has fallen into a floor within a step, and the same fall with the impact computed inside the step: with
+/// any restitution both reach the same height.
 #[test]
 fn a_rebound_of_a_node_that_accelerates_has_the_energy_of_the_impact() {
     let g = 9.8;
     for restitution in [0.0_f64, 0.3, 0.8, 1.0] {
         for share in [0.05_f64, 0.5, 0.95] {
-            // Over the surface by what the node falls in a share of the step, then the rest of the step into the floor.
+            // Above the surface by what the node falls in a fraction of the step, then the rest of the step into the
+            // floor.
             let (start, step) = (-1.3, 0.01);
             let height = -start * share * step + 0.5 * g * (share * step).powi(2);
             let impact = start - g * share * step;

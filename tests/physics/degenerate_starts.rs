@@ -1,4 +1,4 @@
-//! Starts from which the shape model must come back and mass-spring need not (paper, section 3).
+//! Starts from which the shape model must recover and mass-spring need not (paper, section 3).
 
 use super::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
@@ -9,8 +9,7 @@ use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use std::f64::consts::TAU;
 
-/// Corners of the unit cube moved as `map` says, with a slight disorder: perfect symmetry would sit on an unstable
-/// equilibrium.
+/// Corners of the unit cube moved by `map`, with a slight disorder: perfect symmetry would be an unstable equilibrium.
 fn start(map: impl Fn(DVec3) -> DVec3, disorder: f64) -> State {
     let body = lattice(1, 1.0);
     let mut noise = Noise(21);
@@ -60,7 +59,7 @@ fn a_half_turn_at_the_start_has_no_force() {
     assert!(force.iter().all(|f| f.length() < 1e-10));
 }
 
-/// In the plane: Eq. (9) with both sums zero keeps the last angle, and everything comes back.
+/// In the plane: Eq. (9) with both sums zero keeps the last angle, and every shape is recovered.
 #[test]
 fn polygons_recover_from_a_point_a_line_a_mirror_image_and_half_a_turn() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 0.9, 0.0], [0.4, 1.5, 0.0], [-0.3, 0.8, 0.0]];
@@ -91,7 +90,7 @@ fn polygons_recover_from_a_point_a_line_a_mirror_image_and_half_a_turn() {
     }
 }
 
-/// The readings kept for study: no start gives NaN, and a body flattened to a line or a point is not lost.
+/// The readings for comparison: no start gives NaN, and a body flattened to a line or a point recovers.
 #[test]
 fn no_reading_fails_at_a_degenerate_start() {
     let maps: [fn(DVec3) -> DVec3; 4] =

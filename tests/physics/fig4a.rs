@@ -1,10 +1,10 @@
-//! Fig. 4(a): six triangles in the plane fall on a floor, by the scene that ships.
+//! Fig. 4(a): six triangles in the plane fall on a floor. Uses the shipped scene.
 
 use super::support::{after, shipped};
 use localshape::scene::Scene;
 use localshape::sim::Snapshot;
 
-/// Signed area of the triangle with the largest obtuse angle, over that at rest.
+/// Signed area of the triangle with the largest obtuse angle, divided by that at rest.
 fn obtuse(scene: &Scene, snapshot: &Snapshot) -> f64 {
     let nodes = &scene.body.elements[5];
     let area = |at: &[glam::DVec3]| {

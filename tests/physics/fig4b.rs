@@ -1,4 +1,4 @@
-//! Fig. 4(b): 3×3×3 cubes hit the floor with the speed of a fall of 5 m, by the scene that ships.
+//! Fig. 4(b): 3×3×3 cubes hit the floor with the speed of a fall of 5 m. Uses the shipped scene.
 
 use super::support::{after, shipped};
 use localshape::sim::snapshot::Status;
@@ -9,7 +9,7 @@ fn springs_turn_over_exactly_the_lowest_nine_cubes_and_the_shape_model_none() {
     let shape = after(&scene, "Local shape", 3.0).diagnostics;
     assert_eq!(shape.turned_over, 0);
     assert!((shape.volume_ratio - 0.98).abs() < 0.005, "{}", shape.volume_ratio);
-    // Rung out, it sags under its own weight: volume 0.9826, RMS error 0.022 sides.
+    // At rest it sags under its own weight: volume 0.9826, RMS error 0.022 sides.
     let sagging = after(&scene, "Local shape", 6.0).diagnostics;
     assert!((sagging.volume_ratio - 0.9826).abs() < 2e-4, "{}", sagging.volume_ratio);
     assert!((sagging.shape_error - 0.0022).abs() < 5e-5, "{}", sagging.shape_error);
@@ -41,7 +41,7 @@ fn a_step_beyond_the_limit_of_stability_is_a_result_with_a_time() {
     let end = after(&scene, "Mass-spring", 3.0);
     let Status::Diverged(at) = end.status else { panic!("it must diverge") };
     assert!(at.step > 1 && (at.time - at.step as f64 * 0.02).abs() < 1e-12 && at.element.is_some(), "{at:?}");
-    // The last state is kept, it is finite, and it can be drawn: it lies within some hundred sides.
+    // The last state is kept, finite, and close enough to be drawn: within some hundred sides.
     assert!(end.velocity.iter().all(|v| v.is_finite()));
     assert!(end.position.iter().all(|p| p.length() < 100.0));
 }

@@ -1,4 +1,4 @@
-//! Fig. 4(c): a plate presses 3×3×3 cubes ten times, by the scene that ships.
+//! Fig. 4(c): a plate presses 3×3×3 cubes ten times. Uses the shipped scene.
 
 use super::support::{after, shipped};
 
@@ -11,7 +11,7 @@ fn springs_fold_up_at_the_first_press_and_the_shape_model_comes_back_from_all_te
         let volume = if turned_over == 0 { 1.0 } else { 0.333 };
         assert!((springs.volume_ratio - volume).abs() < 0.005, "{seconds} s: {}", springs.volume_ratio);
     }
-    // Pressed most, the body of the shape model has less than half of its volume and nothing turned over.
+    // At the deepest press the body of the shape model has less than half of its volume and nothing turned over.
     for press in 0..10 {
         let pressed = after(&scene, "Local shape", 1.2 + 0.5 * f64::from(press)).diagnostics;
         assert!(pressed.turned_over == 0 && pressed.volume_ratio < 0.5, "press {press}: {pressed:?}");

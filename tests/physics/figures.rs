@@ -1,5 +1,5 @@
-//! The forces of Figs. 1 and 2, with `k = 1`, against an independent implementation's: the seven rows of the table in
-//! `docs/paper.md`.
+//! The forces of Figs. 1 and 2, with `k = 1`, compared with an independent implementation: the seven rows of the table
+//! in `docs/paper.md`.
 
 use super::support::{body, forces, shape_based};
 use glam::DVec3;
@@ -23,7 +23,7 @@ fn on_polygon(rest: &[[f64; 2]], now: &[[f64; 2]], model: &dyn ElasticModel) -> 
 fn agree(found: &[DVec3], expected: &[[f64; 2]]) {
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(expected) {
-        // The figures are known to four decimals.
+        // The independent values have four decimals.
         let off = (found.truncate() - glam::DVec2::from_array(*expected)).abs();
         assert!(off.max_element() < 0.5001e-4 && found.z == 0.0, "{found} {expected:?}");
     }

@@ -1,4 +1,4 @@
-//! The paper's concluding claim: free-form bodies of irregular elements keep their shape, by the scenes that ship.
+//! The paper's concluding claim: free-form bodies of irregular elements keep their shape. Uses the shipped scenes.
 
 use super::support::{after, shipped};
 use localshape::sim::body::ElementKind;

@@ -1,4 +1,4 @@
-//! Nodes that are held, grabbed, dragged and let go.
+//! Kinematic constraints: nodes that are held, gripped, dragged and released.
 
 use super::support::{after, lattice, shape_based, shipped, world};
 use glam::{DQuat, DVec3};
@@ -56,7 +56,7 @@ fn dragged_nodes_follow_the_hand_and_keep_its_speed_when_let_go() {
     world.advance(100);
     let thrown = world.snapshot().diagnostics.momentum / 8.0;
     assert!((thrown - DVec3::new(2.5, 1.0, 0.0)).length() < 1e-6, "{thrown}");
-    // From then on only gravity acts.
+    // After the release only gravity acts.
     world.advance(200);
     let later = world.snapshot().diagnostics.momentum / 8.0;
     assert!((later - thrown - GRAVITY * 0.2).length() < 1e-11, "{later}");
@@ -70,7 +70,7 @@ fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     let (grabbed, pulled) = (at("Local shape", 0.499), at("Local shape", 1.5));
     for &node in &right {
         let way = pulled.position[node] - grabbed.position[node];
-        // Between the two last steps before the grab the end still swings a little.
+        // Between the last two steps before the grip the end still oscillates a little.
         assert!((way - DVec3::new(0.5, 0.2, 0.0)).length() < 2e-3, "{way}");
     }
     let end = at("Local shape", 4.0);
@@ -82,8 +82,8 @@ fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     }
 }
 
-/// A hand that grabs while another lets go takes the nodes where they are, and a hand that drags a body out to twenty
-/// times its length is no divergence.
+/// A grip that begins while another ends takes the nodes at their present positions, and stretching a body to twenty
+/// times its length is not a divergence.
 #[test]
 fn one_hand_takes_over_from_another_and_may_pull_far() {
     let body = lattice(1, 0.1);

@@ -1,4 +1,4 @@
-//! What each integrator does, against closed forms.
+//! Each integrator compared with closed forms.
 
 use super::conformance::{bodies, cases};
 use super::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const STIFFNESS: f64 = 1e4;
 const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
 
-/// The scale of a breathing cube that starts scaled by `1 + a`, after each of some steps.
+/// The scale of an oscillating cube that starts scaled by `1 + a`, after each of some steps.
 fn breathing(integrator: Integrator, step: f64, steps: usize, a: f64) -> Vec<f64> {
     let body = lattice(1, 0.1);
     let centre = DVec3::splat(0.05);
@@ -113,7 +113,8 @@ fn momentum_changes_by_gravity_alone() {
     }
 }
 
-/// A floor without friction pushes upwards alone: the other momenta stay to round-off while the body bounces on it.
+/// A floor without friction exerts only vertical forces: the other momenta are conserved to round-off while the body
+/// bounces.
 #[test]
 fn contact_changes_momentum_along_its_normal_alone() {
     let body = lattice(2, 0.1);
@@ -142,8 +143,8 @@ fn contact_changes_momentum_along_its_normal_alone() {
     }
 }
 
-/// The force that velocity Verlet remembers is that of where an obstacle has put the nodes, so each step equals the
-/// first one of a world that starts from the same state, to the bit.
+/// The force that velocity Verlet stores is that at the positions after contact, so each step is equal to the first
+/// step of a world that starts from the same state, bit for bit.
 #[test]
 fn velocity_verlet_goes_on_as_if_it_began() {
     let body = lattice(2, 0.1);
@@ -178,7 +179,7 @@ fn velocity_verlet_goes_on_as_if_it_began() {
     }
 }
 
-/// With `e = 1` the energy of a node that bounces stays within round-off of what it was for 100 000 rebounds.
+/// With `e = 1` the energy of a bouncing node is conserved to round-off for 100 000 rebounds.
 #[test]
 fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
     let nodes = body(Dimension::Space, &[[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], &[&[0, 1]]);
@@ -199,7 +200,7 @@ fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
     }
 }
 
-/// A damped body that stands on a floor comes to rest, with every restitution: with velocity Verlet altogether.
+/// A damped body on a floor comes to rest with every restitution; with velocity Verlet completely.
 #[test]
 fn a_damped_body_on_a_floor_comes_to_rest() {
     let body = lattice(2, 0.1);
@@ -229,7 +230,7 @@ fn a_damped_body_on_a_floor_comes_to_rest() {
     }
 }
 
-/// `dV/dt = −c V` alone: stable as far as `c ΔT = 2`, with velocity Verlet as with both Euler methods.
+/// `dV/dt = −c V` only: stable up to `c ΔT = 2`, for velocity Verlet and both Euler methods.
 #[test]
 fn the_damping_limit_is_the_same_for_every_method() {
     let pair = body(Dimension::Space, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[&[0, 1]]);
@@ -237,7 +238,7 @@ fn the_damping_limit_is_the_same_for_every_method() {
     let damping = 5.0;
     for integrator in ALL {
         let is_stable = |step: f64| {
-            // Soft enough that elasticity has no part in it.
+            // Soft enough that elasticity has no influence.
             let mut world = stepped(&pair, start.clone(), &shape_based(1e-9, damping), integrator, step);
             world.advance(2000);
             world.state().velocity[0].length() < 2e-3
@@ -251,8 +252,8 @@ fn the_damping_limit_is_the_same_for_every_method() {
     }
 }
 
-/// Eq. (18) is about the rotations of the forces at a state, so where states are the same it is the same for every way of
-/// stepping: here every node of a cube is turned by a hand, further each step than one pass can follow exactly.
+/// Eq. (18) is about the rotations of the forces at a state, so for equal states it does not depend on the integrator.
+/// Here every node of a cube is rotated by a grip, in each step further than one pass can follow exactly.
 #[test]
 fn the_residual_means_the_same_for_every_method() {
     let body = lattice(1, 0.1);
@@ -283,7 +284,7 @@ fn the_residual_means_the_same_for_every_method() {
     }
 }
 
-/// What a hand holds has the hand's velocity at the end of a step, whatever forces act on it.
+/// A gripped node has the velocity of the grip at the end of a step, whatever forces act on it.
 #[test]
 fn held_nodes_have_the_velocity_of_the_hand() {
     let body = lattice(2, 0.1);
@@ -308,9 +309,9 @@ fn held_nodes_have_the_velocity_of_the_hand() {
     }
 }
 
-/// At rest a node goes on bouncing with semi-implicit Euler. Falling back it is faster by `A ΔT` at most than it left, with
-/// `A` the acceleration with which what rests on it presses it down: so it leaves with `e/(1 − e) A ΔT` at most. `A` is at
-/// most `g` times the mass of the body over that of the node. With velocity Verlet it comes to rest.
+/// At rest a node continues to bounce with semi-implicit Euler. It returns faster by at most `A ΔT` than it left, with
+/// `A` the acceleration by which its load presses it down: so it leaves with at most `e/(1 − e) A ΔT`. `A` is at most
+/// `g` times the mass of the body divided by that of the node. With velocity Verlet it comes to rest.
 #[test]
 fn the_jitter_at_rest_has_the_bound_of_the_load() {
     let (g, step) = (9.8, 1e-3);
@@ -351,7 +352,8 @@ fn the_jitter_at_rest_has_the_bound_of_the_load() {
     }
 }
 
-/// Nodes moved by an obstacle make what velocity Verlet remembers worthless: the body must bounce like the others.
+/// After an obstacle has moved nodes, the stored forces of velocity Verlet are invalid: the body must bounce as with
+/// the others.
 #[test]
 fn rebounds_are_alike_with_every_stable_method() {
     let body = lattice(1, 0.1);
@@ -371,7 +373,7 @@ fn rebounds_are_alike_with_every_stable_method() {
     assert!((one - other).abs() < 5e-3, "{one} {other}");
 }
 
-/// The energy of an undamped motion swings with the step and does not drift with the symplectic methods.
+/// The energy of an undamped motion oscillates, and with the symplectic methods it does not drift.
 #[test]
 fn energy_drifts_with_explicit_euler_alone() {
     let body = lattice(2, 0.1);

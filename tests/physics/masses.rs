@@ -44,7 +44,7 @@ fn momenta_and_energy_weigh_each_node_with_its_mass() {
     assert!((found.gravitational - gravitational).abs() < 1e-13 * gravitational.abs());
 }
 
-/// Eqs. (17) and (18): `α = k |Σ r × R| / Σ m |R0|²`, here with every node turned by a hand in one step.
+/// Eqs. (17) and (18): `α = k |Σ r × R| / Σ m |R0|²`, here with every node rotated by a grip in one step.
 #[test]
 fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let (body, stiffness, step) = (uneven(), 1e4, 0.01);
@@ -65,7 +65,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
         points.iter().map(|&point| point - centre).collect()
     };
     let rest = centred(&body.rest);
-    // The rotation of the forces in the first step, from the exact one at the start.
+    // The rotation of the forces in the first step, which starts from the exact one.
     let solve = |a| linearised::rotation_by_arctangent(linearised::solve(a));
     let at_rest = |world: &World| moment(&rest, centred(&world.state().position));
     let exact = localshape::sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);

@@ -1,4 +1,4 @@
-//! The physics as the paper and its closed forms have it, without files and without a graphics device.
+//! The physics compared with the paper and with closed forms, without files and without a graphics device.
 
 mod closed_forms;
 mod conformance;

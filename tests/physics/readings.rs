@@ -1,4 +1,4 @@
-//! The paper's readings, each by what it does.
+//! The effect of each reading of the paper.
 
 use super::support::{after, free, lattice, shape_based, shipped};
 use glam::DVec3;
@@ -13,7 +13,7 @@ fn spinning(body: &Body, spin: DVec3) -> State {
     State::new(body.rest.clone(), velocity)
 }
 
-/// One free element, as printed: its spin falls as `exp(−D t/m)`; of deformation only: it stays.
+/// One free element. As printed, its rotation decays as `exp(−D t/m)`; with damping of deformation it persists.
 #[test]
 fn damping_as_printed_brakes_a_rigid_spin_and_damping_of_deformation_does_not() {
     let body = lattice(1, 0.1);
@@ -41,12 +41,12 @@ fn damping_of_deformation_still_brings_deformation_to_rest() {
     let before = world.snapshot().diagnostics;
     world.advance(20_000);
     let after = world.snapshot().diagnostics;
-    // What is left is what the spin pulls apart: m ω² r / k.
+    // The remaining error is the extension by the centrifugal force: m ω² r / k.
     assert!(after.elastic < 1e-3 * before.elastic, "{} {}", after.elastic, before.elastic);
     assert!((after.angular_momentum - before.angular_momentum).length() < 1e-10);
 }
 
-/// The shipped scene: Eq. (16) as printed swells, accumulated rotations keep the size.
+/// The shipped scene: with Eq. (16) as printed the body grows, with accumulated rotations it keeps its size.
 #[test]
 fn the_linear_update_swells_a_spinning_cube() {
     let scene = shipped("swelling", &[]);
@@ -57,7 +57,7 @@ fn the_linear_update_swells_a_spinning_cube() {
     assert!(printed > 2.0, "{printed}");
 }
 
-/// The shipped scene: Eqs. (2) and (3) as printed blow up, and the other methods do not.
+/// The shipped scene: Eqs. (2) and (3) as printed diverge, and the other methods do not.
 #[test]
 fn explicit_euler_blows_up_a_spinning_block() {
     let scene = shipped("explicit-euler", &[]);
@@ -68,7 +68,7 @@ fn explicit_euler_blows_up_a_spinning_block() {
     }
 }
 
-/// With its angle read as `|w|`, one pass from a fast spin turns an element too far every time, which pumps it.
+/// With the angle read as `|w|`, one pass for a fast rotation overshoots every time, which adds energy.
 #[test]
 fn the_length_as_angle_leaves_more_error_than_the_arctangent() {
     let body = lattice(1, 0.1);

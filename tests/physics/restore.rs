@@ -1,4 +1,4 @@
-//! Starts from which a body of the shape model comes back and one of springs does not: the figure `restore`.
+//! Starts from which a body of the shape model recovers its shape and one of springs does not: the figure `restore`.
 
 use super::support::{after, shipped};
 use localshape::sim::snapshot::Status;
@@ -15,7 +15,7 @@ fn every_start_comes_back_with_local_shapes_and_none_with_springs() {
         let found = springs.diagnostics;
         assert!(found.shape_error > 0.3 * extent, "{start}: {found:?}");
         assert_eq!(springs.status, Status::Ok);
-        // What has no depth gets none, what is inside out stays so, and the rest is tangled.
+        // Flat elements stay flat, inverted ones stay inverted, and the rest is entangled.
         match start {
             "point" | "line" | "plane" => assert!(found.volume_ratio.abs() < 1e-9, "{start}: {found:?}"),
             "mirror" => assert_eq!(found.turned_over, 27),
@@ -24,7 +24,7 @@ fn every_start_comes_back_with_local_shapes_and_none_with_springs() {
     }
 }
 
-/// The two clouds of the figure are the first two, not the best of many.
+/// The two random starts of the figure are the first two, not selected.
 #[test]
 fn other_clouds_come_back_too() {
     for seed in 3..9 {

@@ -1,5 +1,5 @@
-//! What is fast is no divergence as long as something makes it fast: a small, soft body falls for long, is hit by a fast
-//! plate, is dragged by a fast hand. By itself it would never move faster than some metres a second.
+//! High speed with an external cause is not a divergence: a small, soft body falls for long, is hit by a fast plate,
+//! and is dragged by a fast grip. By itself it would never move faster than some metres per second.
 
 use super::support::{lattice, shape_based};
 use glam::DVec3;
@@ -23,7 +23,7 @@ fn fastest(around: Surroundings, seconds: f64) -> f64 {
     world.state().velocity.iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
-/// Over a short way at once: 200 m/s.
+/// A short path in one step: 200 m/s.
 fn path() -> Motion {
     let keys = vec![
         Key { time: 0.1, offset: Offset::default() },

@@ -1,4 +1,4 @@
-//! All that persists is in the state, and nothing else is.
+//! The state has everything that persists between steps.
 
 use super::conformance::{bodies, cases};
 use super::support::{Noise, floor, lattice, mass_spring, shape_based};
@@ -15,7 +15,7 @@ use std::path::Path;
 
 const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
 
-/// Goes on from what was written and read, in a world of its own.
+/// Continues from a state that was written and read, in a new world.
 fn revived(world: &World, mut fresh: World) -> World {
     let bytes = world.state().to_bytes();
     let state = State::from_bytes(&bytes).expect("what was written");
@@ -52,7 +52,7 @@ fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
     assert!(scenes >= 25, "{scenes}");
 }
 
-/// The same over elements of every kind, models and integrators, with a floor and a grip that takes hold on the way.
+/// The same for elements of every kind, models and integrators, with a floor and a grip that becomes active on the way.
 #[test]
 fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     for body in bodies() {
@@ -80,7 +80,7 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     }
 }
 
-/// On the way to a moment the state stays that of the last one that was reached.
+/// Between moments the state is that of the last moment reached.
 #[test]
 fn a_state_is_whole_also_on_the_way() {
     let body = lattice(2, 0.1);
@@ -99,7 +99,7 @@ fn a_state_is_whole_also_on_the_way() {
     }
 }
 
-/// A step that is given up leaves nothing behind: the state is that of a run that was never asked for the step.
+/// A rejected step has no effect: the state is that of a run that did not attempt it.
 #[test]
 fn a_rejected_step_leaves_nothing_behind() {
     let body = lattice(2, 0.1);
@@ -107,7 +107,7 @@ fn a_rejected_step_leaves_nothing_behind() {
     let grip = Grip { nodes: vec![0], from: 0.0, until: f64::INFINITY, motion: Motion::Still };
     let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
     for ((integrator, kernel), grips) in ways.flat_map(|way| [(way, vec![grip.clone()]), (way, vec![])]) {
-        // Far beyond what is stable.
+        // Far beyond the limit of stability.
         let stepping = Stepping { kernel, ..Stepping::new(integrator, 0.5) };
         let mut noise = Noise(4);
         let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector() * 0.02).collect());
@@ -125,7 +125,7 @@ fn a_rejected_step_leaves_nothing_behind() {
     }
 }
 
-/// The element that is told is that of the first node that was lost, also where contact stops the node in the same step.
+/// The reported element is that of the first node above the speed limit, also if contact stops it in the same step.
 #[test]
 fn kernels_tell_the_same_runaway() {
     for body in bodies() {
@@ -178,7 +178,8 @@ fn two_parts_move_like_each_alone() {
             alone.iter_mut().for_each(|world| world.advance(steps));
             together.advance(steps);
             for (part, alone) in alone.iter().enumerate() {
-                // Verlet with damping in one part evaluates twice in both, which moves the undamped one by round-off.
+                // With damping in one part, Verlet evaluates forces twice in both, which changes the undamped one by
+                // round-off.
                 let (one, other) = (alone.snapshot(), together.snapshot_of(part));
                 let is_exact = integrator != Integrator::VelocityVerlet || part == 0;
                 let farthest =

@@ -104,14 +104,14 @@ impl Remembering {
         (forces, next)
     }
 
-    /// The forces (N); what they found is remembered.
+    /// The forces (N); the memory is updated.
     pub(crate) fn follow(&mut self, state: &State) -> Vec<DVec3> {
         let (forces, next) = self.evaluate(state);
         self.memory = next;
         forces
     }
 
-    /// What the model says, with the energy of each node (J).
+    /// The report of the model, with the energy of each node (J).
     pub(crate) fn report(&self, state: &State) -> (Report, Vec<f64>) {
         let mut energies = vec![0.0; state.position.len()];
         let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
@@ -122,7 +122,7 @@ impl Remembering {
     }
 }
 
-/// A scene that ships, with some of its text replaced.
+/// A shipped scene, with parts of its text replaced.
 pub(crate) fn shipped(name: &str, changes: &[(&str, &str)]) -> Scene {
     let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let mut text = std::fs::read_to_string(&path).expect("the scene ships");
@@ -144,7 +144,7 @@ pub(crate) fn after(scene: &Scene, run: &str, seconds: f64) -> Snapshot {
     world.snapshot()
 }
 
-/// Numbers between −1 and 1 that look random and are the same everywhere.
+/// Pseudo-random numbers between −1 and 1, the same on every machine.
 pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {

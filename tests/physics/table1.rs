@@ -1,4 +1,4 @@
-//! Table 1 at one k/m: what must hold of its rows, whatever the machine.
+//! Table 1 at one k/m: properties of its rows that hold on any machine.
 
 use localshape::scene::{Limits, Scene};
 use localshape::sim::World;
@@ -8,7 +8,7 @@ use localshape::table::table1::{Orientation, Protocol, ROWS, SOLVERS, Summary, T
 use localshape::table::{Spread, ratio};
 use std::collections::BTreeMap;
 
-/// Some starts at the smallest k/m. The paper's 10 s, for at ΔT = T/10 rebounds feed energy, and errors grow with it.
+/// Some starts at the smallest k/m. The paper's 10 s, as rebounds add energy at ΔT = T/10, and errors grow with it.
 const SHORT: Protocol = Protocol { orientations: 9, duration: 10.0, stiffest: 1e4 };
 
 fn on_threads(threads: usize) -> Table1 {
@@ -25,13 +25,13 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
         *found.unwrap_or_else(|| panic!("no row {row} of {}", SOLVERS[solver].name))
     };
     let [a, b, c, d] = ROWS.map(|row| of(0, row.name));
-    // The ranges that an independent implementation found.
+    // The ranges found by an independent implementation.
     assert!((3.2..14.0).contains(&a.mean.median), "{a:?}");
     assert!((0.012..0.040).contains(&b.mean.median), "{b:?}");
     assert!((4e-5..3e-3).contains(&c.mean.median), "{c:?}");
     assert!(c.maximum.median < 1e-2 * a.maximum.median, "{c:?}");
     assert!(d.maximum.median < 1e-6, "{d:?}");
-    // Better solvers: the symmetric matrix by a pass, the exact rotation to round-off.
+    // More accurate solvers: the symmetric matrix by one pass, the exact rotation to round-off.
     assert!(of(1, "A").mean.median < 0.3 * a.mean.median);
     assert!(of(1, "C").mean.median < 1e-2 * c.mean.median);
     assert!(of(2, "A").maximum.most < 1e-10);
@@ -42,7 +42,7 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     assert_eq!((cells.len(), rows.len()), (10, 10));
     let ranges = ["mean_median", "mean_least", "mean_most", "deviation_median", "maximum_median"];
     for (cells, row) in cells.iter().zip(&rows) {
-        // The paper's own solver comes first, with the paper's figures beside ours.
+        // The paper's own solver comes first, with the paper's numbers beside ours.
         let [mean, deviation, maximum] = if cells.len() == 10 { [5, 7, 9] } else { [5, 6, 7] }.map(|at| &cells[at]);
         let shown = [numbers(mean), numbers(deviation), numbers(maximum)].concat();
         let all: Vec<_> =
@@ -57,7 +57,7 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     }
 }
 
-/// The cells of all tables in a Markdown text, without heads and rules.
+/// The cells of all tables in a Markdown text, without headings and rules.
 fn markdown_rows(text: &str) -> Vec<Vec<String>> {
     let cells = |line: &str| line.trim_matches('|').split(" | ").map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
     let lines: Vec<_> = text.lines().collect();
@@ -67,27 +67,27 @@ fn markdown_rows(text: &str) -> Vec<Vec<String>> {
     rows.map(|at| cells(lines[at])).collect()
 }
 
-/// The rows of a CSV text, by their heads.
+/// The rows of a CSV text, by their headings.
 fn records(text: &str) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     reader.deserialize().map(|row| row.expect("a row")).collect()
 }
 
-/// The numbers in a cell for people, such as `1.42 (1.41 – 1.43)`.
+/// The numbers in a formatted cell, such as `1.42 (1.41 – 1.43)`.
 fn numbers(cell: &str) -> Vec<f64> {
     let words = cell.split([' ', '(', ')', '–']).filter(|word| !word.is_empty());
     words.map(|word| word.parse().expect("a number")).collect()
 }
 
-/// Whether numbers of three digits, or of six decimals, are those of all digits.
+/// Whether numbers are equal to three digits, or to six decimals.
 fn same(shown: &[f64], exact: &[&str]) -> bool {
     let exact: Vec<f64> = exact.iter().map(|text| text.parse().expect("a number")).collect();
     let near = |(shown, exact): (&f64, &f64)| (shown - exact).abs() <= 0.00501 * exact.abs();
     shown.len() == exact.len() && shown.iter().zip(&exact).all(near)
 }
 
-/// In row A rebounds feed energy, which is not the solver's doing: exact rotations do no better. With ten times shorter
-/// steps, as in row B, they feed little. What `docs/paper.md` says of it.
+/// In row A rebounds add energy, and the solver is not the cause: with exact rotations the same happens. With ten times
+/// shorter steps, as in row B, they add little, as stated in `docs/paper.md`.
 #[test]
 fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
     let gained = |number: u32, step: f64| {
@@ -121,7 +121,7 @@ fn the_same_bytes_for_any_number_of_threads() {
     assert_eq!(on_threads(1).files(), on_threads(3).files());
 }
 
-/// Each start is the same in any number of them.
+/// The result of a start does not depend on the number of starts.
 #[test]
 fn more_starts_change_none() {
     let rows = |orientations| {
@@ -134,7 +134,7 @@ fn more_starts_change_none() {
     }
 }
 
-/// Asked for before the step, and after it of the rotations that it left behind: the same bits.
+/// Computed before the step, and after it from the rotations of the step: the same bits.
 #[test]
 fn alpha_follows_from_what_a_step_leaves_behind() {
     for rotation in ["arctangent", "symmetric", "exact", "vector-length", "linear-update"] {

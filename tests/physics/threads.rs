@@ -15,7 +15,7 @@ use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
 
 #[test]
 fn states_have_the_same_bits_for_1_2_and_8_threads() {
-    // Large enough that forces, springs and nodes are all handed out in several blocks.
+    // Large enough that forces, springs and nodes are all divided into several blocks.
     let body = lattice(12, 0.1);
     let mut noise = Noise(2);
     let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();

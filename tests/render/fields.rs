@@ -1,4 +1,4 @@
-//! Fields, springs, nodes, arrows and the arrangement of panels, told by the numbers of the picture.
+//! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
 use super::{fig4b, gpu};
 use localshape::look::{ColourMap, ColourScale, Look, Theme, Visible};
@@ -44,7 +44,7 @@ fn marks(picture: &Picture, shape: MarkShape) -> Vec<Mark> {
     picture.marks.iter().copied().filter(|mark| mark.shape == shape && mark.opacity == 255).collect()
 }
 
-/// The beginning and the tip of an arrow (px).
+/// The start and the tip of an arrow (px).
 fn ends(arrow: &Mark) -> [glam::Vec2; 2] {
     let [left, top, width, height] = arrow.rectangle;
     let along = glam::Vec2::from(arrow.along);
@@ -113,7 +113,7 @@ fn odd_values_are_drawn_like_any_others() {
                 }
                 assert!(panel.strokes.iter().flat_map(|stroke| stroke.ends).flatten().all(f32::is_finite));
             }
-            // A field that was never computed colours nothing, and stops nothing.
+            // A field that was not computed colours nothing, and is not an error.
             frame.runs[0].snapshot.field.clear();
             compose(&scene, &frame);
             frame = Runner::new(&scene, &[0, 1]).frame(4);
@@ -157,7 +157,7 @@ fn a_point_says_that_values_lie_beyond_the_scale() {
     for (range, points) in [([0.0, 1e9], 0), ([0.0, 1e-3], 1), ([5.0, 1e9], 1), ([5.0, 6.0], 2)] {
         let (scene, frame) = with_field(Field::Speed, range, 4);
         let drawn = marks(&compose(&scene, &frame), MarkShape::Point);
-        // Each with a rim.
+        // Each with an outline.
         assert_eq!(drawn.len(), 2 * points, "{range:?}");
     }
 }
@@ -221,7 +221,7 @@ fn many_nodes_are_drawn_when_asked_for() {
 
 #[test]
 fn arrows_end_at_their_nodes() {
-    // In space those of nodes that face the viewer; in the plane all that are long enough.
+    // In space arrows of nodes that face the viewer; in the plane all that are long enough.
     let (mut scene, frame) = fig4b(4);
     scene.view.visible.displacements = true;
     let (flat, flat_frame) = plane("show = ['surfaces', 'displacements']");
@@ -238,7 +238,7 @@ fn arrows_end_at_their_nodes() {
                     (0..scene.body.len()).any(|node| {
                         let start = snapshot.placement.place(scene.body.rest[node]);
                         let at = if of_start { start } else { snapshot.position[node] };
-                        // The camera's base is the origin, which any corner of a surface tells.
+                        // The camera's base is the origin, which any corner of a surface gives.
                         let relative = (at - base(scene, frame, &picture, panel)) / scene.view.side;
                         pixel(&picture, panel, relative.as_vec3()).distance(point) < 0.05
                     })
@@ -294,7 +294,7 @@ fn the_key_arrow_is_as_long_as_it_says() {
     assert!(said.windows(2).all(|two| two[0] == two[1]), "{said:?}");
 }
 
-/// The boxes of all words and marks of the key and of the panels, without what lies on bodies (px).
+/// The boxes of all texts and marks of the legend and of the panels, without what is on bodies (px).
 fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
     let words = picture.words.iter().map(|run| {
         let top = run.baseline - 0.74 * run.size;
@@ -302,7 +302,7 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
     });
     let tally = picture.marks.iter().filter(|mark| {
         let struck = matches!(mark.shape, MarkShape::Struck | MarkShape::Blend | MarkShape::Point);
-        // The rim of a point lies under it.
+        // The outline of a point is below it.
         (struck && mark.colour != picture.palette.axis)
             || (mark.shape == MarkShape::Filled && mark.colour == picture.palette.tally)
     });
@@ -312,7 +312,7 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
         let top = if mark.along[0] < 0.0 { top - height } else { top };
         ([left, top, left + width, top + height], format!("{:?}", mark.shape))
     });
-    // Below all panels there are no other arrows than that of the key.
+    // Below all panels the only arrow is that of the legend.
     let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max().unwrap_or(0) as f32;
     let key = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow && mark.rectangle[1] > lowest);
     let key = key.map(|arrow| {
@@ -350,7 +350,7 @@ fn nothing_overlaps_in_any_arrangement() {
                         assert!(apart, "{count} {columns} {size:?}: {name} {one:?} and {other_name} {other:?}");
                     }
                 }
-                // Bodies stay above the key.
+                // Bodies stay above the legend.
                 let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max();
                 let bar = marks(&picture, MarkShape::Blend);
                 if let (Some(lowest), Some(bar)) = (lowest, bar.first()) {

@@ -1,4 +1,4 @@
-//! Smooth borders everywhere, text included: pictures against themselves, drawn four times larger and averaged.
+//! Antialiasing of everything, text included: pictures compared with themselves, drawn four times larger and averaged.
 
 use super::{fig4b, gpu, linear};
 use image::RgbImage;
@@ -8,17 +8,17 @@ use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
-/// How much larger the truth is drawn.
+/// The scale of the reference pictures.
 const TIMES: u32 = 4;
-/// A channel that is off by more than this is seen, and so many may be, as a part of all: where several lines share one
-/// pixel, and where stripes are so fine that they are left out on purpose.
+/// A channel that differs by more than this is visible. This fraction of channels may: where several lines share a
+/// pixel, and where stripes are so fine that they are omitted on purpose.
 const SEEN: u8 = 64;
 const PART: f64 = 3e-4;
-/// The largest root of the mean square of what channels are off by. Four samples leave up to an eighth of the way from one
-/// side to the other, which is 32, in each pixel on a border.
+/// The greatest root mean square difference of channels. With four samples each pixel on a border differs by up to an
+/// eighth of the step between its sides, which is 32.
 const MEAN: f64 = 4.5;
 
-/// The same picture, every length of which is larger: lines and marks, too, and glyphs where they are in the small one.
+/// The same picture with every length scaled: lines, marks and glyphs, too.
 fn larger(picture: &Picture) -> Picture {
     let times = TIMES as f32;
     let mut large = picture.clone();
@@ -29,7 +29,7 @@ fn larger(picture: &Picture) -> Picture {
         let sight = &mut panel.sight;
         sight.focal *= times;
         sight.line_scale *= times;
-        // `element` stays: by it, edges of small elements are fainter.
+        // `element` is not scaled: it determines how faint the edges of small elements are.
         sight.middle = sight.middle.map(|at| at * times);
         panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
         if sight.flat {
@@ -42,7 +42,7 @@ fn larger(picture: &Picture) -> Picture {
     for mark in large.under.iter_mut().chain(&mut large.marks) {
         mark.rectangle = mark.rectangle.map(|length| length * times);
         if mark.shape == MarkShape::Smooth {
-            // Its border is always a pixel wide, half of it inside.
+            // Its border is always one pixel wide, half of it inside.
             let [left, top, width, height] = mark.rectangle;
             let less = 0.5 * (times - 1.0);
             let [along, across] = [mark.along, [-mark.along[1], mark.along[0]]];
@@ -73,8 +73,8 @@ fn encoded(light: f64) -> f64 {
     255.0 * if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// For each channel of the small picture, the mean of the larger one's pixels, in light and in bytes. The
-/// first is right for bodies and their lines, the second for marks and words, which are blended as bytes.
+/// For each channel of the small picture, the mean of the larger one's pixels, in linear light and in sRGB. The first
+/// is right for bodies and their lines, the second for marks and text, which are blended in sRGB.
 fn means(large: &RgbImage, light: &[f64; 256]) -> Vec<[u8; 2]> {
     let [width, height] = [large.width() / TIMES, large.height() / TIMES];
     let mut means = Vec::with_capacity((3 * width * height) as usize);
@@ -93,12 +93,12 @@ fn means(large: &RgbImage, light: &[f64; 256]) -> Vec<[u8; 2]> {
     means
 }
 
-/// How far a byte is from all that lies between two others.
+/// The distance of a byte from the interval between two others.
 fn off(byte: u8, [one, other]: [u8; 2]) -> u8 {
     one.min(other).saturating_sub(byte).max(byte.saturating_sub(one.max(other)))
 }
 
-/// The root of the mean square of what channels are off by, and how many are seen to be off.
+/// The root mean square difference of channels, and the number of visibly different ones.
 fn summary(off: impl Iterator<Item = u8>) -> (f64, usize) {
     let (mut squares, mut count, mut seen) = (0.0, 0, 0);
     for off in off {

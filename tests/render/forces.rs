@@ -1,4 +1,4 @@
-//! Diagrams of forces: the numbers of Figs. 1 and 2, and that one can read them.
+//! Diagrams of forces: the numbers of Figs. 1 and 2, and legibility.
 
 use localshape::moments::Moments;
 use localshape::picture::{MarkShape, Picture, TextRun, compose_figure};
@@ -8,7 +8,7 @@ fn picture(name: &str, size: [u32; 2]) -> Picture {
     picture_with(name, size, 1.0)
 }
 
-/// A figure with type so many times larger than usual.
+/// A figure with a larger font.
 fn picture_with(name: &str, size: [u32; 2], text_scale: f64) -> Picture {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.size = size;
@@ -20,7 +20,7 @@ fn texts(picture: &Picture) -> Vec<&str> {
     picture.words.iter().map(|word| word.text.as_str()).collect()
 }
 
-/// How often each of some texts is written.
+/// The number of occurrences of each text.
 fn counts(picture: &Picture, wanted: &[&str]) -> Vec<usize> {
     let texts = texts(picture);
     wanted.iter().map(|wanted| texts.iter().filter(|text| *text == wanted).count()).collect()
@@ -49,7 +49,7 @@ fn fig_2_says_that_one_diagonal_spring_prefers_a_direction() {
 fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
     let picture = picture("fig3", [1280, 720]);
     assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
-    // An arrow for each node of the pentagon and of the cube, and that of the key.
+    // An arrow for each node of the pentagon and of the cube, and that of the legend.
     assert_eq!(picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow).count(), 5 + 8 + 1);
 }
 
@@ -72,7 +72,7 @@ fn no_label_overlaps_another_or_leaves_the_picture() {
                 for other in &picture.words[..at] {
                     let [left2, top2, right2, bottom2] = edges(other);
                     let apart = right <= left2 || right2 <= left || bottom <= top2 || bottom2 <= top;
-                    // An index stands at the foot of its letter.
+                    // An index is at the foot of its letter.
                     let is_index = word.text == "i" || other.text == "i";
                     assert!(apart || is_index, "{name} {size:?} {text_scale}: {:?} over {:?}", word.text, other.text);
                 }

@@ -1,4 +1,4 @@
-//! What is inside a body and behind it: see-through and exploded views.
+//! The inside of a body and what is behind it: transparent and exploded views.
 
 use super::{fig4b, gpu};
 use glam::Vec3;
@@ -23,7 +23,7 @@ fn middle_turned_over() -> (Scene, Frame) {
     (scene, frame)
 }
 
-/// How orange an image is: of each pixel, how much more red than blue it has, above what light on grey gives.
+/// How orange an image is: the excess of red over blue in each pixel, above that of the light on grey.
 fn orange(image: &RgbImage) -> u64 {
     let excess = |[red, _, blue]: [u8; 3]| u64::from(red.saturating_sub(blue).saturating_sub(40));
     image.pixels().map(|pixel| excess(pixel.0)).sum()
@@ -136,7 +136,7 @@ fn of_very_many_elements_apart_all_is_drawn_that_can_be_seen() {
     let (mut scene, frame) = many_apart();
     for azimuth in [0.0, std::f64::consts::PI] {
         scene.view.camera.azimuth = azimuth;
-        // Through clear surfaces all of them are seen.
+        // Through transparent surfaces all of them are visible.
         let [clear, opaque] = [0.9, 1.0].map(|opacity| {
             scene.view.opacity = opacity;
             compose(&scene, &frame)
@@ -146,7 +146,7 @@ fn of_very_many_elements_apart_all_is_drawn_that_can_be_seen() {
             sound.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect::<Vec<_>>()
         };
         let [all, kept] = [&clear, &opaque].map(corners);
-        // The flat element comes last: seven corners and a middle.
+        // The flat element comes last: seven corners and a centre.
         let [(all, flat), (kept, of_flat)] = [&all, &kept].map(|corners| corners.split_at(corners.len() - 8));
         assert_eq!(all.len(), 4 * 6 * (MANY.pow(3) - 1));
         assert_eq!(flat, of_flat, "a flat element is seen from both sides");

@@ -1,4 +1,4 @@
-//! Pictures without a background, and with fonts, colours and sizes of their own.
+//! Pictures without a background, and with their own fonts, colours and sizes.
 
 use super::{fig4b, gpu};
 use glam::DVec3;
@@ -14,7 +14,7 @@ use localshape::sim::snapshot::Frame;
 
 const SIZE: [u32; 2] = [640, 360];
 
-/// A difference that is plain to see where two pictures are laid over each other.
+/// A difference that is clearly visible.
 const PLAIN: u8 = 12;
 
 /// A picture on white, on black and without a background.
@@ -26,7 +26,7 @@ fn three(gpu: &Gpu, scene: &Scene, frame: &Frame) -> (RgbImage, RgbImage, RgbaIm
     (draw(&white), draw(&black), transparent)
 }
 
-/// A picture laid on a page, the way pages are put together.
+/// A picture blended over a page.
 fn laid(picture: &RgbaImage, ground: u8) -> RgbImage {
     RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
         let [r, g, b, alpha] = picture.get_pixel(x, y).0;
@@ -43,7 +43,7 @@ fn apart(one: &RgbImage, other: &RgbImage) -> (u8, f64) {
     (all.iter().copied().max().unwrap_or_default(), more as f64 / all.len() as f64)
 }
 
-/// Scenes with all that can be seen through: floors with shadows, glass, springs that fade, words and marks.
+/// Scenes with everything transparent: floors with shadows, glass, springs that fade, texts and marks.
 fn scenes() -> Vec<(String, Scene, Frame)> {
     let texts = [
         ("fig4b", include_str!("../../scenes/fig4b.toml"), 4),
@@ -78,7 +78,7 @@ fn laid_on_a_page_a_picture_looks_as_drawn_on_it() {
             let (own, other) = if theme == Theme::Light { (on_white, on_black) } else { (on_black, on_white) };
             println!("{name} {theme:?}: {own:?} on its own ground, {other:?} on the other");
             assert!(own.0 <= 1, "{name} {theme:?}: {own:?}");
-            // Borders of coloured things: one opacity stands for three, see `draw_transparent`.
+            // Borders of coloured things: one opacity is used for three, see `draw_transparent`.
             assert!(other.0 <= 40 && other.1 < 0.01, "{name} {theme:?}: {other:?}");
         }
     }
@@ -107,7 +107,7 @@ fn nothing_is_nothing_bodies_are_opaque_and_shadows_are_between() {
     }
 }
 
-/// The fonts that are built in.
+/// The built-in fonts.
 fn built_in() -> [&'static [u8]; 2] {
     [
         include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf"),

@@ -1,6 +1,6 @@
-//! What only a device can tell: that pictures come out, the same every time, in every size.
+//! Tests that need a device: pictures are drawn, identically each time, in every size.
 //!
-//! Without a graphics adapter these tests say that they are skipped. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
+//! Without a graphics adapter these tests are skipped with a message. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 
 mod fields;
 mod fine;
@@ -30,7 +30,7 @@ static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match Gpu::new(&AdapterChoi
     Err(_) => None,
 });
 
-/// The device that all tests share, or `None` after saying that a test is skipped.
+/// The device that all tests share, or `None`, with a message, if a test is skipped.
 fn gpu(test: &str) -> Option<&'static Gpu> {
     if GPU.is_none() {
         eprintln!("SKIPPED {test}: no graphics adapter");
@@ -38,7 +38,7 @@ fn gpu(test: &str) -> Option<&'static Gpu> {
     GPU.as_ref()
 }
 
-/// The scene of Fig. 4(b) with a view that asks for nothing but its size, its clock and a camera that follows.
+/// The scene of Fig. 4(b) with a view that sets only its size, its clock and a camera that follows.
 fn plain() -> String {
     let text = include_str!("../../scenes/fig4b.toml");
     let (world, view) = text.split_once("[view]").expect("a view");
@@ -47,7 +47,7 @@ fn plain() -> String {
     format!("{world}[view]\nsize = [1280, 720]{}\n", view.join("\n"))
 }
 
-/// The scene of Fig. 4(b), plainly drawn, and one of its frames.
+/// The scene of Fig. 4(b) with default drawing, and one of its frames.
 fn fig4b(frame: u64) -> (Scene, Frame) {
     let scene = Scene::parse(&plain(), "fig4b.toml", &Limits::default()).expect("the shipped scene is sound");
     let frame = Runner::new(&scene, &[0, 1]).frame(frame);

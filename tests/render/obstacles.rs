@@ -1,4 +1,4 @@
-//! Obstacles and grips in the composed picture: no device needed, but for one test.
+//! Obstacles and grips in the composed picture; only one test needs a device.
 
 use super::{fig4b, gpu};
 use glam::{DVec3, Vec3};
@@ -63,7 +63,7 @@ fn middle(points: impl ExactSizeIterator<Item = [f32; 3]>) -> Vec3 {
     points.map(Vec3::from).sum::<Vec3>() / count
 }
 
-/// A point of the world in sides from the panel's origin, which a camera that does not follow looks at.
+/// A point of the world in units of sides from the panel's origin, at which a camera that does not follow looks.
 fn seen(scene: &Scene, point: [f64; 3]) -> Vec3 {
     ((DVec3::from(point) - scene.view.camera.target) / scene.view.side).as_vec3()
 }
@@ -260,14 +260,14 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
     };
     let pi = std::f64::consts::PI;
     for (solid, exact) in panel.obstacles.solids.iter().zip([pi * 0.125, 0.08, 0.4 + pi * 0.04]) {
-        // With less than a pixel around it for a smooth border.
+        // With a margin of less than a pixel for antialiasing.
         let area = area(&solid.mesh);
         assert!((0.99..1.2).contains(&(area / exact)), "{area} {exact}");
         let vertices = &solid.mesh.vertices;
         assert!(solid.rim.is_some() && vertices.iter().all(|vertex| vertex.position[2] == 0.0));
         assert!([-1.0, 1.0].iter().all(|sign| vertices.iter().any(|vertex| sign * vertex.hatch > 0.5)));
     }
-    // The plate has a line and a soft fill, as the floor has, and an arrow.
+    // The plate has a line and a soft fill, like the floor, and an arrow.
     for (shape, count) in [(MarkShape::Fading, 2), (MarkShape::Smooth, 2)] {
         assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), count, "{shape:?}");
     }
@@ -305,12 +305,12 @@ fn scenes_without_obstacles_pay_nothing() {
 fn the_camera_shows_what_comes_near_and_nothing_else() {
     let camera = |parts: &[&str]| scene(&[&[WORLD, CUBE, FLOOR], parts].concat()).view.camera;
     let alone = camera(&[]);
-    // What is in the picture anyway, and what passes far away, moves nothing.
+    // What is in the picture anyway, or far away, does not move the camera.
     let small = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.15, 0.1, 0]\nradius = 0.02\n";
     let far = "[[obstacle]]\nkind = 'sphere'\ncentre = [9, 0.1, 0]\nradius = 0.2\n";
     assert_eq!(camera(&[small]), alone);
     assert_eq!(camera(&[far]), alone);
-    // What comes near is shown, wherever it comes from, and the body stays large.
+    // What comes near is shown from any direction, and the body stays large.
     let near = "path = { keys = [{ time = 0 }, { time = 0.5, shift = [-8.7, 0, 0] }, { time = 1 }] }\n";
     let shown = camera(&[far, near]);
     assert!(shown.target.x > alone.target.x + 0.01 && shown.distance > alone.distance, "{shown:?}");
@@ -318,7 +318,7 @@ fn the_camera_shows_what_comes_near_and_nothing_else() {
     let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0 }, { time = 0.5, shift = [-0.3, 0.2, 0] }] }\n";
     let dragged = camera(&[grab]);
     assert!(dragged.target.x < alone.target.x && dragged.distance > alone.distance, "{dragged:?}");
-    // What is typed stays as it is typed.
+    // Values given in the scene are not changed.
     let typed = camera(&[far, near, "[view]\ncamera = { distance = 2 }\n"]);
     assert_eq!((typed.distance, typed.target), (2.0, alone.target));
 }
@@ -334,7 +334,7 @@ fn following_the_body_lets_the_grid_scroll_below() {
     let eye = |picture: &Picture| picture.panels[0].sight.eye;
     // Any frame by itself, and in any order.
     let [late, early] = [25, 0].map(|index| composer.compose(&frame(&body, index)));
-    // The camera stands as it stood towards the body, and the grid has gone as far as the body.
+    // The camera has the same position relative to the body, and the grid has moved as far as the body.
     assert!(eye(&late).distance(eye(&early)) < 1e-3);
     let grid = [&late, &early].map(|picture| picture.panels[0].floor.as_ref().expect("a floor").grid[0]);
     let gone = (3.0 * frame(&body, 25).time / body.view.side) as f32;
@@ -351,7 +351,7 @@ fn below(obstacle: &str) -> Panel {
     picture(&scene(&[WORLD, block, FLOOR, &obstacle]), 0).panels.remove(0)
 }
 
-/// How near the body comes to the only solid of a panel.
+/// The smallest distance of the body from the only solid of a panel.
 fn nearest(panel: &Panel) -> f32 {
     let [solid] = &panel.obstacles.solids[..] else { panic!("one solid") };
     assert!(solid.near.is_empty() || solid.near.len() == solid.mesh.vertices.len());
@@ -373,7 +373,7 @@ fn bodies_and_obstacles_take_light_from_each_other_as_they_come_near() {
         },
     ];
     for kind in kinds {
-        // The upper side of the block is at 0.2 m, and what starts inside of it is refused.
+        // The upper side of the block is at 0.2 m. An obstacle that starts inside is an error.
         let touching = below(&kind(0.2005));
         assert!(nearest(&touching) > 0.9, "{}", nearest(&touching));
         assert_eq!(touching.obstacles.occluders.len(), 1);
@@ -393,7 +393,7 @@ fn the_ground_takes_no_light_twice_and_plates_do() {
     assert!(picture(&scene(&[WORLD, CUBE, FLOOR]), 0).panels[0].obstacles.occluders.is_empty());
     let plate = below("kind = 'plate'\npoint = [0, 0.25, 0]\nnormal = [0, -1, 0]");
     assert!(matches!(plate.obstacles.occluders[..], [Occluder { is_clear: true, .. }]));
-    // However many there are, so many count, and those are the nearest.
+    // Of any number, this many count, and they are the nearest.
     let ball = |at: i32| {
         let height = 0.41 + 0.005 * f64::from(at);
         format!("[[obstacle]]\nkind = 'sphere'\ncentre = [0, {height}, 0]\nradius = 0.1\n")
@@ -417,7 +417,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
         let view = "[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\n\
                     camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0, elevation = 1.2 }\n";
         let mut picture = picture(&scene(&[WORLD, block, FLOOR, &rod, view]), 0);
-        // Only what takes light away is left of the rod.
+        // Only the shadow of the rod is left.
         picture.panels[0].obstacles.solids.clear();
         picture.panels[0].lines.clear();
         let image =

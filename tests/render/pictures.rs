@@ -14,7 +14,7 @@ fn draw(gpu: &Gpu, scene: &Scene, frame: &Frame, samples: u32) -> RgbImage {
     renderer.draw(&compose(scene, frame)).expect("the device works")
 }
 
-/// How many pixels of an image are clearly vermilion.
+/// Number of pixels of an image that are clearly vermilion.
 fn vermilion(image: &RgbImage) -> usize {
     image.pixels().filter(|pixel| pixel[0] > 180 && pixel[1] < 130 && pixel[2] < 90).count()
 }

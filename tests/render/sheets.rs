@@ -1,4 +1,4 @@
-//! Contact sheets: nothing overlaps, nothing is cut, and what is said is what was simulated.
+//! Contact sheets: nothing overlaps or is cut off, and the text agrees with the simulation.
 
 use super::strips::alike;
 use super::words::overlapping;
@@ -11,7 +11,7 @@ use localshape::sim::snapshot::Status;
 use std::sync::LazyLock;
 
 const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];
-/// Type is never smaller than this (px).
+/// The smallest font size (px).
 const SMALLEST_TYPE: f32 = 5.0;
 
 fn sheet(figure: &Figure) -> &Sheet {
@@ -19,7 +19,7 @@ fn sheet(figure: &Figure) -> &Sheet {
     sheet
 }
 
-/// A figure of a user's own of scenes that ship.
+/// A user's figure of shipped scenes.
 fn own(text: &str) -> Figure {
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/");
     let folder = tempfile::tempdir().expect("a folder");
@@ -28,7 +28,7 @@ fn own(text: &str) -> Figure {
     Figure::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Sheets that are not like those of the paper.
+/// Sheets with other layouts than those of the paper.
 fn others() -> Vec<Figure> {
     let moments = |count: usize| (0..count).map(|at| format!("{}", at as f64 * 0.07)).collect::<Vec<_>>().join(", ");
     let rows = |count: usize| {
@@ -77,7 +77,7 @@ fn all() -> impl Iterator<Item = &'static (Figure, Moments)> {
     PAPER.iter().chain(OTHERS.iter())
 }
 
-/// The words in a tile.
+/// The texts in a tile.
 fn within<'p>(picture: &'p Picture, panel: &'p Panel) -> impl Iterator<Item = &'p TextRun> {
     let [left, top, width, height] = panel.viewport.map(|length| length as f32);
     let inside = move |word: &&TextRun| {
@@ -114,7 +114,7 @@ fn no_words_overlap_and_all_can_be_read() {
     }
 }
 
-/// The sizes of words (px) by what they say.
+/// The font sizes (px) of texts.
 fn sizes(picture: &Picture) -> std::collections::BTreeMap<&str, f32> {
     picture.words.iter().map(|word| (word.text.as_str(), word.size)).collect()
 }
@@ -135,7 +135,7 @@ fn type_is_as_many_times_larger_as_a_figure_says() {
         let times = large_sizes[word] / plain_sizes[word];
         assert!((times - 1.5).abs() < 1e-4, "“{word}” is {times} times larger");
     }
-    // The bodies have what words leave, which is most of it.
+    // The bodies have the space that texts leave, which is most of it.
     let heights = [&plain, &large].map(|picture| picture.panels[0].viewport[3] as f32);
     assert!(heights[1] > 0.8 * heights[0], "{heights:?}");
     assert_eq!(picture(&format!("text_scale = 1\n{usual}")), plain);
@@ -153,7 +153,7 @@ fn every_body_is_inside_its_tile_and_all_are_seen_at_one_scale() {
             let columns = &sheet(&figure).columns;
             let mut scales = vec![None; sheet(&figure).scenes.len()];
             for (at, (panel, run)) in picture.panels.iter().zip(runs).enumerate() {
-                // All tiles of a scene are seen from as far away.
+                // All tiles of a scene are seen from the same distance.
                 let scale = panel.sight.element;
                 let first = *scales[columns[at % columns.len()].scene].get_or_insert(scale);
                 assert!((scale / first - 1.0).abs() < 1e-4, "{scale} and {first} in {}", figure.title);
@@ -217,7 +217,7 @@ fn counts_are_those_that_were_simulated() {
     }
 }
 
-/// What docs/paper.md says of Fig. 4: which elements stay turned over, and what is left of the volume.
+/// The statements of docs/paper.md about Fig. 4: which elements stay turned over, and the remaining volume.
 #[test]
 fn the_last_columns_show_what_the_paper_tells() {
     for ((name, over, volume), (figure, moments)) in
@@ -292,7 +292,7 @@ fn of_alike(runs: usize, sheet: &str) -> (Figure, Moments) {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");
     write("alike.toml", alike(runs, "light"));
-    // The same runs, but for the first, and in another order.
+    // The same runs except for the first, in another order.
     let mut others: Vec<_> = alike(runs, "light").split("[[run]]").map(str::to_owned).collect();
     if runs > 2 {
         others.swap(2, 3);
@@ -331,7 +331,7 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
         }
         let scene = &sheet(&figure).scenes[0];
         for (chart, curves) in curves.chunks(runs).enumerate() {
-            // From top to bottom names stand as curves end.
+            // Names are in the order of the ends of the curves, from top to bottom.
             let mut ends: Vec<_> = scene
                 .runs
                 .iter()
@@ -343,7 +343,7 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
                     let name =
                         names.min_by(|one, other| (one.baseline - y).abs().total_cmp(&(other.baseline - y).abs()));
                     let name = name.unwrap_or_else(|| panic!("{} is named right of chart {chart} of {runs}", run.name));
-                    // It stands beside the curve, or where there are many, beside a sample of its line.
+                    // A name is beside its curve, or if there are many, beside a sample of its line.
                     let sample = picture.curves.iter().find(|sample| match sample.points[..] {
                         [[left, y], [right, same]] => {
                             left > x && right < name.span[0] && y == same && (y - name.baseline).abs() < 20.0
@@ -376,7 +376,7 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
         ["k = 1500", "k = 1000", "k = 2000"]
     );
     let palette = &figure.look.palette;
-    // Those that the first scene lacks have lines of their own.
+    // Runs that the first scene does not have get lines of their own.
     let text = "[sheet]\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n\
                 [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";
     let (lacking, _) = of_alike(4, text);

@@ -1,4 +1,4 @@
-//! What a picture shows, told by its numbers: no device needed.
+//! The contents of pictures, tested by their numbers: no device needed.
 
 use super::fig4b;
 use localshape::picture::{Composer, LineKind, MarkShape, Mesh, Picture, TextRun, Weight, compose};
@@ -32,13 +32,13 @@ fn numbers(picture: &Picture) -> Vec<f32> {
     all
 }
 
-/// The six volumes of the tetrahedra from the origin: the signed volume of a closed surface.
+/// The signed volume of a closed surface: the sum of the volumes of tetrahedra from the origin.
 fn volume(mesh: &Mesh) -> f32 {
     let at = |index: u32| glam::Vec3::from(mesh.vertices[index as usize].position);
     mesh.triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
 }
 
-/// Whether each border of the triangles is run through as often one way as the other.
+/// Whether each edge of the triangles occurs equally often in both directions.
 fn is_closed(mesh: &Mesh) -> bool {
     let mut balance: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
     let place = |index: u32| mesh.vertices[index as usize].position.map(|x| (x * 1e4).round().to_bits());
@@ -56,7 +56,7 @@ fn is_closed(mesh: &Mesh) -> bool {
 fn both_sets_are_closed_surfaces_that_look_outward() {
     let (scene, mut frame) = fig4b(0);
     let snapshot = &mut frame.runs[1].snapshot;
-    // The lowest layer of the 27 cubes: those whose middles lie lowest.
+    // The lowest layer of the 27 cubes: those with the lowest centres.
     let height = |element: usize| -> f64 {
         scene.body.elements[element].iter().map(|&node| scene.body.rest[node as usize].y).sum()
     };
@@ -150,7 +150,7 @@ fn a_run_that_blew_up_says_when() {
     let beside = |run: &&TextRun| (run.baseline - said.baseline).abs() < 5.0 && run.span[0] >= 640.0 && *run != said;
     assert!(picture.words.iter().filter(beside).all(|run| run.span[1] < said.span[0]));
     assert!(numbers(&picture).iter().all(|number| number.is_finite()));
-    // It pulls no camera along: the other panel is seen as if nothing had happened.
+    // It does not move the camera: the other panel is unchanged.
     assert_eq!(picture.panels[0].sight.eye, compose(&scene, &fig4b(0).1).panels[0].sight.eye);
 }
 

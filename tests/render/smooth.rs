@@ -1,4 +1,4 @@
-//! Smooth borders, and nothing that flickers: what moves by a hair changes pixels by a hair.
+//! Antialiased borders without flicker: a slight motion changes pixels slightly.
 
 use super::{gpu, linear};
 use image::RgbImage;
@@ -16,7 +16,7 @@ const WORLD: &str = "
 const SPRINGS: &str = "
     run = [{ name = 'one', model = { kind = 'mass-spring', stiffness = 1e-9, springs = 'edges+one-diagonal' } }]
 ";
-/// Turns half a pixel in a frame at the farthest node.
+/// Rotates by half a pixel per frame at the farthest node.
 const TURNING: &str = "spin = { axis = [1, 3, 1.5], rate = 0.06 }\n";
 const PLANE: &str = "
     gravity = [0, 0]
@@ -42,7 +42,7 @@ fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {
     renderer.draw(picture).expect("the device works")
 }
 
-/// A picture of the plane without marks and words.
+/// A picture of the plane without marks and text.
 fn empty_plane(obstacle: &str) -> Picture {
     let scene = scene(&[PLANE, obstacle]);
     let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
@@ -51,7 +51,8 @@ fn empty_plane(obstacle: &str) -> Picture {
     picture
 }
 
-/// Along a border with a slight slope, a row of pixels goes from the ground to the darkest of it in many even steps.
+/// Along a slightly inclined border, a row of pixels changes from the background to its darkest pixel in many even
+/// steps.
 fn assert_smooth(image: &RgbImage, x: std::ops::Range<u32>, y: u32, name: &str) {
     let mut row: Vec<u8> = x.map(|x| image.get_pixel(x, y)[1]).collect();
     if row.first() < row.last() {

@@ -1,4 +1,4 @@
-//! Nothing flickers: where everything moves by a twentieth of a pixel a frame, no pixel jumps, and none goes to and fro.
+//! No flicker: if everything moves by a twentieth of a pixel per frame, no pixel jumps, and none oscillates.
 
 use super::{gpu, linear};
 use image::RgbImage;
@@ -10,25 +10,25 @@ use localshape::scene::{Limits, Scene};
 use localshape::sim::body::Dimension;
 use localshape::sim::snapshot::Frame;
 
-/// Frames of a film, in which what is fastest goes as far as a pixel is wide, and so past all its samples.
+/// Frames of a film in which the fastest point moves by one pixel, and so past all samples of a pixel.
 const FRAMES: u64 = 21;
-/// How far anything moves from one to the next (px).
+/// Motion between two frames (px).
 const SLOW: f64 = 0.05;
 
-/// What a film does at its worst pixels, in parts of the way from black to white, in linear light: the mean of samples is
-/// made there, so one of four that changes its side is a quarter at most.
+/// Changes of the worst pixels of a film, relative to the step from black to white, in linear light: samples are
+/// averaged there, so one of four samples that changes sides is a quarter at most.
 #[derive(Debug, Default)]
 struct Unrest {
     /// The largest change from one frame to the next.
     jump: f64,
-    /// The largest way to and fro. Each pixel has swings from one turning point of its course to the next; something thin
-    /// that passes makes two large ones. So this is the third largest of the pixel where that is largest.
+    /// The largest oscillation. A pixel's series has a swing from each turning point to the next; something thin that
+    /// passes causes two large ones. So this is the third largest swing of the pixel where that is largest.
     fro: f64,
 }
 
-/// The bounds. A sample that changes its side on white ground is .24, and a line that begins or ends there with it adds to
-/// that; where elements are a few pixels large, two samples may do so at once. Of what goes to and fro, less than one
-/// sample is left: an edge that stands still within the 1/256 px to which corners are rounded as they are drawn.
+/// The bounds. A sample that changes sides on a white background is .24, and a line that begins or ends there adds to
+/// that; where elements are a few pixels large, two samples may change at once. Oscillations are less than one sample:
+/// an edge that stands still within the 1/256 px to which corners are rounded.
 const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
 
 fn unrest(film: &[RgbImage]) -> Unrest {
@@ -59,7 +59,7 @@ fn parse(text: &str) -> Scene {
     Scene::parse(text, "film.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Frames between two others, a small part of the way apart. What has turned over stays so.
+/// Frames between two others, a small fraction of the motion apart. Turned-over elements stay so.
 fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
     (0..FRAMES)
         .map(|at| {
@@ -80,7 +80,7 @@ fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
         .collect()
 }
 
-/// Draws frames without their words, some of which are numbers.
+/// Draws frames without text, some of which is numbers.
 struct Camera(Renderer);
 
 impl Camera {
@@ -100,7 +100,7 @@ fn film(gpu: &Gpu, scene: &Scene, frames: &[Frame]) -> Vec<RgbImage> {
     frames.iter().map(|frame| camera.shot(scene, frame)).collect()
 }
 
-/// A film of an unmoved frame around which the camera turns, no pixel in its panel faster than a twentieth a frame.
+/// A film of one frame around which the camera turns, with no pixel in its panel faster than a twentieth per frame.
 fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
     let width = f64::from(scene.view.size[0]) / frame.runs.len() as f64;
     let mut camera = Camera::new(gpu, scene);
@@ -111,11 +111,11 @@ fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
     (0..FRAMES).map(&mut shot).collect()
 }
 
-/// The farthest that a node goes between two frames (px), where the body is.
+/// The greatest motion of a node between two frames (px).
 fn way(scene: &Scene, from: &Frame, to: &Frame) -> f64 {
     let pixels = f64::from(Composer::new(scene).compose(from).panels[0].sight.element) / scene.view.side;
     let nodes = |frame: &Frame| frame.runs.iter().flat_map(|run| run.snapshot.position.clone()).collect::<Vec<_>>();
-    // Elements drawn apart go as much farther as they are farther apart.
+    // Elements drawn apart move further in proportion.
     let times = pixels * (1.0 + scene.view.explode);
     nodes(from).iter().zip(nodes(to)).map(|(one, other)| one.distance(other)).fold(0.0, f64::max) * times
 }
@@ -161,7 +161,7 @@ fn nothing_flickers_in_slow_motion() {
     }
 }
 
-/// Two cubes pressed into a plane that is no plane of rounded numbers, slowly turning.
+/// Two cubes pressed into a plane whose coordinates are not round numbers, slowly rotating.
 const PRESSED: &str = "
     gravity = [0, 0, 0]
     time = { duration = 2, step = 0.0166666666667, frames_per_second = 60 }
@@ -195,7 +195,7 @@ fn what_is_pressed_flat_does_not_flicker() {
     }
 }
 
-/// Two plates that cross, between which the eye goes from one side to the other.
+/// Two plates that cross, between which the camera moves from one side to the other.
 const CROSSING: &str = "
     gravity = [0, 0, 0]
     time = { duration = 1, step = 0.01 }

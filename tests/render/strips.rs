@@ -18,13 +18,13 @@ fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [F
     (scene, frames)
 }
 
-/// The picture of a frame by a composer that knows the scene's course.
+/// The picture of a frame by a composer that has the scene's time series.
 fn compose(scene: &Scene, frame: &Frame) -> Picture {
     let [picture] = pictures(scene, std::array::from_ref(frame));
     picture
 }
 
-/// Pictures of frames by one composer that knows the scene's course.
+/// Pictures of frames by one composer that has the scene's time series.
 fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Picture; N] {
     let runs: Vec<_> = frames[0].runs.iter().map(|run| run.run).collect();
     let mut composer = Composer::new(scene);
@@ -38,7 +38,7 @@ fn moments(picture: &Picture) -> Vec<&Curve> {
     picture.curves.iter().filter(upright).collect()
 }
 
-/// The thin lines that lead from the ends of curves to their names.
+/// The leader lines from the ends of curves to their names.
 fn is_leader(curve: &Curve) -> bool {
     curve.alpha == 0.7
 }
@@ -47,7 +47,7 @@ fn dots(picture: &Picture) -> Vec<&Curve> {
     picture.curves.iter().filter(|curve| curve.points.len() == 1).collect()
 }
 
-/// How far a point lies from a segment.
+/// The distance of a point from a segment.
 fn off_segment(point: [f32; 2], ends: &[[f32; 2]]) -> f32 {
     let [point, from, to] = [point, ends[0], ends[1]].map(glam::Vec2::from);
     let way = to - from;
@@ -120,7 +120,7 @@ fn the_present_moment_is_at_its_pixel() {
             let column = x.floor() as u32;
             let rows = (top as u32 + 2)..(bottom as u32 - 1);
             let seen = |column: u32| rows.clone().filter(|&row| off(column, row) > 150).count();
-            // Two neighbours share a line between them; elsewhere only other curves and hairlines are crossed.
+            // Two neighbours share a line between them; elsewhere only other curves and leader lines are crossed.
             let here = rows.clone().filter(|&row| (column - 1..=column + 1).map(|x| off(x, row)).sum::<u32>() > 300);
             assert!(here.count() > rows.len() / 2, "{theme:?}");
             for beside in [column - 12, column + 12] {
@@ -135,11 +135,11 @@ fn a_frame_composed_alone_has_the_same_strips() {
     let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 9]);
     let pictures = pictures(&scene, &frames);
     assert_eq!(compose(&scene, &frames[1]), pictures[1]);
-    // Of one run alone, without the other behind it and by its own scale.
+    // Of one run only, without the other behind it and with its own scale.
     let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
     let [own, halo, dot] = &compose(&scene, &alone).curves[1..] else { panic!("a moment, a curve and a dot") };
     assert!(own.points.len() == 2 && own.dash.is_empty() && halo.points == dot.points);
-    // Nobody who says nothing of the scene's course gets one made up.
+    // Without the time series of the scene no strip is drawn.
     assert!(Composer::new(&scene).compose(&frames[1]).curves.is_empty());
 }
 
@@ -216,12 +216,12 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let of_calm = picture.curves.iter().filter(|curve| curve.colour == calm);
     let of_calm = of_calm.max_by_key(|curve| curve.points.len()).expect("a curve");
     assert_eq!(middle(arms[0]), middle(arms[1]));
-    // It says when: as a part of the way from the first moment to the last, which the line of the moment now shows.
+    // The time of the divergence: as a fraction of the width, which the line of the present moment now shows.
     let now = moments(&picture)[0].points[0][0];
     let [start] = [picture.curves[0].points[0][0]];
     let expected = start + (now - start) * (divergence.time / frame.time) as f32;
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
-    // The one that goes on is not flattened, and ends with a dot.
+    // The other run's curve is not compressed, and ends with a dot.
     assert_eq!(dots(&picture).len(), 2);
     let bottom = moments(&picture)[0].points[1][1];
     let height = bottom - of_calm.points[0][1];
@@ -229,7 +229,7 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=720.0).contains(y)));
 }
 
-/// However many pieces a curve has, it looks like one.
+/// A curve of any number of pieces looks like one.
 #[test]
 fn joints_do_not_show() {
     let Some(gpu) = gpu("joints_do_not_show") else { return };
@@ -254,7 +254,7 @@ fn joints_do_not_show() {
             assert!(whole.pixels().any(|pixel| pixel[0] < 160));
         }
     }
-    // Nowhere is it darker than its own opacity, also where it turns sharply.
+    // Nowhere is it darker than its own opacity, even at sharp turns.
     let zigzag = (0..30).map(|at| [10.0 + 3.0 * at as f32, if at % 2 == 0 { 20.0 } else { 80.0 }]).collect();
     let darkest = draw(zigzag, &[]).pixels().map(|pixel| pixel[0]).min();
     assert!(darkest >= Some(124), "{darkest:?}");
@@ -275,7 +275,7 @@ pub(crate) fn alike(runs: usize, theme: &str) -> String {
     )
 }
 
-/// How a curve is told from others: colour and dashes, in parts of the first dash.
+/// The appearance of a curve: colour and dashes, relative to the first dash.
 fn look_of(curve: &Curve) -> ([u8; 3], Vec<i32>) {
     let first = curve.dash.first().copied().unwrap_or(1.0);
     (curve.colour, curve.dash.iter().map(|length| (length / first * 100.0).round() as i32).collect())
@@ -294,7 +294,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         let all: Vec<_> = (0..8).collect();
         let frame = Runner::new(&scene, &all).frame(scene.last_frame());
         let picture = compose(&scene, &frame);
-        // In each strip the own curve is the widest, and below the name stands the same line.
+        // In each strip the own curve is the widest, and the same line is below the name.
         let widest =
             picture.curves.iter().filter(|curve| curve.points.len() > 2).map(|curve| curve.width).fold(0.0, f32::max);
         let own: Vec<_> =
@@ -330,7 +330,7 @@ fn eight_runs_of_one_model_are_told_apart() {
                 assert!(beside || y + radius <= top || bottom <= y - radius, "a dot over “{}”", word.text);
             }
         }
-        // Whichever runs are shown, each keeps its line.
+        // Each run keeps its line for any selection of runs.
         let few = Frame { runs: vec![frame.runs[6].clone(), frame.runs[2].clone()], ..frame.clone() };
         let picture = compose(&scene, &few);
         let shown: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).map(look_of).collect();

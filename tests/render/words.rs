@@ -1,4 +1,4 @@
-//! Where words stand: nowhere over each other, and in every frame at the same place.
+//! Positions of texts: nowhere overlapping, and the same in every frame.
 
 use super::fig4b;
 use localshape::look::Labels;
@@ -6,7 +6,7 @@ use localshape::picture::{Composer, Mark, MarkShape, Picture, TextRun, compose};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
-/// Everything that can be written, in a scene that blows up, beside one that does not.
+/// All texts, in a scene that diverges, beside one that does not.
 const ALL: &str = r#"
 title = 'Everything that can be written'
 gravity = [0, -9.8, 0]
@@ -43,7 +43,7 @@ fn load(text: &str) -> Scene {
     Scene::parse(text, "words.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Scenes with all kinds of words, at many sizes and in several arrangements.
+/// Scenes with all kinds of texts, at many sizes and in several layouts.
 fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
     let sizes = [[320, 180], [640, 360], [1280, 720], [1920, 1080], [3000, 1688], [700, 1200], [1600, 400], [150, 150]];
@@ -61,7 +61,7 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Two lines of text whose boxes share something.
+/// Two lines of text whose boxes overlap.
 pub(crate) fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
     let words = &picture.words;
     for (at, one) in words.iter().enumerate() {
@@ -92,7 +92,7 @@ fn no_words_overlap_and_none_leaves_the_picture() {
     }
 }
 
-/// Left, top, right and bottom of what is drawn of the key's arrow.
+/// Left, top, right and bottom of the legend's arrow as drawn.
 fn key_arrow(picture: &Picture) -> Option<[f32; 4]> {
     let words = picture.words.iter().find(|word| word.text.starts_with("displacement "))?;
     let [left, top, _, bottom] = words.bounds();
@@ -306,7 +306,7 @@ fn words_stay_where_they_are() {
             assert_eq!(picture.words.len(), first.words.len(), "words come or go in frame {frame}");
             for (now, before) in picture.words.iter().zip(&first.words) {
                 assert_eq!((now.baseline, now.size), (before.baseline, before.size), "{}", now.text);
-                // Numbers keep one end, whatever their length; all other words keep both.
+                // Numbers keep one end, whatever their length; all other texts keep both.
                 let kept = [0, 1].map(|end| (now.span[end] - before.span[end]).abs() < 1e-3);
                 let is_number = now.text.starts_with(|c: char| c.is_ascii_digit() || c == '−');
                 let stays = if is_number { kept.contains(&true) } else { kept == [true; 2] };

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// One array as it lies in an archive.
+/// One array in an archive.
 #[derive(Clone)]
 struct Array {
     name: &'static str,
@@ -70,7 +70,7 @@ name = 'Mass-spring'
 model = { kind = 'mass-spring', stiffness = 1e4 }
 ";
 
-/// Writes a new file: one that is written over waits for the disk.
+/// Writes a new file, as overwriting waits for the disk.
 fn put(path: &Path, bytes: &[u8]) {
     let _ = std::fs::remove_file(path);
     std::fs::write(path, bytes).unwrap();
@@ -105,7 +105,7 @@ fn good(body: &[u8], scene: &str) -> Scene {
     Place::new(body).load(scene, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Expects exactly these mistakes, all of them at the name of the file.
+/// Expects exactly these mistakes, all at the name of the file.
 #[track_caller]
 fn wrong(body: &[u8], expected: &[&str]) {
     let error = Place::new(body).load(SCENE, &Limits::default()).expect_err(&format!("{expected:?}"));
@@ -225,13 +225,13 @@ fn files_that_are_no_archives() {
     wrong(&whole[..whole.len() - 30], &["`body.npz` is a damaged NumPy archive, or is cut short"]);
     wrong(&whole[..100], &["is a damaged NumPy archive, or is cut short"]);
     let mut damaged = whole.clone();
-    // A coordinate that is no longer what the check sum says.
+    // A coordinate that does not match the checksum.
     let at = damaged.windows(8).position(|bytes| bytes == 1f64.to_le_bytes()).unwrap();
     damaged[at + 7] ^= 1;
     wrong(&damaged, &["`body.npz: nodes` cannot be read, the file is damaged or cut short"]);
 }
 
-/// A method of compression written into the heads of all entries, the local ones and those of the directory.
+/// Sets a compression method in the headers of all entries, local and central.
 fn said_to_be_compressed_by(method: u16, mut bytes: Vec<u8>) -> Vec<u8> {
     for at in 0..bytes.len() - 12 {
         match &bytes[at..at + 4] {
@@ -255,7 +255,7 @@ fn archives_of_other_compressions_are_not_called_damaged() {
     }
 }
 
-/// The head of an array may have any length, written with two bytes or with four.
+/// The header of an array may have any length, written with two bytes or with four.
 #[test]
 fn heads_of_every_length_and_version() {
     let plain = good(&with(|_| ()), SCENE);
@@ -268,7 +268,7 @@ fn heads_of_every_length_and_version() {
         }
         zip.finish().unwrap().into_inner()
     };
-    // Padded to a length, and said to be as long as `told`.
+    // Padded to a length, with `told` as the length in the header.
     let file = |version: u8, length: usize, told: u32| {
         let Array { descr, shape, bytes, .. } = &square()[0];
         let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
@@ -285,7 +285,7 @@ fn heads_of_every_length_and_version() {
         for length in [70, 118, 255, 256, 300, 511, 1000, 4096] {
             assert_eq!(good(&file(version, length, length as u32), SCENE).body, plain.body, "{version}, {length}");
         }
-        // One that is a little shorter or longer than it says begins its numbers elsewhere.
+        // With a length that is slightly too small or too large the numbers begin elsewhere.
         for told in [117, 119, 126] {
             wrong(&file(version, 118, told), &["`body.npz: nodes` has the shape (4, 2), which does not fit"]);
         }
@@ -363,12 +363,12 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
         &["all 12 elements of `body.npz: elements` have no volume: their nodes are in planes, or not in their order \
            write convex = true in [body] for nodes in any order"],
     );
-    // What is said to help does.
+    // The suggested remedy works.
     for order in [turned, around] {
         good(&row_of_cubes(|_| order), &SCENE.replace("file =", "convex = true\nfile ="));
         assert_eq!(order.map(|place| order[place]), right);
     }
-    // One that is right shows that the others are meant one by one.
+    // One correct element shows that the others are reported one by one.
     let error = Place::new(&row_of_cubes(|cube| if cube == 3 { right } else { turned }))
         .load(SCENE, &Limits::default())
         .unwrap_err();
@@ -390,7 +390,7 @@ fn nodes_counted_from_one_are_told_and_nothing_that_follows() {
     );
 }
 
-/// Parts of a ring have some volume of either sign in another program's order, so that turning them over would seem to help.
+/// Parts of a ring have some volume of either sign with another program's order, so that inverting them seems to help.
 #[test]
 fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
     let ring = |order: [usize; 8]| {
@@ -426,7 +426,7 @@ fn a_file_that_is_not_there() {
     assert!(missing.contains("`bodi.npz` is not there (looked for ") && missing.contains("did you mean \"body.npz\"?"));
     assert!(load("no/such/folder.npz").contains("is not there"));
     assert!(load(".").contains("is a folder; expected a NumPy archive"));
-    // A text lies in no folder: its file is looked for from the current one.
+    // A text has no folder: its file is searched for in the current one.
     let error = super::bad(SCENE).to_string();
     let full = std::env::current_dir().unwrap().join("body.npz");
     assert!(error.contains(&format!("`body.npz` is not there (looked for {})", full.display())), "{error}");
@@ -508,7 +508,7 @@ fn what_is_said_to_be_enormous_is_refused_before_it_is_read() {
     let little = Limits { corners: 5, ..Limits::default() };
     let error = place.load(SCENE, &little).unwrap_err().to_string();
     assert!(error.contains("`body.npz: elements` has 6 entries; the limit is 5"), "{error}");
-    // It fits, and what would be made of it does not.
+    // The archive is small enough, but the scene made of it is not.
     let error = place.load(SCENE, &Limits { springs: 5, ..Limits::default() }).unwrap_err().to_string();
     assert!(error.contains("this makes 4 nodes, 2 elements and up to 6 springs, at least"), "{error}");
 }
@@ -612,7 +612,7 @@ fn a_scene_does_not_say_what_its_file_says() {
     );
 }
 
-/// Whatever a file holds, reading it ends with a scene or with mistakes, never with a panic or out of memory.
+/// Reading any file gives a scene or mistakes, never a panic, and never exhausts memory.
 #[test]
 fn any_bytes_in_an_archive() {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;

@@ -1,4 +1,4 @@
-//! Bodies that are made by a rule, and elements of every shape.
+//! Generated bodies, and elements of every shape.
 
 use super::{WORLD, bad, good};
 use glam::DVec3;
@@ -26,10 +26,10 @@ model = {{ kind = 'mass-spring', stiffness = 1e4, damping_ratio = 0.1, springs =
     )
 }
 
-/// How many elements there are of each number of nodes.
+/// The number of elements for each number of nodes.
 type Sizes = &'static [(usize, usize)];
 
-/// Bodies of every rule, with how many elements of each number of nodes they have, where that is no matter of chance.
+/// Bodies of every generator, with the number of elements for each number of nodes, where that is not random.
 const BODIES: [(&str, Dimension, Sizes); 13] = [
     ("lattice = { cells = [3, 2], side = 0.1 }", Dimension::Plane, &[(4, 6)]),
     ("lattice = { cells = [3, 2], side = [0.1, 0.2], elements = 'triangles' }", Dimension::Plane, &[(3, 12)]),
@@ -67,7 +67,7 @@ fn every_rule_makes_the_body_that_it_says() {
         if !expected.is_empty() {
             assert_eq!(sizes(&scene), expected, "{body}");
         }
-        // Each stands on the level of the origin, and nothing hangs loose.
+        // Each stands on the level of the origin, and all nodes belong to elements.
         let lowest = scene.body.rest.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
         assert!(lowest.abs() < 1e-15, "{body}: {lowest}");
         let mut nodes: Vec<u32> = scene.body.elements.indices().to_vec();
@@ -93,7 +93,7 @@ fn every_rule_puts_the_body_where_it_is_said_to_be() {
         ("bars = { count = 3, length = 0.1, direction = [0, -2] }", "between (0, -0.3) and (0, 0) m"),
         ("bars = { count = 3, length = 0.1, direction = [-1, 0, 0] }", "between (-0.3, 0, 0) and (0, 0, 0) m"),
         ("nodes = [[1, 2], [2, 2], [1, 3]]\nelements = [[0, 1, 2]]", "between (1, 2) and (2, 3) m"),
-        // A quarter turn about the mean of the nodes, a shift, and then the height.
+        // A quarter turn about the mean of the nodes, a translation, and then the height.
         (
             "lattice = { cells = [6, 2], side = 0.1 }\nrotation.angle = 1.5707963267948966\noffset = [1, 7]\nlowest = 0.5",
             "between (0.9, 0.5) and (1.1, 1.1) m",
@@ -131,11 +131,11 @@ fn the_seed_chooses_the_body_and_one_is_the_default() {
     assert!(two.0 != one.0 && two.1 != one.1 && two.2 != one.2);
 }
 
-/// The corners of an element: the node there and those that span its area or volume with it.
+/// The corners of an element: the node and those that span its area or volume with it.
 fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
     match (dimension, nodes) {
         (Dimension::Plane, 4) => (0..4).map(|at| vec![at, (at + 1) % 4, (at + 3) % 4]).collect(),
-        // All nodes are seen from the first one.
+        // All nodes are relative to the first one.
         (Dimension::Plane, _) => (2..nodes).map(|at| vec![0, at - 1, at]).collect(),
         (Dimension::Space, 4) => vec![vec![0, 1, 2, 3]],
         (Dimension::Space, 5) => (0..4).map(|at| vec![at, (at + 1) % 4, (at + 3) % 4, 4]).collect(),
@@ -147,8 +147,8 @@ fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
     }
 }
 
-/// Where nodes that are moved at random would make an element flat or turn it inside out, they are moved less far: each
-/// corner keeps a tenth of what it spans in the regular block. By chance alone one in ten thousand corners does not.
+/// Where random displacements of nodes would make an element flat or invert it, they are reduced: each corner keeps a
+/// tenth of what it spans in the regular block. Without that, one in ten thousand corners does not.
 #[test]
 fn irregular_blocks_have_no_element_that_is_nearly_flat() {
     for (cells, elements) in [
@@ -185,7 +185,7 @@ fn irregular_blocks_have_no_element_that_is_nearly_flat() {
     }
 }
 
-/// These very bits, on every machine: a stored result of an irregular body is worth nothing without them.
+/// The same bits on every machine: stored results of irregular bodies depend on them.
 #[test]
 fn random_bodies_are_the_same_everywhere() {
     let scene = good(&world(
@@ -200,10 +200,10 @@ fn random_bodies_are_the_same_everywhere() {
 
 const RANDOM: (usize, usize, u64) = (78, 127, 7_934_938_136_864_051_000);
 
-/// The same body listed node by node, the nodes in another order and the elements backwards.
+/// The same body listed node by node, with the nodes in another order and the elements reversed.
 fn listed(scene: &Scene) -> (String, impl Fn(usize) -> usize) {
     let count = scene.body.len();
-    // A stride without a common factor makes a permutation.
+    // A stride without a common factor gives a permutation.
     let stride = [7, 11, 13].into_iter().find(|stride| !count.is_multiple_of(*stride)).expect("one of them");
     let renamed = move |node: usize| (node * stride + 3) % count;
     let point = |at: DVec3| match scene.body.dimension {
@@ -393,7 +393,7 @@ fn bodies_may_start_without_depth_inside_out_or_at_random() {
     assert!(cloud.iter().all(|at| at.abs().cmple(size).all()), "{cloud:?}");
     assert_eq!(cloud, start("{ shape = 'cloud', seed = 1 }").1);
     assert_ne!(cloud, start("{ shape = 'cloud', seed = 2 }").1);
-    // At rest nothing has changed, and the rest of the start follows.
+    // At rest nothing has changed, and the other initial conditions are applied.
     let moved = good(&format!(
         "body = {{ lattice = {{ cells = [2, 1, 1], side = 0.5 }}, start = {{ shape = 'point' }}, lowest = 3 }}\n{WORLD}"
     ));
@@ -419,7 +419,7 @@ fn a_start_says_what_is_wrong_with_it() {
             "`body.start.direction` is about lines, planes and mirror images, but the shape is \"point\"",
         ),
         ("{ shape = 'cloud', direction = [0, 1] }", "", "but the shape is \"cloud\""),
-        // A seed that is the default says as little.
+        // The default seed has no effect either.
         ("{ shape = 'plane', seed = 1 }", "", "`body.start.seed` is about clouds, but the shape is \"plane\""),
         ("{ shape = 'mirror-image', seed = 2 }", "", "but the shape is \"mirror-image\""),
         (

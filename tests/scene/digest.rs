@@ -1,4 +1,4 @@
-//! The digest follows the meaning of a scene and nothing else.
+//! The digest depends on the meaning of a scene only.
 
 use super::{WORLD, good, shipped};
 
@@ -74,8 +74,8 @@ fn whatever_changes_the_scene_changes_the_digest() {
     assert_eq!(digests.len(), all);
 }
 
-/// The scene of Fig. 4(b) as it was before views could hold titles, letters and strips, and before the paper's solver had to
-/// be named.
+/// The scene of Fig. 4(b) from before views could have titles, letters and strips, and before the default solver
+/// changed.
 fn plain() -> String {
     let text = shipped("fig4b.toml").replace(", rotation = \"arctangent\"", "");
     let (world, view) = text.split_once("[view]").expect("a view");
@@ -83,7 +83,7 @@ fn plain() -> String {
     format!("{world}[view]\nsize = [1280, 720]{}\n", view.lines().filter(had).collect::<Vec<_>>().join("\n"))
 }
 
-/// Guards stored results: whoever changes this number disowns all frames made before.
+/// Protects stored results: if this number changes, all frames made before count as those of another scene.
 #[test]
 fn the_digest_of_a_shipped_scene_stays() {
     assert_eq!(good(&plain()).digest, "bec31a5b1d034f3ebe7424a483d69fa0fff969e7fac5e7935823dfcf452ecca1");

@@ -1,4 +1,4 @@
-//! Figure files: every mistake is said where it is, in words that help.
+//! Figure files: every mistake is reported at its position, with a helpful message.
 
 use localshape::look::Theme;
 use localshape::scene::figure::{Content, Figure, NAMES, Sheet};
@@ -172,7 +172,7 @@ fn what_is_not_said_follows_from_the_scene() {
     assert_eq!(rows, [("Local shape", "Local shape"), ("Mass-spring", "Mass-spring")]);
     assert_eq!((found.scenes.len(), found.columns.len(), found.from, found.split), (1, 2, 0.0, None));
     assert_eq!(found.cell(1, 1), (0, 1, 1.5));
-    // Rows may say the moments, and a scene named twice is read once.
+    // Rows may give the moments, and a scene that is named twice is read once.
     let found = sheet(
         "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\n[[sheet.column]]\nscene = 'fig4b.toml'\n\
          [[sheet.row]]\nrun = 'Mass-spring'\ntime = 0.5",
@@ -187,7 +187,7 @@ fn figures_of_the_program_are_those_in_the_folder() {
         let there = Figure::load(&folder.join(name).with_extension("toml"), &Limits::default());
         let there = there.unwrap_or_else(|error| panic!("{error}"));
         let within = Figure::built_in(name).expect("one of the names");
-        // Everything that is resolved, but not where it lies. NaN equals nothing, but its text equals itself.
+        // Everything that is resolved, except positions in the file. NaN is not equal to itself, so texts are compared.
         let [there, within] = [there, within].map(|figure| {
             let files = figure.scenes().iter().filter_map(|scene| scene.file.clone());
             let text = format!("{figure:?}");
@@ -199,7 +199,7 @@ fn figures_of_the_program_are_those_in_the_folder() {
     }
 }
 
-/// A caption repeats numbers of its scenes, for readers of a print: they are the scenes' own.
+/// A caption repeats numbers of its scenes; they must be the same.
 #[test]
 fn captions_say_what_the_scenes_are() {
     for name in ["fig4a", "fig4b", "fig4c", "restore"] {

@@ -1,4 +1,4 @@
-//! What good scenes mean.
+//! The meaning of correct scenes.
 
 use super::{WORLD, good, shipped};
 use glam::DVec3;
@@ -39,7 +39,7 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (2, 0.1, Theme::Light));
 }
 
-/// Warnings are for what is probably not meant.
+/// Warnings are for what is probably not intended.
 #[test]
 fn shipped_scenes_have_no_warnings() {
     let mut read = 0;
@@ -114,11 +114,12 @@ fn the_block_is_turned_about_its_middle_and_set_down_on_its_lowest_node() {
     assert!(start.velocity.iter().all(|&velocity| velocity == DVec3::new(0.0, -9.899495, 0.0)));
     let middle = start.position.iter().sum::<DVec3>() / 64.0;
     assert!(middle.x.abs() < 1e-15 && middle.z.abs() < 1e-15, "{middle}");
-    // Tilted by .02 about both horizontal axes: the top of the block's axis leans that much each way.
+    // Tilted by .02 about both horizontal axes: the top of the block's axis is displaced by that much in each
+    // direction.
     let up = start.position[4 * 3] - start.position[0];
     assert!((up.length() - 0.3).abs() < 1e-15);
     assert!((up.x / 0.3 + 0.02).abs() < 1e-5 && (up.z / 0.3 - 0.02).abs() < 1e-5, "{up}");
-    // At rest nothing is turned.
+    // At rest nothing is rotated.
     assert_eq!(scene.body.rest[0], DVec3::new(-1.5 * 0.1, 0.0, -1.5 * 0.1));
 }
 
@@ -171,10 +172,10 @@ fn a_falling_body_is_looked_at_where_it_starts_and_where_it_will_stand() {
     let camera = &scene.view.camera;
     assert_eq!((camera.target, camera.rise), (DVec3::new(3.0, 4.5, 0.0), 12.0));
     assert!(camera.distance > 40.0, "{}", camera.distance);
-    // One that follows rises by itself.
+    // A camera that follows rises by itself.
     let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera.follow = true"));
     assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
-    // What is in the picture anyway moves nothing, nor does a body that nothing stops.
+    // What is in the picture anyway does not move the camera, nor does a body that falls for ever.
     let low = body.replace("lowest = 10", "lowest = -1.9");
     let scene = good(&format!("{WORLD}{low}{floor}"));
     assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
@@ -228,7 +229,7 @@ fn files_that_are_no_scenes_are_told_apart() {
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
-    // The ending that all have makes no two alike.
+    // A file extension that all have does not make names equal.
     put("e.toml", b"");
     assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));
     assert!(matches!(load(&folder.path().join("e.tml")), SceneError::Missing { nearest: Some(_), .. }));
@@ -259,7 +260,7 @@ fn a_scene_may_say_everything() {
     let start = &scene.initial;
     assert_eq!(scene.body.len(), 7);
     assert_eq!(start.position.iter().map(|point| point.y).fold(f64::INFINITY, f64::min), 10.0);
-    // Turned by .1 rad about the mean of the nodes, then moved by 2 m.
+    // Rotated by .1 rad about the mean of the nodes, then moved by 2 m.
     let edge = start.position[1] - start.position[0];
     assert!((libm::atan2(edge.y, edge.x) - 0.1).abs() < 1e-14, "{edge}");
     let mean_x = start.position.iter().map(|point| point.x).sum::<f64>() / 7.0;

@@ -1,4 +1,4 @@
-//! Colours, type and lines: good ones mean what they say, and every mistake is explained.
+//! Colours, fonts and lines: correct ones have the right effect, and every mistake is explained.
 
 use super::mistakes::{PLANE, case};
 use super::{WORLD, good};
@@ -9,7 +9,7 @@ use localshape::scene::{Limits, Scene, SceneError};
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
 const SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
 
-/// A scene whose view says something.
+/// A scene with a view.
 fn with(view: &str) -> String {
     format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[view]\n{view}\n")
 }
@@ -35,7 +35,7 @@ fn colours_are_taken_as_typed() {
     assert!(!look.transparent);
 }
 
-/// Scenes of several runs, each with what is said of it.
+/// Scenes of several runs, each with its lines.
 fn of_runs(view: &str, runs: &[&str]) -> String {
     let run = |(at, said): (usize, &&str)| {
         format!("[[run]]\nname = 'Run {at}'\nmodel = {{ kind = 'shape-based', stiffness = 1 }}\n{said}\n")
@@ -53,16 +53,16 @@ fn runs_have_their_places_colours_or_their_own() {
         let palette = scene.view.look.palette;
         let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&palette)).collect();
         let own = [65, 105, 225];
-        // On light ground the first colour is like royal blue and steps aside for the second, which is free.
+        // On a light background the first colour resembles royal blue and is replaced by the second, which is free.
         let first = if theme == "light" { 1 } else { 0 };
         assert_eq!(
             lines.iter().map(|line| line.colour).collect::<Vec<_>>(),
             [palette.runs[first], own, palette.runs[2], own]
         );
-        // Of one colour, but not of one dash.
+        // The same colour, but different dashes.
         assert_ne!(lines[1].dash, lines[3].dash);
     }
-    // What a scene gives for all of them leaves each its own, and nothing is drawn that could not be seen.
+    // Colours of the view do not change those of runs, and each line has enough contrast with the background.
     let scene = good(&of_runs("background = '#808080'\ncolours.arrow = 'black'", &["", "colour = 'white'"]));
     let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
     assert_eq!(colours, [[0; 3], [255; 3]]);
@@ -76,7 +76,8 @@ fn runs_have_their_places_colours_or_their_own() {
     assert_ne!(digest("colour = 'royalblue'"), digest(""));
 }
 
-/// How different the colours of a scene's runs look at the least, to anybody, without those of two runs of one choice.
+/// The least difference of the colours of a scene's runs, for any colour vision, except of runs with the same chosen
+/// colour.
 fn least_apart(scene: &Scene) -> f64 {
     let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
     let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
@@ -88,7 +89,7 @@ fn least_apart(scene: &Scene) -> f64 {
 fn colours_of_runs_step_aside_for_chosen_ones() {
     for theme in ["light", "dark"] {
         let view = format!("theme = '{theme}'");
-        // What each place of the palette has, chosen for another run.
+        // The colour at each place of the palette, chosen for another run.
         for colour in Palette::of(if theme == "light" { Theme::Light } else { Theme::Dark }).runs {
             let [red, green, blue] = colour;
             let chosen = format!("colour = '#{red:02x}{green:02x}{blue:02x}'");
@@ -104,7 +105,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
     }
     let scene = good(&of_runs("", &["", "colour = 'teal'", ""]));
     assert!(least_apart(&scene) >= 15.0, "{}", least_apart(&scene));
-    // Nothing is left where all are like a chosen one, and then dashes say it.
+    // If all colours resemble a chosen one, dashes distinguish them.
     let scene = good(&of_runs("colours.arrow = 'navy'", &["", "colour = 'navy'", ""]));
     let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).dash).collect();
     assert!(lines[0] != lines[1] && lines[1] != lines[2] && lines[0] != lines[2]);
@@ -274,7 +275,7 @@ fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_element
         let expected = format!("(deuteranopia) they differ by {found} (CIEDE2000); expected at least 20");
         view(&text, &[(20, 9, &expected)]);
         view(&text, &[(20, 9, "remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`")]);
-        // With a hatch, or where the field colours no surfaces, something else tells them.
+        // With a hatch, or if the field does not colour surfaces, turned-over elements are marked in another way.
         good(&with(&format!("colour = {{ by = 'speed', map = '{map}' }}")));
         good(&with(&format!("{text}\nshow = ['nodes']")));
     }
@@ -291,7 +292,7 @@ fn turned_over_elements_that_anybody_could_overlook_are_refused() {
         "colours = { body = 'coral' }",
         &[(20, 20, "`view.colours.body` is too similar to that of turned-over elements, #e2661c")],
     );
-    // A red and a green that most can tell.
+    // A red and a green that most people can distinguish.
     let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
     let [body, alarm] = [[0x7c, 0x8c, 0x40], [0xb8, 0x70, 0x3c]];
     assert!(difference(body, alarm, Vision::Normal) > 25.0);
@@ -364,7 +365,7 @@ fn fonts_are_found_beside_the_scene_and_count_by_what_is_in_them() {
     assert_ne!(one.digest, both.digest);
     assert_ne!(one.digest, place.load("regular = 'b.otf'").unwrap().digest);
     assert_ne!(one.digest, good(&with("")).digest);
-    // Nobody wants to read a font in a log.
+    // Fonts are not printed in logs.
     assert!(format!("{:?}", one.view).len() < 5000);
 }
 
@@ -410,7 +411,7 @@ fn fonts_that_are_damaged_or_lack_letters_are_refused() {
     );
 }
 
-/// The built-in font with a table of characters that knows none.
+/// The built-in font with an empty table of characters.
 #[cfg(feature = "render")]
 fn without_letters() -> Vec<u8> {
     let mut bytes = FONT.to_vec();

@@ -1,4 +1,4 @@
-//! Mistakes in obstacles, paths and grips, and what good ones mean.
+//! Mistakes in obstacles, paths and grips, and the meaning of correct ones.
 
 use super::{bad, good};
 use glam::DVec3;
@@ -17,7 +17,7 @@ run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
 body = { lattice = { cells = [2, 1], side = 0.1 }, offset = [0, 0.1] }
 ";
 
-/// Adds lines to a world and expects exactly the mistakes listed: line of what was added, column, words.
+/// Adds lines to a world and expects exactly the mistakes listed: line of the addition, column, message.
 #[track_caller]
 fn case(world: &str, added: &str, expected: &[(usize, usize, &str)]) {
     let error = bad(&format!("{world}{added}"));
@@ -73,7 +73,7 @@ fn paths_that_would_jump_or_go_nowhere() {
         &sphere("swing = { period = 1, shift = [1, 0, 0] }\npath.keys = [{ time = 0 }]"),
         &[(6, 1, "has both `path` and `swing`, which exclude each other keep one")],
     );
-    // A whole turn ends where it begins.
+    // A full rotation ends where it begins.
     good(&format!(
         "{WORLD}{}",
         sphere(
@@ -111,7 +111,7 @@ fn motions_that_a_step_cannot_follow() {
     case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.5001 }]", &[(3, 39, "it would jump")]);
 }
 
-/// A path that one run can follow is not one that all can: the longest step counts, whichever run has it.
+/// All runs must be able to follow a path: the longest time step counts.
 #[test]
 fn motions_that_the_longest_of_several_steps_cannot_follow() {
     let run = |name: &str, step: &str| {
@@ -222,10 +222,10 @@ fn obstacles_that_start_inside_the_body() {
         floor,
         &[(1, 1, "the body starts inside this floor: node 0 lies 5.000e-2 m below its surface move the floor")],
     );
-    // Right through it, between all nodes.
+    // Straight through it, between all nodes.
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [0.05, 0.15, -1]\nto = [0.05, 0.15, 1]\nradius = 0.01";
     case(WORLD, rod, &[(1, 1, "this capsule starts inside the body, at [0.05, 0.15, ")]);
-    // A path that starts elsewhere counts, and so does a floor that is just touched.
+    // A path that starts elsewhere counts as well, and so does a floor that is just touched.
     let away = "path.keys = [{ time = 0, shift = [0, 9, 0] }]";
     good(&format!("{WORLD}{touching}\n{away}"));
     good(&format!("{WORLD}[[obstacle]]\nkind = 'floor'\nheight = 0.1"));
@@ -246,7 +246,7 @@ fn nodes_in_two_hands_at_once() {
     );
     let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";
     case(WORLD, twice, &[(4, 9, "node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s on")]);
-    // One after the other is well.
+    // One after the other is correct.
     let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
     assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
 }
@@ -298,7 +298,7 @@ fn regions_hold_the_nodes_that_start_in_them() {
     assert_eq!(scene.grips[1].nodes, [0, 6]);
 }
 
-/// Coordinates of a lattice are sums: its ends are at ±0.30000000000000004 m, and at thirds, which nobody types in full.
+/// Coordinates of a lattice are sums, such as ±0.30000000000000004 m and thirds, which are not typed in full.
 #[test]
 fn nodes_on_the_border_of_a_region_are_in_it() {
     let held = |body: &str, region: &str| {
@@ -310,7 +310,7 @@ fn nodes_on_the_border_of_a_region_are_in_it() {
     assert_eq!(held(bar, "low = [-0.3, 0, -0.1], high = [-0.3, 0.2, 0.1]").0, 9);
     assert_eq!(held(bar, "low = [-0.31, 0, -0.1], high = [-0.2, 0.2, 0.1]").0, 18);
     assert_eq!(held(bar, "of = [0, 0.1, 0], within = 0.3").0, 7 + 4 * 5 + 4 * 5);
-    // What `check` prints takes the whole body.
+    // The selection that `check` prints is that of the whole body.
     let thirds = "[2, 2, 2], side = [0.3333333333333333, 0.7071067811865476, 1e-3] }, offset = [1e-3, 2, 3]";
     let (_, summary, _) = held(thirds, "of = [0, 2, 3], within = 9");
     let start = summary.lines().find_map(|line| line.trim().strip_prefix("start")).expect("where it starts");
@@ -328,7 +328,7 @@ fn nodes_on_the_border_of_a_region_are_in_it() {
     assert_eq!(held(thirds, &format!("low = [{low}], high = [{high}]")).0, 27);
 }
 
-/// Hands that come one after another, however many, and one that comes too early.
+/// Grips in any number, one after the other, and one that begins too early.
 #[test]
 fn many_hands_in_turn() {
     let turns = 20_000;
@@ -373,7 +373,7 @@ fn a_box_that_takes_a_part_of_a_layer_is_told() {
     let plane = "[[grab]]\nnodes = { low = [-0.2, 0.1], high = [0.01, 0.1] }\npath.keys = [{ time = 0 }, { time = 1 }]";
     let told = good(&format!("{PLANE}{plane}")).warnings;
     assert_eq!(told[0].message, "`grab[0].nodes` takes 2 of the 3 nodes of a layer of the body");
-    // Layers turn with the body: here an upright one, whose lower end is cut.
+    // Layers rotate with the body: here an upright one, whose lower end is cut.
     let upright =
         world.replace("side = 0.1 }", "side = 0.1 }, rotation = { axis = [0, 0, 1], angle = 1.5707963267948966 }");
     let told =
@@ -381,7 +381,7 @@ fn a_box_that_takes_a_part_of_a_layer_is_told() {
     assert_eq!(told[0].message, "`hold[0].nodes` takes 6 of the 9 nodes of a layer of the body");
     let help = "this layer starts between [-0.1, -0.2, -0.1] and [0.1, -0.2, 0.1] m";
     assert_eq!(told[0].help.as_deref(), Some(help));
-    // A slanting cut is no layer's.
+    // An oblique cut is not a layer.
     let turned = PLANE.replace("offset", "rotation = { angle = 0.3 }, offset");
     assert_eq!(good(&format!("{turned}[[hold]]\nnodes = {{ low = [-1, 0], high = [0, 1] }}")).warnings, []);
 }

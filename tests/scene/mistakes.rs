@@ -1,9 +1,9 @@
-//! Every mistake that a scene can have: where it is said to be, and in which words.
+//! Every mistake that a scene can have: its position and its message.
 
 use super::bad;
 use localshape::scene::{Limits, Scene, SceneError};
 
-/// A good scene with an explicit body in the plane, line by line, in which each case changes something.
+/// A correct scene with a listed body in the plane; each case changes some of its lines.
 pub(crate) const PLANE: &str = "\
 gravity = [0, -9.8]
 [time]
@@ -39,7 +39,7 @@ name = 'Local shape'
 model = { kind = 'shape-based', stiffness = 1e4 }
 ";
 
-/// Replaces `from` in a scene, and expects exactly the mistakes listed: line, column, words.
+/// Replaces `from` in a scene, and expects exactly the mistakes listed: line, column, message.
 #[track_caller]
 pub(crate) fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize, &str)]) {
     assert!(scene.contains(from), "the scene has no {from:?}");
@@ -55,7 +55,7 @@ pub(crate) fn case(scene: &str, from: &str, to: &str, expected: &[(usize, usize,
     }
 }
 
-/// The limit is told before anything is compared with anything, however many there are.
+/// The limit is reported before any pairs are compared, for any number of elements.
 #[test]
 fn more_runs_than_there_may_be() {
     let run = "[[run]]\nname = 'Local shape'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n";
@@ -69,7 +69,7 @@ fn more_runs_than_there_may_be() {
     assert_eq!(error.mistakes().len(), 1 + 255, "{error}");
 }
 
-/// Each would be compared with all that are known, for minutes, and a thousand are kept.
+/// Unknown keys would each be compared with all known ones, for minutes; only a thousand are kept.
 #[test]
 fn very_many_unknown_keys_are_counted() {
     let keys = |from: usize| (from..from + 300_000).map(|at| format!("key{at} = 1\n")).collect::<String>();
@@ -81,7 +81,7 @@ fn very_many_unknown_keys_are_counted() {
 
 #[test]
 fn unknown_keys() {
-    // A misspelt key is not missing as well.
+    // A misspelt key is not reported as missing as well.
     case(
         PLANE,
         "stiffness",
@@ -514,7 +514,7 @@ fn a_body_beyond_the_limits_is_refused_before_it_is_built() {
     assert!(Scene::parse(SPACE, "a", &Limits { corners: 7, ..Limits::default() }).is_err());
 }
 
-/// One polygon of very many corners, whose diagonals are too many although its file is small.
+/// A polygon with many corners, which has too many diagonals although its file is small.
 #[test]
 fn springs_beyond_the_limits_are_refused_before_they_are_made() {
     let corner = |at: u32| {

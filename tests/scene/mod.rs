@@ -1,4 +1,4 @@
-//! Scene files: good ones mean what they say, and every mistake is found, placed and explained.
+//! Scene files: correct ones have the right meaning, and every mistake is found, located and explained.
 
 mod archives;
 mod bodies;
@@ -13,7 +13,7 @@ mod schema;
 
 use localshape::scene::{Limits, Scene, SceneError};
 
-/// A scene of one run, to which a test adds what it is about.
+/// A scene of one run, to which tests add lines.
 const WORLD: &str = "\
 [time]
 duration = 1
@@ -23,7 +23,7 @@ name = 'Local shape'
 model = { kind = 'shape-based', stiffness = 1e4 }
 ";
 
-/// The scene of a text, which must be good.
+/// The scene of a text, which must be correct.
 #[track_caller]
 fn good(text: &str) -> Scene {
     match Scene::parse(text, "test.toml", &Limits::default()) {
@@ -32,7 +32,7 @@ fn good(text: &str) -> Scene {
     }
 }
 
-/// What is wrong with a text, which must be bad.
+/// The mistakes of a text, which must have some.
 #[track_caller]
 fn bad(text: &str) -> SceneError {
     match Scene::parse(text, "test.toml", &Limits::default()) {

@@ -1,4 +1,4 @@
-//! Whatever a file holds, reading it ends with a scene or with mistakes, never with a panic.
+//! Reading any file gives a scene or mistakes, never a panic.
 
 use super::shipped;
 use localshape::scene::{Limits, Scene, SceneError};
@@ -20,7 +20,7 @@ const SMALL: Limits = Limits { nodes: 5000, corners: 50_000, springs: 100_000, f
 
 const EXPLICIT: &str = include_str!("explicit.toml");
 
-/// Bodies that are made by a rule.
+/// Generated bodies.
 const RULES: [&str; 6] = [
     "lattice = { cells = [3, 2, 2], side = [0.1, 0.2, 0.3], elements = 'mixed', irregular = 0.4, seed = 7 }",
     "lattice = { cells = [3, 2], side = 0.1, elements = 'mixed', irregular = 0.4, seed = 7 }",
@@ -39,7 +39,7 @@ fn scenes() -> Vec<String> {
     [shipped("fig4b.toml"), EXPLICIT.to_owned()].into_iter().chain(made).collect()
 }
 
-/// Reads a text, and looks that what it says stands in the text.
+/// Reads a text, and checks that reported positions are in it.
 fn read(text: &str) {
     match Scene::parse(text, "mutated.toml", &SMALL) {
         Ok(scene) => {

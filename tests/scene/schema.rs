@@ -1,9 +1,9 @@
-//! The schema describes everything, and holds for what is shipped.
+//! The schema describes every key, and shipped scenes are valid.
 
 use localshape::scene::{Limits, Scene};
 use serde_json::Value;
 
-/// Calls `visit` on a schema and all schemas in it, each with its way.
+/// Calls `visit` on a schema and all schemas in it, each with its path.
 fn walk(schema: &Value, way: &str, visit: &mut dyn FnMut(&str, &Value)) {
     visit(way, schema);
     if let Some(properties) = schema["properties"].as_object() {
@@ -73,7 +73,7 @@ fn it_is_a_schema_of_draft_2020_12_in_one_piece() {
     let types = ["object", "array", "string", "number", "integer", "boolean"];
     walk(&schema, "scene", &mut |way, schema| {
         for (keyword, value) in schema.as_object().into_iter().flatten() {
-            // The check of scene files knows these words and no others.
+            // The validator of scene files supports these keywords only.
             assert!(known.contains(&keyword.as_str()), "{way}: {keyword}");
             assert!(keyword != "type" || types.contains(&value.as_str().unwrap_or_default()), "{way}: {value}");
         }

@@ -8,7 +8,7 @@ use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use glam::DVec3;
 
 impl Draft<'_> {
-    /// The surfaces of the sound elements and of those that have turned over, with their lines.
+    /// The surfaces of the elements that are not turned over and of those that are, with their lines.
     pub(super) fn surfaces(&self, lines: &mut Vec<Line>) -> [Mesh; 2] {
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if self.position.is_empty() || !self.scene.view.visible.surfaces {

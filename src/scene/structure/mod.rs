@@ -1,7 +1,7 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 //!
-//! `jsonschema` would bring some fifty crates and leave most of this: it checks JSON, which has no lines and columns, tells
-//! of alternatives only that none fits, and suggests no key that was probably meant.
+//! `jsonschema` has about fifty dependencies and would replace little of this: it checks JSON, without lines and
+//! columns, reports of alternatives only that none fits, and suggests no similar key.
 
 pub(super) mod expect;
 mod keys;

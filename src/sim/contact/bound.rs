@@ -1,8 +1,8 @@
-//! What kernels ask of obstacles: where they may be, and floors, which they treat themselves.
+//! What kernels use of obstacles: bounds of where they are, and floors, which kernels treat themselves.
 
 use glam::DVec3;
 
-/// A region outside of which nothing has to be asked whether a node touches it.
+/// A region outside of which no node can be in contact with an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::sim) enum Bound {
     /// All points with `normal · x < height`.

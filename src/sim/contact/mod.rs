@@ -14,25 +14,25 @@ use super::part::Part;
 use super::state::Nodes;
 use glam::DVec3;
 
-/// Something rigid that nodes bounce off.
+/// A rigid obstacle off which nodes bounce.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// Its shape and place, before it moves.
+    /// Its shape and position at the start.
     pub shape: Shape,
     /// How it moves.
     pub motion: Motion,
-    /// The point about which it turns when it moves (m), of its own: it moves along with its shifts.
+    /// The point about which it rotates (m), at the start; it is translated together with the obstacle.
     pub pivot: DVec3,
-    /// Restitution coefficient `e`, 0 to 1: the part of the normal velocity that a rebound gives back.
+    /// Restitution coefficient `e`, 0 to 1: normal velocity after a rebound divided by that before.
     pub restitution: f64,
     /// Friction coefficient `μ`, 0 or more.
     pub friction: f64,
 }
 
-/// A way to treat contact at the end of each step.
+/// The treatment of contact at the end of each step.
 pub(crate) trait ContactStage: Send + Sync {
-    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step, which were at `before` when it began.
-    /// `acceleration` (m/s²) is that with which each node has moved in the step; `None` if it has moved at constant velocity.
+    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step that began at `before`. `acceleration`
+    /// (m/s²) is the constant one of each node in the step; `None` if nodes moved at constant velocity.
     fn resolve(
         &self,
         parts: &[Part],
@@ -43,13 +43,13 @@ pub(crate) trait ContactStage: Send + Sync {
         acceleration: Option<&[DVec3]>,
     );
 
-    /// The obstacles, if nothing else is met than each of them by each node alone, which kernels do on their way.
+    /// The obstacles, if contact is only that of each node with each obstacle, which kernels compute themselves.
     fn obstacles(&self) -> Option<&[Obstacle]> {
         None
     }
 }
 
-/// The paper's collision processing: each node that is found inside an obstacle rebounds, whatever way it has come.
+/// The paper's collision processing: each node found inside an obstacle rebounds, wherever it came from.
 impl ContactStage for Vec<Obstacle> {
     fn resolve(
         &self,
@@ -70,22 +70,22 @@ impl ContactStage for Vec<Obstacle> {
     }
 }
 
-/// What a body can stand on at a time (s): unit normal and distance from the origin (m) of the first floor that faces
-/// upwards.
+/// The ground on which a body can stand at a time (s): unit normal and distance from the origin (m) of the first floor
+/// that faces upwards.
 pub(crate) fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
-    // A wall is no place to stand on; a slope of some 60° still is.
+    // Walls are not ground; slopes of up to 60° are.
     const LEAST_RISE: f64 = 0.5;
     let mut floors = obstacles.iter().filter_map(|obstacle| obstacle.floor(time));
     floors.find(|(normal, _)| normal.y > LEAST_RISE)
 }
 
 impl Obstacle {
-    /// Whether it stays where it is.
+    /// Whether it does not move.
     pub(crate) fn is_still(&self) -> bool {
         self.motion == Motion::Still
     }
 
-    /// Where it is at a time (s).
+    /// Its displacement at a time (s).
     pub(crate) fn pose(&self, time: f64) -> Pose {
         self.motion.pose(time)
     }
@@ -101,7 +101,7 @@ impl Obstacle {
         Some((normal, normal.dot(pose.apply(pivot, pivot))))
     }
 
-    /// The obstacle as nodes meet it at the end of a step (s) that ends at a time (s).
+    /// The obstacle at the end of a step of `step` (s) that ends at `time` (s).
     pub(crate) fn at(&self, time: f64, step: f64) -> Placed<'_> {
         let moving = (self.motion != Motion::Still).then(|| Moving {
             pivot: self.pivot,
@@ -121,7 +121,7 @@ pub(crate) struct Placed<'a> {
     moving: Option<Moving>,
 }
 
-/// How an obstacle has moved in a step.
+/// The motion of an obstacle in a step.
 #[derive(Clone, Debug)]
 struct Moving {
     pivot: DVec3,
@@ -133,13 +133,13 @@ struct Moving {
 impl Placed<'_> {
     /// The depth of a point inside the obstacle, and the velocity (m/s) of the obstacle there.
     ///
-    /// The velocity is the way that the obstacle's own point has gone in the last step, over the step: what the steps
-    /// of the nodes call velocity, too.
+    /// The velocity is the displacement of the obstacle's material point in the last step divided by the step,
+    /// consistent with the velocity of nodes.
     pub(crate) fn contact(&self, point: DVec3) -> Option<(Contact, DVec3)> {
         self.surface(point).filter(|(contact, _)| contact.depth > 0.0)
     }
 
-    /// The same also for points on the surface, to round-off.
+    /// Like [`Self::contact`], but also for points on the surface, to round-off.
     fn surface(&self, point: DVec3) -> Option<(Contact, DVec3)> {
         let (shape, farthest) = (&self.obstacle.shape, point.abs().max_element());
         let Some(moving) = &self.moving else {
@@ -148,7 +148,7 @@ impl Placed<'_> {
         };
         let own = moving.now.undo(moving.pivot, point);
         let Contact { depth, normal } = shape.surface(own);
-        // Both places are rounded, and so is the way between them.
+        // Both positions are rounded, and so is the displacement between them.
         let farthest = farthest + own.abs().max_element() + moving.pivot.abs().max_element();
         if depth <= -shape.round_off(farthest) {
             return None;
@@ -157,7 +157,7 @@ impl Placed<'_> {
         Some((Contact { depth, normal: moving.now.rotation * normal }, velocity))
     }
 
-    /// A region outside of which no node is met, with a margin (m) for round-off.
+    /// A region that contains all points of contact, with a margin (m) for round-off.
     pub(super) fn bound(&self, margin: f64) -> Bound {
         let now = |point: DVec3| self.moving.as_ref().map_or(point, |moving| moving.now.apply(moving.pivot, point));
         let middle = now(self.obstacle.shape.middle());
@@ -166,7 +166,7 @@ impl Placed<'_> {
                 let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.rotation * normal);
                 Bound::HalfSpace { normal, height: normal.dot(middle) + margin }
             }
-            // In the plane they are endless across it, but all nodes are at zero there.
+            // In the plane obstacles are infinite across it, but all nodes have z = 0.
             Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Box { .. } => {
                 let reach = DVec3::splat(self.obstacle.shape.reach() + margin);
                 Bound::Box { low: middle - reach, high: middle + reach }
@@ -174,7 +174,7 @@ impl Placed<'_> {
         }
     }
 
-    /// This one as a floor that stays where it is, if that is what it is.
+    /// This obstacle as a [`Floor`], if it is one and does not move.
     pub(super) fn still_floor(&self) -> Option<Floor> {
         let &Obstacle { ref shape, restitution, friction, .. } = self.obstacle;
         match *shape {
@@ -185,13 +185,13 @@ impl Placed<'_> {
         }
     }
 
-    /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is that of each node (m/s²); `None` for nodes that
-    /// have moved at constant velocity.
+    /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is the constant one of each node in the step
+    /// (m/s²); `None` for nodes that moved at constant velocity.
     fn rebound_all(&self, position: &mut [DVec3], velocity: &mut [DVec3], acceleration: Option<&[DVec3]>) {
         let acceleration = |node: usize| acceleration.map_or(DVec3::ZERO, |all| all[node]);
         let nodes = position.iter_mut().zip(velocity).enumerate();
         match (&self.moving, &self.obstacle.shape) {
-            // Nearly every scene stands on one, and most of its nodes are far above: its shape is asked for only once.
+            // Most scenes have one floor and most nodes are far above it, so its shape is read only once.
             (None, shape @ &Shape::Floor { normal, height }) => nodes.for_each(|(node, (position, velocity))| {
                 let depth = height - normal.dot(*position);
                 if depth > -shape.round_off(position.abs().max_element()) {
@@ -203,8 +203,9 @@ impl Placed<'_> {
         }
     }
 
-    /// The rebound of one node that has moved in the step with an acceleration (m/s²): mirrored out with restitution, its
-    /// slip braked by friction. A node on the surface, to round-off, rebounds if it approaches.
+    /// The rebound of one node that moved in the step with a constant acceleration (m/s²): reflected with restitution,
+    /// with its tangential velocity reduced by friction. A node on the surface, to round-off, rebounds if it
+    /// approaches.
     pub(crate) fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
         if let Some((contact, own)) = self.surface(*position) {
             self.obstacle.push_out(contact, own, acceleration, position, velocity);
@@ -215,9 +216,9 @@ impl Placed<'_> {
 impl Obstacle {
     /// The rebound of a node inside.
     ///
-    /// A node found at depth `d` is put at height `e d`; only if it is approaching, its normal velocity `v_n` becomes
-    /// `−e v_n`. Friction comes from that change: it takes at most `μ |Δv_n|` from the velocity along the surface
-    /// and never reverses it. All velocities are relative to the obstacle's own (m/s).
+    /// A node at depth `d` is moved to height `e d`. Only if it is approaching, its normal velocity `v_n` becomes `−e
+    /// v_n`. Friction is proportional to that change: it reduces the tangential velocity by at most `μ |Δv_n|` and
+    /// never reverses it. All velocities are relative to that of the obstacle (m/s).
     fn push_out(
         &self,
         Contact { depth, normal }: Contact,
@@ -243,7 +244,7 @@ impl Obstacle {
     }
 }
 
-/// Where a node that approaches the surface is after its rebound.
+/// Height and speed of an approaching node after its rebound.
 struct Bounce {
     /// Above the surface (m).
     height: f64,
@@ -252,14 +253,14 @@ struct Bounce {
 }
 
 impl Bounce {
-    /// From the restitution coefficient `e`, the depth (m) and speed (m/s) with which the node was found, and the
-    /// acceleration into the surface (m/s²) with which it has moved in the step.
+    /// `e` is the restitution coefficient, `depth` (m) and `approach` (m/s) the depth and speed of the node, and
+    /// `pressing` its acceleration into the surface in the step (m/s²).
     ///
-    /// At constant velocity: height `e d`, speed `e v`. An acceleration `a` has made the node faster on its way from the
-    /// surface to where it was found, and brakes it on its way up: it hit the surface with `v² − 2 a d`, left it with `e²`
-    /// of that, and at height `e d` has `2 a e d` less. A node that does not come so high is put where it turns round. So
-    /// with `e = 1` its energy under a constant force stays as it was, however long the step; the paper's `−e v` alone
-    /// would add `m a v ΔT` with every bounce.
+    /// At constant velocity: height `e d`, speed `e v`. An acceleration `a` has increased the speed on the way from the
+    /// surface to depth `d`, and reduces it on the way up: the node hit the surface with `v² − 2 a d`, left it with
+    /// `e²` of that, and at height `e d` it has `2 a e d` less. A node that does not reach that height is placed at its
+    /// highest point. So with `e = 1` the energy under a constant force is conserved for any step; the paper's `−e v`
+    /// alone would add `m a v ΔT` in each bounce.
     fn new(e: f64, depth: f64, approach: f64, pressing: f64) -> Self {
         if pressing == 0.0 {
             return Self { height: e * depth, speed: e * approach };

@@ -1,10 +1,11 @@
-//! The shapes of obstacles: how deep a point lies inside, and which way is out.
+//! The shapes of obstacles, with the depth of a point inside and the direction out.
 
 use glam::{DQuat, DVec3};
 
-/// The region that an obstacle fills where it stands before it moves.
+/// The region that an obstacle fills at the start.
 ///
-/// In the plane a sphere is a disc, a capsule a strip with round ends, and a box a rectangle, endless across the plane.
+/// In the plane a sphere is a disc, a capsule a strip with round ends, and a box a rectangle, all infinite across the
+/// plane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// The half-space `normal · x < height`, drawn as ground.
@@ -23,12 +24,12 @@ pub enum Shape {
     },
     /// A ball.
     Sphere {
-        /// Its middle (m).
+        /// Its centre (m).
         centre: DVec3,
         /// Its radius (m).
         radius: f64,
     },
-    /// All points near a line: a rod with round ends.
+    /// All points within a distance of a line segment: a rod with round ends.
     Capsule {
         /// One end of the line (m).
         from: DVec3,
@@ -39,24 +40,25 @@ pub enum Shape {
     },
     /// A cuboid.
     Box {
-        /// Its middle (m).
+        /// Its centre (m).
         centre: DVec3,
         /// Half of its sides (m); infinite across the plane.
         half: DVec3,
-        /// How it is rotated.
+        /// Its orientation.
         rotation: DQuat,
     },
 }
 
-/// Roundings of a depth, and of the place of a node that was put on the surface, with a margin of two.
+/// Relative round-off of a depth and of the position of a node that was placed on the surface, with a safety factor of
+/// two.
 pub(in crate::sim) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// How a point lies in an obstacle.
+/// The position of a point relative to an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Contact {
     /// Distance to the surface (m), positive inside, negative outside.
     pub depth: f64,
-    /// Unit vector out of the obstacle, at right angles to the surface.
+    /// Unit vector out of the obstacle, perpendicular to the surface.
     pub normal: DVec3,
 }
 
@@ -67,7 +69,7 @@ impl Shape {
         Some(self.surface(point)).filter(|contact| contact.depth > 0.0)
     }
 
-    /// The depth of a point below the surface, or how far above it is: near the surface of a box, else anywhere.
+    /// The depth of a point below the surface, negative above it. Outside a box it is exact only near the surface.
     pub(super) fn surface(&self, point: DVec3) -> Contact {
         let (depth, normal) = match *self {
             Self::Floor { normal, height } => (height - normal.dot(point), normal),
@@ -82,7 +84,7 @@ impl Shape {
             Self::Box { centre, half, rotation } => {
                 let local = rotation.conjugate() * (point - centre);
                 let depths = half - local.abs();
-                // The nearest face; of equal ones the first.
+                // The nearest face; the first one if several are equally near.
                 let axis = (0..3).fold(0, |best, axis| if depths[axis] < depths[best] { axis } else { best });
                 let sign = if local[axis] < 0.0 { -1.0 } else { 1.0 };
                 (depths[axis], rotation * (DVec3::AXES[axis] * sign))
@@ -91,8 +93,8 @@ impl Shape {
         Contact { depth, normal }
     }
 
-    /// By how much round-off may put a point that lies on the surface to one side of it (m), where the point is no farther
-    /// than `farthest` (m) from the origin along an axis.
+    /// The greatest distance (m) by which round-off may move a point off the surface, for a point with coordinates of
+    /// at most `farthest` (m).
     pub(super) fn round_off(&self, farthest: f64) -> f64 {
         let size = match *self {
             Self::Floor { height, .. } => height.abs(),
@@ -103,7 +105,8 @@ impl Shape {
         ROUND_OFF * (size + farthest)
     }
 
-    /// The middle of the obstacle (m); of a plate its point, of a floor the point nearest to the origin.
+    /// The centre of the obstacle (m); the point of a plate; for a floor, the point of its surface nearest to the
+    /// origin.
     pub(crate) fn middle(&self) -> DVec3 {
         match *self {
             Self::Floor { normal, height } => normal * height,
@@ -113,7 +116,7 @@ impl Shape {
         }
     }
 
-    /// How far the obstacle reaches from its middle (m); infinite for half-spaces.
+    /// The radius of a sphere about the centre that contains the obstacle (m); infinite for half-spaces.
     pub(crate) fn reach(&self) -> f64 {
         match *self {
             Self::Floor { .. } | Self::Plate { .. } => f64::INFINITY,
@@ -124,14 +127,14 @@ impl Shape {
     }
 }
 
-/// Depth and outward direction of a point by its distance from the middle; from the very middle `elsewhere` is out.
+/// Depth and outward normal of a point from its offset from the centre; `elsewhere` is the normal at the centre itself.
 fn round(from_middle: DVec3, radius: f64, elsewhere: DVec3) -> (f64, DVec3) {
     let distance = from_middle.length();
     (radius - distance, if distance > 0.0 { from_middle / distance } else { elsewhere })
 }
 
-/// A unit vector at right angles to another: upwards as far as that goes, and never out of the plane z = 0 for a
-/// vector in it.
+/// A unit vector perpendicular to another one: as far upwards as possible, and in the plane z = 0 for a vector in that
+/// plane.
 fn across(along: DVec3) -> DVec3 {
     let squared = along.length_squared();
     let up = if squared > 0.0 { DVec3::Y - along * (along.y / squared) } else { DVec3::Y };
@@ -168,7 +171,7 @@ mod tests {
                 assert!((normal.length() - 1.0).abs() < 1e-12);
                 assert!(shape.contact(point + normal * (depth * (1.0 + 1e-9) + 1e-12)).is_none(), "{shape:?} {point}");
                 assert!(shape.contact(point + normal * (depth * 0.999)).is_some(), "{shape:?} {point}");
-                // No other way is shorter.
+                // No other direction is shorter.
                 for other in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
                     assert!(shape.contact(point + other * (depth * 0.999)).is_some(), "{shape:?} {point} {other}");
                 }

@@ -1,11 +1,11 @@
 //! Eqs. (2) and (3) as printed: `P += V ΔT` with the old velocity, and `V += F/m ΔT`.
 //!
-//! The eigenvalues of an undamped oscillation are `1 ± iωΔT`, outside the unit circle for every step: energy grows
-//! without bound. The results that the paper shows need the new velocity.
+//! The eigenvalues of an undamped oscillation are `1 ± iωΔT`, outside the unit circle for every step, so its energy
+//! grows without bound. The results in the paper can only come from the new velocity.
 
 use super::{Interval, Runaway, State, System, Trial};
 
-/// Tries a step; `limit` (m/s) is the greatest speed.
+/// Computes a step; `limit` (m/s) is the greatest speed.
 pub(super) fn step(
     system: &System,
     interval: Interval,

@@ -1,4 +1,4 @@
-//! The ways of stepping through time (Eqs. 2–3 and their rivals).
+//! Time integration: Eqs. (2) and (3) and alternatives.
 
 mod explicit_euler;
 mod semi_implicit_euler;
@@ -14,32 +14,32 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How positions and velocities move from one step to the next.
+/// How positions and velocities are advanced by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
     /// Eq. (2), then Eq. (3) with the new velocity: symplectic, of first order.
     #[default]
     SemiImplicitEuler,
-    /// Eqs. (2) and (3) as printed, the second with the old velocity. It gains energy without bound and is here for
-    /// study: at ΔT = T/10 an oscillation grows by 18 % a step.
+    /// Eqs. (2) and (3) as printed, the second with the old velocity. Its energy grows without bound: at ΔT = T/10 an
+    /// oscillation grows by 18 % in each step. For comparison only.
     ExplicitEuler,
-    /// Velocity Verlet: symplectic without damping and rebounds, of second order. It evaluates the forces once a step, and
-    /// twice with damping.
+    /// Velocity Verlet: of second order, and symplectic without damping and rebounds. It evaluates the forces once in
+    /// each step, and twice with damping.
     VelocityVerlet,
 }
 
-/// Forces, then an integrator: the plain way, which every faster one is tested against.
+/// The reference code: evaluates forces, then integrates. Every faster way is tested against it.
 pub(super) struct ByForces {
     integrator: Integrator,
     trial: Trial,
 }
 
-/// A step on its way. Until it is accepted the state is as it was.
+/// A step that is being computed. The state is changed only when it is accepted.
 struct Trial {
     /// The state at the end of the step.
     next: State,
-    /// What integrators of several evaluations find on their way.
+    /// Stored evaluations of the forces, for integrators that need several.
     evaluations: [Vec<f64>; 2],
     scratch: Scratch,
 }
@@ -105,7 +105,7 @@ impl Trial {
         for ((force, &mass), &velocity) in forces.iter_mut().zip(&system.mass).zip(&state.velocity) {
             *force = velocity + *force / mass * interval.step;
         }
-        // It belongs to velocity Verlet.
+        // Only velocity Verlet has a memory.
         next.memory.integrator.clear();
         check(forces, limit)
     }
@@ -114,7 +114,7 @@ impl Trial {
 /// Whether all velocities (m/s) are within the limit.
 fn check(velocities: &[DVec3], limit: f64) -> Result<(), Runaway> {
     let limit = limit * limit;
-    // NaN is within no bounds.
+    // NaN is never within the limit.
     let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
     match velocities.iter().position(|velocity| !within_bounds(velocity)) {
         Some(node) => Err(Runaway { node }),

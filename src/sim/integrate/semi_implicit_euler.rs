@@ -1,8 +1,8 @@
-//! Eqs. (2) and (3), the second with the velocity of the first: `V += F/m ΔT`, then `P += V ΔT`.
+//! Eqs. (2) and (3), the second with the new velocity of the first: `V += F/m ΔT`, then `P += V ΔT`.
 
 use super::{Interval, Runaway, State, System, Trial};
 
-/// Tries a step; `limit` (m/s) is the greatest speed.
+/// Computes a step; `limit` (m/s) is the greatest speed.
 #[doc(alias = "Eq. 3")]
 pub(super) fn step(
     system: &System,

@@ -1,24 +1,24 @@
-//! Velocity Verlet: `P += V ΔT + A ΔT²/2`, then `V += (A + A')/2 ΔT` with the accelerations `A'` at the new place.
+//! Velocity Verlet: `P += V ΔT + A ΔT²/2`, then `V += (A + A')/2 ΔT` with the accelerations `A'` at the new positions.
 //!
-//! Damping needs a velocity before the new one is known: `A'` is evaluated at `V + A ΔT`, which keeps the method of
-//! second order. Without damping `A'` serves the next step as `A`. With damping the next step evaluates `A` at the
-//! velocity that came out, which is what makes the method stable as far as `c ΔT < 2` for `dV/dt = −c V`; the
-//! prediction would halve that.
+//! Damping needs a velocity before the new one is known: `A'` is evaluated with `V + A ΔT`, which keeps the method of
+//! second order. Without damping `A'` is used as `A` of the next step. With damping the next step evaluates `A` anew
+//! with the final velocity. That makes the method stable for `dV/dt = −c V` up to `c ΔT < 2`; with the predicted
+//! velocity the limit would be half of that.
 //!
-//! Collisions and kinematic constraints act on the new place and the predicted velocity `V + A ΔT`, before `A'` is evaluated, so that no
-//! force is ever evaluated inside an obstacle.
+//! Contact and kinematic constraints act on the new positions and the predicted velocities `V + A ΔT`, before `A'` is
+//! evaluated, so forces are never evaluated inside an obstacle.
 //!
 //! W. Swope, H. Andersen, P. Berens, K. Wilson, J. Chem. Phys. 76, 637 (1982).
 //!
-//! Without damping it remembers the evaluation at the present state: the accelerations, then the memory of the models that
-//! was found with them.
+//! Its memory, without damping, is the evaluation at the present state: the accelerations, then the memory of the
+//! models that belongs to them.
 
 use super::{Interval, Runaway, State, System, Trial, check};
 use crate::sim::model::Scratch;
 use crate::sim::state::Nodes;
 use glam::DVec3;
 
-/// Tries a step; `limit` (m/s) is the greatest speed.
+/// Computes a step; `limit` (m/s) is the greatest speed.
 pub(super) fn step(
     system: &System,
     interval: Interval,
@@ -34,7 +34,7 @@ pub(super) fn step(
     }
     let (acceleration, model) = split(if known.is_empty() { at_start } else { known }, system);
     next.memory.model.copy_from_slice(model);
-    // The way, and the velocity at its end if the acceleration stays.
+    // The new positions, and the velocities predicted with constant acceleration.
     for (node, &acceleration) in acceleration.iter().enumerate() {
         let (from, old) = (state.position[node], state.velocity[node]);
         let predicted = old + acceleration * step;
@@ -58,7 +58,7 @@ pub(super) fn step(
     Ok(())
 }
 
-/// Accelerations (m/s²) and the next memory of the models, one after the other.
+/// Computes accelerations (m/s²) and the next memory of the models, and stores them one after the other.
 fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, scratch: &mut Scratch) {
     out.resize(3 * at.position.len() + memory.len(), 0.0);
     let (acceleration, next) = out.split_at_mut(3 * at.position.len());
@@ -67,7 +67,7 @@ fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, 
     acceleration.iter_mut().zip(&system.mass).for_each(|(force, &mass)| *force /= mass);
 }
 
-/// An evaluation in its two parts.
+/// Splits a stored evaluation into accelerations and memory of the models.
 fn split<'a>(evaluation: &'a [f64], system: &System) -> (&'a [DVec3], &'a [f64]) {
     let (acceleration, model) = evaluation.split_at(3 * system.mass.len());
     (bytemuck::cast_slice(acceleration), model)

@@ -1,4 +1,4 @@
-//! Kernels at work in a simulation: which one computes a model on a body, and how contact and grips join in.
+//! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::general::{Constants, General};
 use super::lattice::{self, Lattice};
@@ -19,12 +19,12 @@ use crate::sim::system::System;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A kernel in a simulation.
+/// A kernel that advances a simulation.
 pub(in crate::sim) struct ByKernel {
     way: Way,
-    /// The memory of the constraints, while the kernel holds the state.
+    /// The memory of the constraints, while the kernel has the state.
     constraints: Option<Vec<f64>>,
-    /// The margin of contact (m): near enough to be asked.
+    /// The margin (m) by which the bounds of obstacles are enlarged.
     margin: f64,
 }
 
@@ -37,8 +37,8 @@ impl ByKernel {
         gravity: DVec3,
         step: f64,
     ) -> Self {
-        /// Of the size of the body. Round-off decides at 1e-15 of the distance from the origin whether a node is on a
-        /// surface, so this holds for bodies that are nearer than a billion times their size.
+        /// Relative to the size of the body. Round-off, 1e-15 of the distance from the origin, decides whether a node
+        /// is on a surface, so this suffices for bodies that are nearer than a billion times their size.
         const MARGIN: f64 = 1e-3;
         let scheme = match integrator {
             Integrator::SemiImplicitEuler => Scheme::SemiImplicitEuler,
@@ -56,7 +56,7 @@ impl ByKernel {
 fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, step: f64) -> Box<dyn Stepper> {
     let &ShapeBased { stiffness, damping, passes, rotation, .. } = model;
     let rotation = match rotation {
-        // Eq. (9) is exact.
+        // Eq. (9) is the optimum.
         _ if body.dimension == Dimension::Plane => Rotation::Optimum,
         RotationReading::Exact => Rotation::Optimum,
         _ => Rotation::Arctangent { passes: passes.max(1) },
@@ -86,7 +86,7 @@ impl Dynamics for ByKernel {
         count: u64,
         crew: &mut Crew,
     ) -> Result<(), Runaway> {
-        /// Steps for which what moves is placed at a time.
+        /// Steps for which moving obstacles are placed at a time.
         const STRETCH: u64 = 256;
         let Self { way, constraints, margin } = self;
         let constraints = constraints.get_or_insert_with(|| {
@@ -106,12 +106,12 @@ impl Dynamics for ByKernel {
                 });
             }
             let memory = taken.as_ref().unwrap_or(constraints);
-            // Grips take nodes and let them go between stretches, and no step is taken again with other grips.
+            // Grips become active and inactive between stretches, and no step is repeated with other grips.
             let is_new = |step: u64| system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
             if taken.is_some() || begin > 0 && is_new(begin) {
                 way.arrive();
             }
-            // What moves is placed beforehand, so many steps at a time.
+            // Moving obstacles are placed in advance, for this many steps at a time.
             let until = match is_still && system.grips.is_empty() {
                 true => target,
                 false => {
@@ -151,7 +151,7 @@ impl Dynamics for ByKernel {
             let State { position, velocity, memory: Memory { model, constraints, integrator }, steps, .. } = state;
             self.way.stepper.store(position, velocity, model);
             constraints.clone_from(known);
-            // It is the plain code's.
+            // Only the reference code has a memory of the integrator.
             integrator.clear();
             *steps = self.way.steps();
         }
@@ -166,21 +166,21 @@ impl Dynamics for ByKernel {
     }
 }
 
-/// The obstacles in each of some steps.
+/// The obstacles in each of a number of steps.
 struct Met<'a> {
-    /// Step by step.
+    /// The obstacles, step by step.
     placed: Vec<Placed<'a>>,
-    /// Of each.
+    /// The bound of each of them.
     bounds: Vec<Bound>,
     first: u64,
-    /// Whether one step stands for all.
+    /// Whether the obstacles of one step are those of all.
     is_still: bool,
-    /// How many obstacles.
+    /// The number of obstacles.
     count: usize,
 }
 
 impl<'a> Met<'a> {
-    /// In the steps given.
+    /// For the given steps.
     fn new(obstacles: &'a [Obstacle], system: &System, mut steps: Range<u64>, margin: f64) -> Self {
         let (first, is_still) = (steps.start, obstacles.iter().all(Obstacle::is_still));
         if is_still {
@@ -195,7 +195,7 @@ impl<'a> Met<'a> {
         Self { placed, bounds, first, is_still, count: obstacles.len() }
     }
 
-    /// The obstacles in a step.
+    /// The range of the obstacles of a step.
     fn row(&self, step: u64) -> Range<usize> {
         let first = if self.is_still { 0 } else { (step - self.first) as usize * self.count };
         first..first + self.count

@@ -1,4 +1,4 @@
-//! The machine's floor: how fast it multiplies and adds.
+//! The peak arithmetic performance of the machine: how fast it multiplies and adds.
 
 use crate::sim::lanes::{Lanes, Set, WIDEST, Work};
 use std::sync::atomic::Ordering;
@@ -8,15 +8,15 @@ pub fn lanes() -> usize {
     Set::best().lanes()
 }
 
-/// Lets simulations made from now on, and [`multiply_adds`], work with vectors of at most so many doubles, so that
-/// benchmarks can tell what narrower vectors cost. It changes no bit of a state.
+/// Limits the width of vectors, in doubles, of simulations made from now on and of [`multiply_adds`], so that
+/// benchmarks can compare widths. The bits of states do not depend on it.
 pub fn limit_lanes(most: usize) {
     WIDEST.store(most, Ordering::Relaxed);
 }
 
-/// Multiplies and adds in all lanes of the widest vectors of this processor, in twelve independent chains, and returns how
-/// many multiply-adds of one lane that were. A step of the shape model on a lattice needs at least 320 of them a box: 155 to
-/// gather, scatter, damp and move, 165 for one pass of the rotation.
+/// Multiplies and adds in all lanes of the widest vectors of this processor, in twelve independent chains, and returns
+/// the number of multiply-adds of single lanes. A step of the shape model on a lattice needs at least 320 of them for
+/// each box: 155 to gather, scatter, damp and move, 165 for one pass of the rotation.
 pub fn multiply_adds(rounds: u64) -> u64 {
     Set::best().run(Chains { rounds })
 }

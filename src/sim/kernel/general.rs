@@ -1,13 +1,13 @@
-//! Eq. (4) in lanes, for any elements in space and in the plane, and Eq. (1) for springs in no order.
+//! Eq. (4) in lanes, for any elements in space and in the plane, and Eq. (1) for springs that form no families.
 //!
-//! Lanes are elements with the same number of corners, in blocks of eight whatever the width. With `w = k P + D V` the
-//! force of an element on a corner is `−w + w̄ + k M R0`: elements sum up the last two terms, and the first one is the
-//! node's own, as often as it has elements. As `Σ R0 = 0` the moments need no centroid.
+//! Lanes are elements with the same number of corners, in blocks of eight for every vector width. With `w = k P + D V`
+//! the force of an element on a corner is `−w + w̄ + k M R0`. Elements add up the last two terms; the first one is
+//! computed once for each node, times the number of its elements. As `Σ R0 = 0` the moments need no centroid.
 //!
-//! Elements are sorted along a curve that fills space and cut in parts, always the same for a body. A part has records of
-//! its own of all its nodes and sums of its own; nodes that it has for itself move as soon as its elements are done, those
-//! that it shares move after all parts, by the sums of all, in the order of the parts. A sum runs block by block, corner
-//! by corner, lane by lane: it is the same for every width and number of threads.
+//! Elements are sorted along a space-filling curve and divided into parts, which depend on the body only. A part has
+//! its own records and sums of all its nodes. Nodes of one part are moved as soon as its elements are done; nodes
+//! shared by several parts are moved after all parts, by the sums of all, in the order of the parts. Sums run block by
+//! block, corner by corner, lane by lane, so they are the same for every width and number of threads.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 
@@ -28,10 +28,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 const RECORD: usize = 8;
 const INVERSE_MASS: usize = 6;
 const VALENCE: usize = 7;
-/// Doubles in the sum of a node: the force in x, y, z, and nothing.
+/// Doubles in the sum of a node: the force in x, y, z, and padding.
 const SUM: usize = 4;
 
-/// What an element does.
+/// What the elements compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law {
     /// Eq. (4) in the plane, with the rotation of Eq. (9).
@@ -55,14 +55,14 @@ pub(in crate::sim) struct Constants {
     pub(in crate::sim) step: f64,
 }
 
-/// A body of any elements at work.
+/// The elements or springs of a body, in parts.
 pub(in crate::sim) struct General {
     set: Set,
     law: Law,
     constants: Constants,
     parts: Vec<Part>,
     shared: Shared,
-    /// Where the first record of each node is.
+    /// The first record of each node.
     places: Vec<Place>,
 }
 
@@ -73,15 +73,15 @@ struct Place {
     record: u32,
 }
 
-/// Elements that one thread works on.
+/// The elements of one task.
 struct Part {
-    /// Whole blocks of nodes that the part has for itself.
+    /// Number of nodes of this part only, in whole blocks.
     own: usize,
-    /// The index in the body of each record; of those that stand for nothing, 0.
+    /// The index in the body of each record; 0 for padding.
     index: Vec<u32>,
     records: Aligned,
     sums: Aligned,
-    /// Of the nodes that the part has for itself, block by block, coordinate by coordinate.
+    /// Of the nodes of this part only, block by block, coordinate by coordinate.
     accelerations: Aligned,
     kept: [Aligned; 2],
     classes: Vec<Class>,
@@ -103,11 +103,11 @@ struct Class {
     kept: Aligned,
 }
 
-/// Nodes that several parts have.
+/// The nodes that belong to several parts.
 struct Shared {
-    /// The index in the body of each, in whole blocks; of those that stand for nothing, 0.
+    /// The index in the body of each, in whole blocks; 0 for padding.
     index: Vec<u32>,
-    /// Where the places of each begin.
+    /// The start of the places of each node.
     starts: Vec<u32>,
     places: Vec<Place>,
     accelerations: Aligned,
@@ -115,7 +115,7 @@ struct Shared {
 }
 
 impl General {
-    /// The elements of a body at work by Eq. (4). In the plane there is no choice of rotations.
+    /// The elements of a body, with Eq. (4). In the plane `rotation` is not used.
     pub(in crate::sim) fn new(body: &Body, rotation: Rotation, constants: Constants, set: Set) -> Self {
         let law = match body.dimension {
             Dimension::Plane => Law::Plane,
@@ -124,7 +124,7 @@ impl General {
         Self::with(&body.elements, &body.rest, &body.mass, law, constants, set)
     }
 
-    /// Springs at work.
+    /// Springs, with Eq. (1).
     pub(in crate::sim) fn springs(body: &Body, springs: &[[u32; 2]], constants: Constants, set: Set) -> Self {
         let pairs: IndexLists = springs.iter().map(|ends| &ends[..]).collect();
         Self::with(&pairs, &body.rest, &body.mass, Law::Spring, constants, set)
@@ -132,7 +132,7 @@ impl General {
 
     fn with(elements: &IndexLists, rest: &[DVec3], mass: &[f64], law: Law, constants: Constants, set: Set) -> Self {
         let parts = cut(elements, along_curve(elements, rest));
-        // The parts that have each node, as far as one and many are concerned.
+        // The first part of each node, and whether it has several.
         let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
         let mut valence = vec![0u32; rest.len()];
         for (part, own) in (0..).zip(&parts) {
@@ -148,7 +148,7 @@ impl General {
         let mut made = Vec::with_capacity(parts.len());
         let mut record = vec![NONE; rest.len()];
         for (part, own) in (0u32..).zip(&parts) {
-            // Nodes in the order in which elements need them.
+            // Nodes in the order in which the elements use them.
             let (mut index, mut of_others) = (Vec::new(), Vec::new());
             for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
                 let seen = &mut record[node as usize];
@@ -182,7 +182,7 @@ impl General {
                 record[INVERSE_MASS] = 1.0 / mass[node as usize];
                 record[VALENCE] = f64::from(valence[node as usize]);
             }
-            // Lanes without an element find their corners here.
+            // Lanes without an element use this record.
             let nothing = index.len() as u32;
             let mut counts: Vec<usize> = own.iter().map(|&element| elements[element as usize].len()).collect();
             counts.sort_unstable();
@@ -228,7 +228,7 @@ impl General {
 }
 
 impl Law {
-    /// Doubles that each element remembers.
+    /// Doubles in the memory of each element.
     fn memory(self) -> usize {
         match self {
             Self::Plane => 2,
@@ -248,7 +248,7 @@ impl Law {
 }
 
 impl Shared {
-    /// All places of a node, if it has several.
+    /// All places of a node, if it belongs to several parts.
     fn of(&self, node: usize) -> Option<&[Place]> {
         let count = self.starts.partition_point(|&start| (start as usize) < self.places.len());
         let at = self.index[..count].binary_search(&(node as u32)).ok()?;
@@ -256,7 +256,7 @@ impl Shared {
     }
 }
 
-/// The elements in the order of their middles at rest on Morton's curve, which goes from octant to octant.
+/// The elements in the order of their centres at rest on the Morton curve.
 fn along_curve(elements: &IndexLists, rest: &[DVec3]) -> Vec<u32> {
     let (low, high) = bounds(rest);
     let cells = f64::from(1u32 << 20) / (high - low).max_element().max(f64::MIN_POSITIVE);
@@ -271,9 +271,9 @@ fn along_curve(elements: &IndexLists, rest: &[DVec3]) -> Vec<u32> {
     keyed.into_iter().map(|(_, element)| element).collect()
 }
 
-/// Cuts elements into parts of about the same work.
+/// Divides elements into parts of about equal work.
 fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
-    /// Corners in a part: their nodes stay in the second cache.
+    /// Corners in a part: the data of their nodes stay in the second-level cache.
     const CORNERS: usize = 32768;
     let all = elements.indices().len();
     let parts = all.div_ceil(CORNERS).max(1);
@@ -324,7 +324,7 @@ impl Class {
             scale.as_mut_slice()[at] = if squares > 0.0 { 1.0 / squares } else { 1.0 };
         }
         for lane in 0..blocks * MOST {
-            // No rotation: the real part of a quaternion comes last, the cosine first.
+            // The identity: the real part of a quaternion is last, the cosine first.
             let entry = if memory == 4 { 3 } else { 0 };
             if memory > 0 {
                 turns.as_mut_slice()[(lane / MOST * memory + entry) * MOST + lane % MOST] = 1.0;
@@ -336,7 +336,8 @@ impl Class {
 }
 
 impl General {
-    /// Evaluates the forces once, unless they are known, and moves all nodes. The first that becomes too fast.
+    /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
+    /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
         let (body, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
@@ -360,7 +361,7 @@ impl General {
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// The first of two nodes: one, and that of the lanes of which bits are set.
+/// The lower of two nodes: `one`, and the first of the lanes whose bits are set.
 #[inline(always)]
 pub(super) fn first_of(one: u32, lanes: u32, index: impl Fn(usize) -> u32) -> u32 {
     if lanes == 0 { one } else { (0..MOST).filter(|lane| lanes >> lane & 1 == 1).map(index).fold(one, u32::min) }
@@ -446,7 +447,7 @@ impl Stepper for General {
     }
 }
 
-/// The elements of a part, and the motion of the nodes that it has for itself.
+/// The elements of a part, and the motion of the nodes of this part only.
 struct OnePart<'a> {
     body: &'a General,
     part: usize,
@@ -498,10 +499,10 @@ impl Work for OnePart<'_> {
     }
 }
 
-/// The columns of sums, which become zero.
+/// The columns of sums, which are then set to zero.
 ///
 /// # Safety
-/// The rows are this thread's alone.
+/// The rows belong to this thread alone.
 #[inline(always)]
 unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
     // SAFETY: the caller's.
@@ -522,10 +523,10 @@ struct Own<'a, L> {
 }
 
 impl<L: Lanes> Own<'_, L> {
-    /// Moves a vector of nodes by the forces of their elements, to which their own is added.
+    /// Moves a vector of nodes by the forces of their elements, to which `−w` of the nodes is added.
     ///
     /// # Safety
-    /// Records and accelerations are this thread's alone.
+    /// Records and accelerations belong to this thread alone.
     #[inline(always)]
     unsafe fn advance(&self, record: impl Fn(usize) -> *mut f64, sum: [L; 3], accelerations: *mut f64) -> u32 {
         // SAFETY: the caller's.
@@ -552,7 +553,7 @@ impl<L: Lanes> Own<'_, L> {
     }
 }
 
-/// The motion of nodes that several parts have.
+/// The motion of the nodes that belong to several parts.
 struct SharedNodes<'a> {
     body: &'a General,
     blocks: Range<usize>,
@@ -576,7 +577,7 @@ impl Work for SharedNodes<'_> {
             };
             let mut records = [[0.0; RECORD]; MOST];
             let mut sums = [[0.0; SUM]; MOST];
-            // SAFETY: all parts are done, and these nodes are this thread's, wherever their records are.
+            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are.
             unsafe {
                 let record = |place: &Place| {
                     parts[place.part as usize]
@@ -619,15 +620,15 @@ struct Elements<'a> {
     commit: bool,
 }
 
-/// Blocks of which first all moments are summed up, then all rotations found, then all forces summed up: the processor
-/// finds the rotations of several blocks at the same time, each a long chain.
+/// Blocks in a batch, for which first all moments are computed, then all rotations, then all forces. A rotation is a
+/// long chain of dependent operations; the processor overlaps those of several blocks.
 const BATCH: usize = 4;
 
-/// Where the sum of a node begins, by where its record does: sums are half as long, and so are these numbers half as
-/// long as doubles. That saves the processor a shift for each corner.
+/// The sum of a node, from the start of its record. Sums are half as long as records, and an `f32` is half as long as a
+/// double, so the offset of the record can be used directly. That saves a shift for each corner.
 ///
 /// # Safety
-/// There is such a sum.
+/// The record has such a sum.
 #[inline(always)]
 unsafe fn sum_of(sums: *mut f64, record: u32) -> *mut f64 {
     const { assert!(2 * SUM == RECORD) };
@@ -635,7 +636,7 @@ unsafe fn sum_of(sums: *mut f64, record: u32) -> *mut f64 {
     unsafe { sums.cast::<f32>().add(record as usize).cast() }
 }
 
-/// What the elements of a block do to all their corners: `w̄` and `k M`, lane by lane.
+/// What the elements of a block add to all their corners: `w̄` and `k M`, lane by lane.
 #[repr(C, align(64))]
 struct Block([[f64; MOST]; 12]);
 
@@ -671,7 +672,8 @@ impl Elements<'_> {
                             if corner == 0 {
                                 first = [px, py, pz];
                             }
-                            // Relative to the first corner: of an element at a point nothing remains.
+                            // Relative to the first corner, so that an element with all corners at one point gives
+                            // exactly zero.
                             let p = [px - first[0], py - first[1], pz - first[2]];
                             for axis in 0..3 {
                                 position[axis] = position[axis] + p[axis];
@@ -692,7 +694,7 @@ impl Elements<'_> {
                         }
                     }
                 }
-                // Two vectors at a time; an odd last block goes with itself.
+                // Two vectors at a time; an odd last block is paired with itself.
                 for first in (0..batch.len()).step_by(2) {
                     let two = [first, (first + 1).min(batch.len() - 1)];
                     let blocks = [begin + two[0], begin + two[1]];
@@ -721,7 +723,7 @@ impl Elements<'_> {
                 for (block, out) in (begin..).zip(&*batch) {
                     let nodes = class.nodes.as_ptr().add(block * corners * MOST);
                     let rest = class.rest.pointer().add(block * corners * 3 * MOST);
-                    // What the next batch reads: of a large body more than stays in the second cache.
+                    // Prefetches the data of the next batch, which for a large body are not in the second-level cache.
                     let turns = class.turns.pointer().wrapping_add((block + BATCH) * 4 * MOST);
                     each!(4, entry => L::expect(turns.wrapping_add(entry * MOST)));
                     let expect_corner = |corner: usize| {
@@ -797,7 +799,7 @@ impl Elements<'_> {
                         turn[0] = y.mul_add(py, x.mul_add(px, turn[0]));
                         turn[1] = y.neg_mul_add(px, x.mul_add(py, turn[1]));
                     }
-                    // Where no angle is better than another, the last one is kept.
+                    // Where all angles are equally good, the last one is kept.
                     let last = each!(2, entry => L::load(turns.add(entry * MOST + lanes)));
                     let inverse = one.div(turn[1].mul_add(turn[1], turn[0] * turn[0]).sqrt());
                     let is_sound = L::both(zero.lt(inverse), inverse.le(most));
@@ -856,7 +858,7 @@ impl Elements<'_> {
                     } else {
                         -tension
                     };
-                    // Coincident nodes have no direction.
+                    // A spring between coincident nodes has no direction.
                     let pull = along.mul_add(inverse, k).select(zero.lt(squared), zero);
                     let p = [px, py, pz];
                     each!(3, axis => (pull * p[axis]).store(out.0[axis].as_mut_ptr().add(lanes)));

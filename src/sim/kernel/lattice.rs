@@ -1,18 +1,18 @@
 //! One fused step of the shape model on a lattice of equal boxes.
 //!
-//! Gather, moments, rotations, forces, motion and contact are one pass over the planes of nodes, in place. What makes it
-//! fast, with `R0` the corners of a box at rest, `Σ R0 = 0`:
+//! Gather, moments, rotations, forces, motion and contact are one pass over the planes of nodes, in place. It is fast
+//! for these reasons, with `R0` the corners of a box at rest, `Σ R0 = 0`:
 //!
 //! - `A = Σ r R0ᵀ` needs no centre: its columns are the sums of the four edges along each axis, times half the side.
 //! - With `w = k P + D V` and `w̄` its mean over a box, Eq. (4) is `−w + w̄ + k M R0`. The sum of `−w` over the boxes of a
 //!   node is a product; `w̄ + k M R0` is `w̄ ± u ± v ± t` with one vector for each axis.
-//! - Both are sums over two nodes or boxes along z, then along x, then along y, and the same backwards.
+//! - Both are separable: sums over two nodes or boxes along z, then along x, then along y; for forces in reverse order.
 //!
-//! Nodes of a plane are numbered x fastest, and lanes are nodes of successive numbers. So are boxes, by their lowest node;
-//! the last node of a row counts as a box of no stiffness. Rows then need no padding.
+//! Nodes of a plane are numbered x fastest, and lanes are consecutive nodes. Boxes have the number of their lowest
+//! node; the last node of a row counts as a box without stiffness, so rows need no padding.
 //!
-//! Each node sums its boxes as `(those below) + (those above)` along z, so planes may be dealt to threads: where two meet,
-//! each writes its own term.
+//! Each node adds up its boxes as `(those below) + (those above)` along z, so threads can share the planes: where the
+//! planes of two threads meet, each computes its own term.
 
 #![expect(unsafe_code, reason = "the innermost loops read and write lanes without bounds checks")]
 
@@ -30,14 +30,14 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// What a step computes.
+/// The constants of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::sim) struct Parameters {
     /// Elastic constant `k_e` of each element (N/m).
     pub(in crate::sim) stiffness: f64,
-    /// Damping constant `D_e` of each element (N s/m), of the motion relative to the element's mean.
+    /// Damping constant `D_e` of each element (N s/m), for the velocity relative to the element's mean.
     pub(in crate::sim) damping: f64,
-    /// How rotations are found.
+    /// How rotations are computed.
     pub(in crate::sim) rotation: Rotation,
     /// Acceleration of gravity (m/s²).
     pub(in crate::sim) gravity: DVec3,
@@ -45,7 +45,7 @@ pub(in crate::sim) struct Parameters {
     pub(in crate::sim) step: f64,
 }
 
-/// Which body a lattice of equal boxes is.
+/// The dimensions of a lattice of equal boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Grid {
     /// Boxes along x, y and z.
@@ -55,9 +55,9 @@ struct Grid {
 }
 
 impl Grid {
-    /// `None` where the body is something else.
+    /// `None` for any other body.
     fn of(body: &Body) -> Option<Self> {
-        /// Of the sides.
+        /// Relative to the sides.
         const EQUAL: f64 = 1e-12;
         let first = body.elements.iter().next().filter(|nodes| nodes.len() == 8)?;
         let (row, layer) = (first[2] as usize, first[4] as usize);
@@ -93,7 +93,7 @@ impl Grid {
         (sides.min_element() > 0.0 && body.elements.iter().enumerate().all(is_equal)).then_some(grid)
     }
 
-    /// Where an element is.
+    /// The position of an element in the lattice.
     fn place(&self, element: usize) -> [usize; 3] {
         let [x, y, _] = self.cells;
         [element % x, element / x % y, element / (x * y)]
@@ -109,69 +109,69 @@ impl Grid {
         self.row() * (self.cells[1] + 1)
     }
 
-    /// Boxes in a plane, with the ends of rows but the last.
+    /// Boxes in a plane, including the ends of all rows but the last.
     fn boxes(&self) -> usize {
         self.row() * self.cells[1] - 1
     }
 
-    /// Nodes between one plane and the next: whole vectors, so many that what is read for the last box, a row and two
-    /// vectors ahead of it, is there.
+    /// Nodes from one plane to the next: whole vectors, and enough padding for reads of the last box, which reach one
+    /// row and two vectors ahead.
     fn stride(&self) -> usize {
         (self.box_stride() + self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
-    /// How many successive boxes the ring of rows holds: a chunk, and more than a row.
+    /// Number of boxes in the ring buffer of rows: a chunk, and more than a row.
     fn ring(&self) -> usize {
         CHUNK + (self.row() + 2 * MOST).next_multiple_of(MOST)
     }
 
-    /// Boxes between one plane and the next.
+    /// Boxes from one plane to the next.
     fn box_stride(&self) -> usize {
         self.boxes().next_multiple_of(MOST)
     }
 }
 
-/// For each node in a plane of them: position, velocity, `1/m`, and with velocity Verlet the acceleration.
+/// The numbers of each node: position, velocity, `1/m`, and with velocity Verlet the acceleration.
 const VELOCITY: usize = 3;
 const INVERSE_MASS: usize = 6;
 const ACCELERATION: usize = 7;
 
-/// Boxes that are gathered, then rotated, then stepped: so many that a processor finds independent work in each of these
-/// loops, so few that what they hand over stays in its nearest cache. A multiple of [`MOST`].
+/// Boxes in a chunk, which are gathered, then rotated, then used for forces: enough for independent work in each of
+/// these loops, and few enough that the data between them stay in the first-level cache. A multiple of [`MOST`].
 const CHUNK: usize = 64;
 
-/// Where the first of so many numbers of a node or box stands: those of [`MOST`] neighbours are together, and the next
-/// number follows them. So all numbers of a vector are a fixed way apart, and a processor foresees what will be read.
+/// The index of the first number of a node or box that has `parts` numbers. A number is stored for [`MOST`] neighbours,
+/// then the next number for them. So the numbers of a vector have fixed distances, which suits prefetching.
 #[inline(always)]
 fn slot(at: usize, parts: usize) -> usize {
     at / MOST * MOST * parts + at % MOST
 }
 
-/// Where `w̄` and the rotation stand in a [`Chunk`].
+/// The positions of `w̄` and of the rotation in a [`Chunk`].
 const MEAN: usize = 9;
 const TURN: usize = 12;
 
-/// A lattice of equal boxes at work.
+/// The steps of a lattice of equal boxes.
 pub(in crate::sim) struct Lattice {
     set: Set,
     grid: Grid,
     parameters: Parameters,
-    /// How many numbers a node has.
+    /// Count of numbers for each node.
     parts: usize,
-    /// Plane after plane, [`MOST`] nodes after the other: each of their numbers; see [`slot`].
+    /// The numbers of the nodes, plane after plane; see [`slot`].
     nodes: Aligned,
-    /// Plane after plane, [`MOST`] boxes after the other: x, y, z and w of their rotations.
+    /// The rotations of the boxes (x, y, z, w), plane after plane; see [`slot`].
     turns: Aligned,
     /// Copies of `nodes` and `turns`.
     kept: [Aligned; 2],
     pattern: Pattern,
-    /// The memory of one thread after the other; see [`Slab`].
+    /// The buffers of all threads; see [`Slab`].
     slabs: Aligned,
-    /// How far each thread is.
+    /// The progress of each thread.
     signals: Box<[Signal]>,
 }
 
-/// What all planes have in common.
+/// Data that are the same for all planes.
 struct Pattern {
     /// 1 for a box, 0 for the end of a row.
     live: Aligned,
@@ -179,23 +179,23 @@ struct Pattern {
     valence: Aligned,
 }
 
-/// Where the memory of one thread lies, which steps successive planes of boxes and the nodes below them.
+/// Offsets in the buffers of a thread, which steps consecutive planes of boxes and the nodes below them.
 ///
-/// The plane of nodes between the boxes of two threads belongs to the upper one. Each writes what its boxes pull there;
-/// when both have, the upper one steps these nodes.
+/// The plane of nodes between the boxes of two threads belongs to the upper thread. Each thread writes the forces of
+/// its boxes there; when both have, the upper thread steps these nodes.
 #[derive(Clone, Copy)]
 struct Slab {
-    /// A ring of boxes: `w̄ + v`, `u` and `t`.
+    /// A ring buffer of boxes: `w̄ + v`, `u` and `t`.
     rows: usize,
-    /// A ring of squares of nodes along x and z; see [`Sweep::squares`].
+    /// A ring buffer of squares of nodes along x and z; see [`Sweep::squares`].
     squares: usize,
-    /// What the boxes below pull at the nodes of a plane (N).
+    /// The forces of the boxes below a plane on its nodes (N).
     below: usize,
-    /// What the lowest boxes pull at the nodes below them (N).
+    /// The forces of the lowest boxes on the nodes below them (N).
     lowest: usize,
-    /// What the highest boxes pull at the nodes above them (N).
+    /// The forces of the highest boxes on the nodes above them (N).
     highest: usize,
-    /// Where the memory of the next thread begins.
+    /// The start of the buffers of the next thread.
     end: usize,
 }
 
@@ -205,31 +205,31 @@ impl Slab {
         let squares = 9 * (grid.ring() + MOST);
         let below = squares + 12 * (grid.ring() + MOST);
         let (lowest, highest) = (below + plane, below + 2 * plane);
-        // Threads share no line of the cache, nor two that a processor fetches together.
+        // Threads share no cache line, and no pair of lines that a processor fetches together.
         Self { rows: 0, squares, below, lowest, highest, end: highest + plane + 2 * MOST }
     }
 }
 
-/// Of a chunk of boxes what one loop hands to the next: nine numbers of a rotation on its way, `w̄`, and the new rotation.
-/// At the start of a cache line.
+/// The data of a chunk of boxes between loops: nine numbers of intermediate results, `w̄`, and the new rotation.
+/// Aligned to cache lines.
 ///
-/// On the stack: a function with a variable so aligned also aligns the vectors for which it lacks registers. Else each of
-/// them lies across two lines.
+/// It is on the stack because a function with such an aligned variable also aligns the vectors that it spills to the
+/// stack. Otherwise each of them would cross two lines.
 #[repr(C, align(64))]
 struct Chunk([f64; 16 * CHUNK]);
 
-/// How far a thread is. In a line of the cache of its own.
+/// The progress of a thread, in its own cache line.
 #[derive(Default)]
 #[repr(align(128))]
 struct Signal {
-    /// Steps in which its boxes have been gathered and have pulled.
+    /// Passes in which its boxes have been read and their forces written.
     pulled: AtomicU64,
-    /// Steps that the nodes have taken that it shares with the thread below.
+    /// Passes in which the nodes that it shares with the thread below have been moved.
     shared: AtomicU64,
 }
 
 impl Lattice {
-    /// `None` if the body is no full lattice of equal boxes, numbered x fastest.
+    /// `None` if the body is not a full lattice of equal boxes, numbered x fastest.
     pub(in crate::sim) fn new(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Option<Self> {
         let grid = Grid::of(body)?;
         let (stride, row) = (grid.stride(), grid.row());
@@ -253,7 +253,7 @@ impl Lattice {
         Some(Self { set, grid, parameters, parts, nodes, turns, kept, pattern, slabs, signals })
     }
 
-    /// Where the first number of a node stands in `nodes`.
+    /// The index in `nodes` of the first number of a node.
     fn index(&self, node: usize) -> usize {
         slot(node / self.grid.layer() * self.grid.stride() + node % self.grid.layer(), self.parts)
     }
@@ -269,7 +269,7 @@ impl Stepper for Lattice {
         for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
             self.set_node(node, position, velocity);
         }
-        // The ends of rows have a rotation, too, of which nothing comes.
+        // The ends of rows have a rotation, too, which has no effect.
         for (at, turn) in self.turns.as_mut_slice().iter_mut().enumerate() {
             *turn = if at / MOST % 4 == 3 { 1.0 } else { 0.0 };
         }
@@ -323,7 +323,7 @@ impl Stepper for Lattice {
         self.turns.copy_from(turns);
     }
 
-    /// By so many threads of the crew as there are planes of boxes along z.
+    /// Uses at most as many threads of the crew as there are planes of boxes along z.
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
         let Self { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, kept: _ } = self;
         if some.is_empty() {
@@ -357,7 +357,7 @@ impl Stepper for Lattice {
             damping,
             ratio,
             is_cube: ratio == [1.0; 3],
-            // The columns of A at rest are 2 side², and half a side is left out of them.
+            // The columns of `A` at rest have length 2 side²; the factor side / 2 is left out.
             scale: 1.0 / (4.0 * side),
             half: 0.5 * side * stiffness,
             gravity,
@@ -376,10 +376,10 @@ impl Stepper for Lattice {
             if member >= members {
                 return;
             }
-            // Others wait for this thread; if it panics they must not.
+            // Other threads wait for this one; the guard ends their wait if it panics.
             let _guard = StopOnPanic(&stop);
             let mut found = None;
-            // SAFETY: each member has its own memory.
+            // SAFETY: each thread has its own buffers.
             let slabs = unsafe { sweep.slabs().add(member * sweep.slab.end) };
             let sweep = Sweep { member, slabs, ..sweep };
             macro_rules! run {
@@ -420,16 +420,17 @@ impl Drop for StopOnPanic<'_> {
     }
 }
 
-/// Everything a sweep reads and writes. See the fields of the same name.
+/// Everything that a sweep reads and writes. See the fields of the same name.
 ///
-/// A sweep works on a copy of its own, whose address nobody knows: else every store might change it.
+/// A sweep works on its own copy, whose address does not escape: otherwise the compiler would have to assume that every
+/// store can change it.
 #[derive(Clone, Copy)]
 struct Sweep<'a> {
     nodes: *mut f64,
     turns: *mut f64,
     live: *const f64,
     valence: *const f64,
-    /// The memory of this thread.
+    /// The buffers of this thread.
     slabs: *mut f64,
     slab: Slab,
     /// A [`Chunk`].
@@ -440,10 +441,10 @@ struct Sweep<'a> {
     ring: usize,
     stiffness: f64,
     damping: f64,
-    /// The sides over their mean.
+    /// The sides divided by their mean.
     ratio: [f64; 3],
     is_cube: bool,
-    /// What makes sums of edges about 1.
+    /// Scales sums of edges to about 1.
     scale: f64,
     /// Half the mean side, times the stiffness (N).
     half: f64,
@@ -452,20 +453,20 @@ struct Sweep<'a> {
     parts: usize,
     around: &'a Around<'a>,
     passes: Passes,
-    /// Which of them are carried out: from one to before another.
+    /// The passes to be executed: from the first number up to, not including, the second.
     some: [u64; 2],
-    /// Which of the threads this is.
+    /// The number of this thread.
     member: usize,
     members: usize,
     signals: &'a [Signal],
-    /// Set when there is no point in going on.
+    /// Set when a thread has panicked or found a node that is too fast.
     stop: &'a AtomicBool,
 }
 
-// SAFETY: threads write to planes of their own, and read those of others only when told that they may: see `Signal`.
+// SAFETY: threads write to their own planes, and read those of others only when `Signal` allows it.
 unsafe impl Sync for Sweep<'_> {}
 
-/// A sweep with a solver, damped or not.
+/// A sweep with a solver, with or without damping.
 struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<Lost>);
 
 impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
@@ -476,7 +477,7 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
         let mut chunk = MaybeUninit::<Chunk>::uninit();
         let sweep = Sweep { work: chunk.as_mut_ptr().cast(), ..sweep };
         if sweep.passes.scheme == Scheme::SemiImplicitEuler {
-            // Again with a stage that the compiler knows.
+            // Compiled separately with a constant scheme.
             let passes = Passes { scheme: Scheme::SemiImplicitEuler, ..sweep.passes };
             Sweep { passes, ..sweep }.passes::<L, S, DAMPED>(solver, found);
         } else {
@@ -486,14 +487,15 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
 }
 
 impl Sweep<'_> {
-    /// All passes that are asked for.
+    /// Executes all passes of `some`.
     #[inline(always)]
     fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Lost>) {
         let [first, end] = self.some;
         for pass in 0..end - first {
             let Pass { stage, number, commit } = self.passes.get(first + pass);
             let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
-            // SAFETY: the arrays are those of a lattice, all of this grid, and borrowed by nobody but the other threads.
+            // SAFETY: the arrays belong to a lattice, all to this grid, and are accessed by no one but the other
+            // threads.
             let bad = unsafe {
                 if stage == Stage::Coast {
                     self.coast::<L>(pass, &motion)
@@ -516,29 +518,29 @@ impl Sweep<'_> {
         self.slabs
     }
 
-    /// The first number of a vector of nodes; the others follow [`MOST`] apart.
+    /// A pointer to the first number of a vector of nodes; the others follow at distances of [`MOST`].
     #[inline(always)]
     unsafe fn nodes(&self, plane: usize, at: usize) -> *mut f64 {
-        // SAFETY: the caller's, who names a plane and less than a stride.
+        // SAFETY: the caller passes an existing plane and less than a stride.
         unsafe { self.nodes.add(slot(plane * self.stride + at, self.parts)) }
     }
 
-    /// Where a part of a ring stands, by its place in it and how many parts there are, and how far apart parts are, and
-    /// vectors that follow each other. Where a vector is a cache line all parts stand together, at fixed distances; where it is
-    /// less, each part for itself, so that what follows a vector's first lane is one behind the other.
+    /// The index of a place in a ring buffer with so many parts, and the distance between parts. Where a vector is a
+    /// cache line, all parts of a vector are together, at fixed distances; with narrower vectors each part has an array
+    /// of its own, so that consecutive lanes are adjacent.
     #[inline(always)]
     fn ring_place<L: Lanes>(&self, place: usize, parts: usize) -> (usize, usize) {
         if L::WIDTH == MOST { (place * parts, MOST) } else { (place, self.ring + MOST) }
     }
 
-    /// Moves the nodes of this thread without any force, in a pass of this number.
+    /// Moves the nodes of this thread without evaluating forces, in a pass of this number.
     #[inline(always)]
     unsafe fn coast<L: Lanes>(&self, pass: u64, motion: &Motion<'_, L>) -> Option<usize> {
         let planes = self.grid.cells[2];
         let first = planes * self.member / self.members;
         let end = planes * (self.member + 1) / self.members + usize::from(self.member + 1 == self.members);
         for plane in first..end {
-            // SAFETY: planes from `first` on are this thread's, which are moved before the others may read them.
+            // SAFETY: planes from `first` on belong to this thread and are moved before the others may read them.
             let bad = unsafe { self.nodes_between::<L, false>(plane, motion, |_| (L::splat(0.0), L::splat(0.0))) };
             if bad.is_some() {
                 return bad;
@@ -549,7 +551,7 @@ impl Sweep<'_> {
         None
     }
 
-    /// Evaluates the forces at the planes of this thread and moves their nodes, in a pass of this number.
+    /// Evaluates the forces on the planes of this thread and moves their nodes, in a pass of this number.
     #[inline(always)]
     unsafe fn pass<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
@@ -562,8 +564,9 @@ impl Sweep<'_> {
         let first = planes * self.member / self.members;
         let end = planes * (self.member + 1) / self.members;
         let is_last = self.member + 1 == self.members;
-        // SAFETY: planes from `first` on are this thread's; the one at `end`, if it is another's, is read when that has
-        // stepped it and written by it when this thread has read it. So with what both pull there.
+        // SAFETY: planes from `first` on belong to this thread. The one at `end`, if it belongs to another, is read
+        // after the other has moved it and moved by the other after it was read. The same holds for the forces of both
+        // there.
         unsafe {
             let memory = |part: usize| self.slabs.add(part);
             if self.member == 0 {
@@ -606,14 +609,14 @@ impl Sweep<'_> {
         None
     }
 
-    /// Waits for another thread; false if that is in vain.
+    /// Waits for another thread; false if the sweep is to stop.
     #[inline(never)]
     fn wait(&self, is_so: impl Fn() -> bool) -> bool {
         wait_until(|| is_so() || self.stop.load(Ordering::Relaxed));
         is_so()
     }
 
-    /// Makes the boxes below the first plane pull at nothing.
+    /// Sets the forces of the boxes below the first plane to zero.
     #[inline(always)]
     unsafe fn clear<L: Lanes>(&self, below: *mut f64) {
         for at in (0..3 * self.stride).step_by(L::WIDTH) {
@@ -622,8 +625,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lets the boxes above a plane of nodes pull at it and at the next plane, and steps its nodes. What they pull at the
-    /// next plane goes to `above`. Where the plane `is_shared`, its nodes are not yet stepped.
+    /// Evaluates the boxes above a plane of nodes, and steps its nodes. Their forces on the next plane are written to
+    /// `above`. If the plane `is_shared`, its nodes are not stepped yet.
     #[inline(always)]
     unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
@@ -637,12 +640,12 @@ impl Sweep<'_> {
         let zero = L::splat(0.0);
         let layer = self.grid.layer();
         let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
-        // The place in the ring of rows, and how far the ring of squares is filled.
+        // The place in the ring buffer of rows, and how far the ring buffer of squares is filled.
         let mut own = 0;
         let mut filled = (0, 0);
-        // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where they are asked for. A
-        // chunk of `work` holds what is written to it. The ring holds more than a row in whole vectors; there is none before
-        // the first.
+        // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where boxes are read. A
+        // chunk of `work` has room for what is written. The ring buffer has more than a row in whole vectors; the row
+        // before the first is zero.
         unsafe {
             let (below, lowest) = (self.slabs.add(self.slab.below), self.slabs.add(self.slab.lowest));
             let row = self.grid.row().next_multiple_of(MOST);
@@ -685,7 +688,7 @@ impl Sweep<'_> {
         None
     }
 
-    /// Steps the nodes of a plane at which the boxes on both sides have pulled (N).
+    /// Steps the nodes of a plane between boxes on both sides, whose forces (N) are known.
     #[inline(always)]
     unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
         &self,
@@ -703,18 +706,18 @@ impl Sweep<'_> {
         unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], motion, force) }
     }
 
-    /// The place in a ring that lies so far behind another.
+    /// The place in a ring buffer that is `way` after another.
     #[inline(always)]
     fn next(&self, place: usize, way: usize) -> usize {
         let next = place + way;
         if next >= self.ring { next - self.ring } else { next }
     }
 
-    /// Writes a number of each part to a ring; what lies across its end is there twice.
+    /// Writes one number of each part to a ring buffer; what is within a vector of its start is repeated after its end.
     #[inline(always)]
     unsafe fn put<L: Lanes, const PARTS: usize>(&self, ring: *mut f64, place: usize, values: &[[L; 3]; PARTS]) {
         let (first, part) = self.ring_place::<L>(place, 3 * PARTS);
-        // SAFETY: a ring has a vector more for each part, and places are multiples of a width.
+        // SAFETY: a ring buffer has an additional vector for each part, and places are multiples of a width.
         unsafe {
             let to = ring.add(first);
             for group in 0..PARTS {
@@ -730,10 +733,12 @@ impl Sweep<'_> {
         }
     }
 
-    /// The rotations of a chunk of boxes, and their `w̄`. `own` is the place of the first in the ring; that of squares is
-    /// `filled` up to a box, and from then on at a place, which are returned for the next chunk.
+    /// Computes the rotations of a chunk of boxes, and their `w̄`. `own` is the place of the first box in the ring
+    /// buffers. The squares have been written up to box `filled`; the next ones go to `place`. Both are returned for
+    /// the next chunk.
     ///
-    /// In several loops: a rotation is a long chain of operations, and in a short loop a processor works on several at once.
+    /// In several short loops: a rotation is a long chain of dependent operations, and a processor overlaps several of
+    /// them in a short loop.
     #[inline(always)]
     unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
@@ -746,9 +751,10 @@ impl Sweep<'_> {
     ) -> (usize, usize) {
         let passes = solver.passes();
         let scale = L::splat(self.scale);
-        // For each vector the lanes of which more is to be found, those where a pass was sound, and where it was the last.
+        // For each vector the lanes that are not finished, those where the pass was valid, and those where it was the
+        // last.
         let mut lanes = [[0u8; 3]; CHUNK];
-        // SAFETY: `live` and the turns hold all boxes of a plane in whole vectors, and a chunk of `work` what is written.
+        // SAFETY: `live` and the rotations have all boxes of a plane in whole vectors, and `work` those of a chunk.
         unsafe {
             if first < end {
                 let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
@@ -806,11 +812,11 @@ impl Sweep<'_> {
         (filled, place)
     }
 
-    /// Asks for the rotations of boxes, and for the nodes that their squares need. They come from a farther cache, and short
-    /// loops leave the processor no time to foresee them.
+    /// Prefetches the rotations of boxes, and the nodes of their squares. They are in a higher-level cache, and in
+    /// short loops the hardware does not prefetch them in time.
     #[inline(always)]
     fn expect<L: Lanes>(&self, plane: usize, at: usize) {
-        // Vectors of less than a cache line share them.
+        // Narrower vectors share a cache line.
         if !at.is_multiple_of(MOST) {
             return;
         }
@@ -823,10 +829,10 @@ impl Sweep<'_> {
         let _ = each!(8, part => if part < INVERSE_MASS { L::expect(high.wrapping_add(part * MOST)) });
     }
 
-    /// The rotations of boxes: those of the last step, or those found since.
+    /// The rotations of boxes: those of the last step, or those of the previous pass.
     #[inline(always)]
     unsafe fn turns<L: Lanes>(&self, plane: usize, at: usize, is_first: bool) -> [L; 4] {
-        // SAFETY: the turns hold all boxes of a plane in whole vectors, and `work` those of a chunk.
+        // SAFETY: the rotations have all boxes of a plane in whole vectors, and `work` those of a chunk.
         unsafe {
             let (from, stride) = if is_first {
                 (self.turns.add(slot(plane * self.box_stride + at, 4)), MOST)
@@ -837,8 +843,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the
-    /// sum of their velocities: from one number on, up to another. Returns the place in the ring after them.
+    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the sum
+    /// of their velocities, in a range of nodes. Returns the place in the ring buffer after them.
     #[inline(always)]
     unsafe fn squares<L: Lanes, const DAMPED: bool>(
         &self,
@@ -847,7 +853,8 @@ impl Sweep<'_> {
         to: usize,
         mut place: usize,
     ) -> usize {
-        // SAFETY: a stride holds all boxes in whole vectors, and a row and two vectors more; of the ring see `put`.
+        // SAFETY: a stride has all boxes in whole vectors, and a row and two vectors more; for the ring buffer see
+        // `put`.
         unsafe {
             macro_rules! upright {
                 ($at:expr) => {{
@@ -885,11 +892,11 @@ impl Sweep<'_> {
         place
     }
 
-    /// The sums of the edges of boxes along each axis: the columns of `A` but for a factor. Writes `w̄`. `own` is the place
-    /// of the squares at their lower ends along y.
+    /// The sums of the edges of boxes along each axis: the columns of `A` except for a factor. Writes `w̄`. `own` is
+    /// the place of the squares at the lower ends along y.
     #[inline(always)]
     unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
-        // SAFETY: the ring holds the squares in whole vectors, and a vector more.
+        // SAFETY: the ring buffer has the squares in whole vectors, and a vector more.
         unsafe {
             let row = self.grid.row();
             let parts = if DAMPED { 12 } else { 9 };
@@ -927,7 +934,7 @@ impl Sweep<'_> {
     /// `u`, `v` and `t` of boxes.
     #[inline(always)]
     unsafe fn shape<L: Lanes>(&self, at: usize) -> [[L; 3]; 3] {
-        // SAFETY: `live` holds all boxes of a plane in whole vectors, and `work` those of a chunk.
+        // SAFETY: `live` has all boxes of a plane in whole vectors, and `work` those of a chunk.
         unsafe {
             let work = self.work.add(at % CHUNK);
             let q = each!(4, part => L::load(work.add((TURN + part) * CHUNK)));
@@ -939,11 +946,11 @@ impl Sweep<'_> {
         }
     }
 
-    /// Adds what the boxes of two rows do to the nodes between: for each axis the sum for the next node along x and for the
-    /// own, and the part that changes its sign along z.
+    /// Adds up the forces of the boxes of two rows on the nodes between: for each axis the sums for the next node along
+    /// x and for the node itself, and the part whose sign changes along z.
     #[inline(always)]
     unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
-        // SAFETY: a chunk of `work` holds boxes in whole vectors; see `put`, and the ring holds whole vectors from any place.
+        // SAFETY: a chunk of `work` has boxes in whole vectors; see `put`. The ring buffer can be read from any place.
         unsafe {
             let work = self.work.add(at % CHUNK);
             let zero = [L::splat(0.0); 3];
@@ -953,7 +960,7 @@ impl Sweep<'_> {
                 ([zero; 3], zero)
             };
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
-            // Of the row before, of which the first lanes may just have been written.
+            // From the previous row, of which the first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
             let (from, part) = self.ring_place::<L>(before / MOST * MOST, 9);
             let from = self.slabs.add(self.slab.rows + from);
@@ -970,8 +977,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Eqs. (2) and (3) for nodes of a plane from one number up to another, on which elements act with a force (N) besides
-    /// `−w`, and then what they meet. The first that becomes too fast, if there is one.
+    /// Eqs. (2) and (3) and contact for a range of nodes of a plane, on which elements act with a force (N) in addition
+    /// to `−w`. Returns the first node that becomes too fast, if any.
     #[inline(always)]
     unsafe fn update<L: Lanes, const DAMPED: bool>(
         &self,
@@ -985,7 +992,7 @@ impl Sweep<'_> {
         let is_verlet = motion.stage().is_verlet();
         let zero = L::splat(0.0);
         let mut near = 0;
-        // SAFETY: a stride holds all nodes of a plane in whole vectors.
+        // SAFETY: a stride has all nodes of a plane in whole vectors.
         unsafe {
             let load = |from: *const f64, part: usize| each!(3, axis => L::load(from.add((part + axis) * MOST)));
             let inverse_mass = |from: *const f64| L::load(from.add(INVERSE_MASS * MOST));
@@ -1051,7 +1058,7 @@ mod tests {
     const STEP: f64 = 1e-3;
     const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.1);
 
-    /// Numbers from −1 to 1 that look random.
+    /// Pseudo-random numbers from −1 to 1.
     fn random(seed: u64) -> impl FnMut() -> f64 {
         let mut state = seed;
         move || {
@@ -1082,7 +1089,7 @@ mod tests {
         Arc::new(Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None))
     }
 
-    /// Turned, stretched, shaken and in flight, close above the floor.
+    /// Rotated, stretched, randomly displaced and moving, close above the floor.
     fn start(body: &Body, shake: f64) -> State {
         let mut random = random(7);
         let turn = DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize();
@@ -1212,7 +1219,8 @@ mod tests {
                 {
                     let parameters = parameters(damping, rotation);
                     for scheme in SCHEMES {
-                        // A rebound in velocity Verlet takes the root of a difference, and so half of the digits.
+                        // A rebound in velocity Verlet takes the square root of a difference, which loses half of the
+                        // digits.
                         let mut state = state.clone();
                         if scheme == Scheme::VelocityVerlet {
                             state.velocity.iter_mut().for_each(|velocity| velocity.y += 9.0);
@@ -1243,7 +1251,7 @@ mod tests {
     fn every_set_has_the_same_bits() {
         for cells in EXTENTS {
             let body = lattice(cells, DVec3::new(0.5, 0.3, 0.8));
-            // Shaken so much that some elements turn over.
+            // Displaced so much that some elements turn over.
             let state = start(&body, 0.6);
             for rotation in [Rotation::Optimum, Rotation::Arctangent { passes: 2 }] {
                 let all = Set::all().map(|set| run(&body, &state, parameters(0.3, rotation), set, 1, 300));
@@ -1274,7 +1282,7 @@ mod tests {
     fn before_a_runaway_the_state_is_that_of_the_step_before() {
         let body = lattice([5, 3, 6], DVec3::splat(0.5));
         let state = start(&body, 0.05);
-        // Far beyond what is stable.
+        // Far beyond the limit of stability.
         let parameters = Parameters { step: 0.3, ..parameters(0.0, Rotation::Optimum) };
         let around = Around { speed_limit: &|step| 1e6 + step as f64, ..FREE };
         let memory = turns(&body, &state);
@@ -1298,7 +1306,7 @@ mod tests {
             assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
             assert_eq!(up_to_there.advance(taken + 1, &around, &mut Crew::new(1)), Err(runaway));
             assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
-            // In calls of one step, and by several threads.
+            // In calls of one step, and with several threads.
             for (threads, steps) in [(1, 1), (2, 1000), (3, 1000), (3, 7)] {
                 let (mut other, mut crew) = (make(), Crew::new(threads));
                 let lost = (1..).find_map(|call| other.advance(call * steps, &around, &mut crew).err());

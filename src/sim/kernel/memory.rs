@@ -1,10 +1,10 @@
-//! Memory for lanes.
+//! Memory aligned for vectors.
 
 #![expect(unsafe_code, reason = "cache lines are read as the doubles of which they consist, and threads share them")]
 
 use std::cell::UnsafeCell;
 
-/// Doubles that begin at a cache line, so that vectors of any set do, too.
+/// Doubles that begin at a cache line, and so are aligned for vectors of every set.
 pub(in crate::sim) struct Aligned {
     lines: Box<[UnsafeCell<Line>]>,
 }
@@ -13,7 +13,7 @@ pub(in crate::sim) struct Aligned {
 #[repr(C, align(64))]
 struct Line([f64; Aligned::LINE]);
 
-// SAFETY: a shared one gives away nothing but a pointer, which it is unsafe to use.
+// SAFETY: through a shared reference only a pointer can be obtained, and using that is unsafe.
 unsafe impl Sync for Aligned {}
 
 impl Aligned {
@@ -25,18 +25,19 @@ impl Aligned {
         Self { lines: (0..count.div_ceil(Self::LINE)).map(|_| UnsafeCell::new(Line([0.0; Self::LINE]))).collect() }
     }
 
-    /// The first of them. Who writes there makes sure that nobody else has to do with the same place.
+    /// A pointer to the first. A thread that writes through it has to ensure that no other thread accesses the same
+    /// place.
     pub(in crate::sim) fn pointer(&self) -> *mut f64 {
         UnsafeCell::raw_get(self.lines.as_ptr()).cast()
     }
 
-    /// All of them. Even reading takes the only reference, for those who share one may write.
+    /// All of them. Reading needs a unique reference, too, as others could write through a shared one.
     pub(in crate::sim) fn as_mut_slice(&mut self) -> &mut [f64] {
-        // SAFETY: a line is its eight doubles and nothing else, and nobody else holds them.
+        // SAFETY: a line consists of eight doubles, and the reference is unique.
         unsafe { std::slice::from_raw_parts_mut(self.pointer(), self.lines.len() * Self::LINE) }
     }
 
-    /// All of them, copied from others of the same number.
+    /// Copies all values from memory of the same size.
     pub(in crate::sim) fn copy_from(&mut self, other: &mut Self) {
         self.as_mut_slice().copy_from_slice(other.as_mut_slice());
     }

@@ -1,25 +1,25 @@
-//! What happens to nodes once their forces are known, in lanes: Eqs. (2) and (3) and their rivals, the test for runaways,
-//! and collisions.
+//! The motion of nodes in lanes, with known forces: Eqs. (2) and (3) and alternatives, the test of the speed limit, and
+//! contact.
 
 use super::{Around, Resolve};
 use crate::sim::contact::{Bound, Floor, ROUND_OFF};
 use crate::sim::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
-/// What is done with the forces of one evaluation.
+/// What a pass computes from the forces of one evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::sim) enum Stage {
     /// Eq. (2), then Eq. (3) with the new velocity.
     SemiImplicitEuler,
     /// Eq. (3) with the old velocity.
     ExplicitEuler,
-    /// The first half of velocity Verlet: the way, and the velocity at its end if the acceleration stays.
+    /// The first half of velocity Verlet: the new position, and the velocity predicted with constant acceleration.
     Drift,
-    /// Its second half, with the acceleration at the new place.
+    /// Its second half, with the acceleration at the new position.
     Finish,
     /// The second half of one step and the first of the next, where the forces do not depend on velocities.
     FinishDrift,
-    /// The first half with accelerations that are known: no force is evaluated.
+    /// The first half with known accelerations: no force is evaluated.
     Coast,
 }
 
@@ -37,7 +37,7 @@ pub(in crate::sim) struct Motion<'a, L> {
     step: L,
     half: L,
     gravity: [L; 3],
-    /// The squares of the speed limits before a new step begins and in it.
+    /// The squares of the speed limits at the end of the previous step and in the present one.
     limits: [L; 2],
     number: u64,
     bounds: &'a [Bound],
@@ -74,14 +74,14 @@ impl<'a, L: Lanes> Motion<'a, L> {
         }
     }
 
-    /// What is done.
+    /// What the pass computes.
     #[inline(always)]
     pub(in crate::sim) fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// Moves nodes by their forces (N) and inverse masses (1/kg), zero for lanes that hold no node, and lets them meet
-    /// obstacles. Returns one bit for each lane whose speed is out of bounds.
+    /// Moves nodes by their forces (N) and inverse masses (1/kg; zero in lanes without a node), and computes contact.
+    /// Returns one bit for each lane that exceeds the speed limit.
     #[inline(always)]
     pub(in crate::sim) fn advance(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let lost = self.go(nodes, force, inverse_mass);
@@ -131,7 +131,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         lost | self.lost(nodes, 1)
     }
 
-    /// The lanes inside a bound, where obstacles are to be asked for, with those that hold no node.
+    /// The lanes inside a bound, whose contact has to be computed; also lanes that have no node.
     #[inline(always)]
     pub(in crate::sim) fn near(&self, nodes: &Nodes<L>) -> u32 {
         if self.stage == Stage::Finish {
@@ -144,8 +144,8 @@ impl<'a, L: Lanes> Motion<'a, L> {
         near
     }
 
-    /// The second half of [`Self::advance`]: what nodes meet at the end of a step. Where none is [near](Self::near) nothing
-    /// happens.
+    /// The second half of [`Self::advance`]: contact at the end of a step. It does nothing where no lane is
+    /// [near](Self::near).
     #[inline(always)]
     pub(in crate::sim) fn meet(&self, nodes: &mut Nodes<L>, inverse_mass: L) {
         let zero = L::splat(0.0);
@@ -158,7 +158,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         }
         let mut position = each!(3, axis => nodes.position[axis].to_array());
         let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
-        // With which they have moved: at constant velocity, or as velocity Verlet does.
+        // The constant acceleration in the step: zero, except in velocity Verlet.
         let rests = if self.stage.is_verlet() { nodes.acceleration } else { [zero; 3] };
         let rests = each!(3, axis => rests[axis].to_array());
         touch(self.around.resolve, self.number, inside, &mut position, &mut velocity, &rests);
@@ -166,7 +166,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
     }
 
-    /// The way of velocity Verlet, and the velocity at its end if the acceleration stays.
+    /// The new position of velocity Verlet, and the velocity predicted with constant acceleration.
     #[inline(always)]
     fn drift(&self, nodes: &mut Nodes<L>) {
         for axis in 0..3 {
@@ -176,7 +176,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         }
     }
 
-    /// The lanes whose speed is out of bounds; what is no number is within none.
+    /// The lanes that exceed the speed limit or are NaN.
     #[inline(always)]
     fn lost(&self, nodes: &Nodes<L>, at: usize) -> u32 {
         let [x, y, z] = nodes.velocity;
@@ -185,7 +185,8 @@ impl<'a, L: Lanes> Motion<'a, L> {
     }
 }
 
-/// The contact of the lanes `inside` a bound. All nodes of a body that lies on a floor may come here, or none.
+/// Computes contact for the lanes `inside` a bound. Not inlined: the fraction of nodes in contact varies from none to
+/// all.
 #[inline(never)]
 fn touch(
     resolve: &Resolve<'_>,
@@ -205,8 +206,8 @@ fn touch(
     }
 }
 
-/// The rebound from a floor of nodes that have moved at constant velocity: the operations of `Obstacle::push_out` in their
-/// order, each rounded as there.
+/// The rebound from a floor of nodes that moved at constant velocity: the operations of `Obstacle::push_out` in the
+/// same order and with the same rounding.
 #[inline(always)]
 fn rebound<L: Lanes>(floor: &Floor, nodes: &mut Nodes<L>, inside: L::Mask) {
     let Nodes { position, velocity, .. } = nodes;
@@ -274,7 +275,7 @@ mod tests {
         }
     }
 
-    /// On, above and below floors, with and without slip, friction and restitution.
+    /// Above, below and on floors, with and without slip, friction and restitution.
     #[test]
     fn the_rebound_in_lanes_has_the_bits_of_the_plain_one() {
         let mut seed = 9u64;

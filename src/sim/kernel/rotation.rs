@@ -1,8 +1,8 @@
 //! The rotations of as many elements as there are lanes.
 //!
-//! With `R` the last rotation and `A = Σ r R0ᵀ` (now × rest), everything follows from `B = RᵀA`, which is the transposed
-//! of Eq. (15)'s matrix, seen in the axes of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque over `k`,
-//! and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and of unit length.
+//! With the last rotation `R` and `A = Σ r R0ᵀ` (now × rest), everything follows from `B = RᵀA`, which is the transpose
+//! of the matrix of Eq. (15) in the frame of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque divided
+//! by `k`, and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and normalised.
 
 use crate::sim::lanes::{Lanes, MOST, each};
 use crate::sim::rotation::davenport1968;
@@ -13,13 +13,14 @@ pub(super) type Vector<L> = [L; 3];
 /// The columns of a matrix, in every lane.
 pub(super) type Matrix<L> = [[L; 3]; 3];
 
-/// How rotations are found in lanes.
+/// A method that computes rotations in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs. Two
-    /// vectors of them: each is a long chain of operations, and two keep the processor busy.
+    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
+    /// Computes two vectors of elements at once: each is a long chain of dependent operations, which the processor
+    /// overlaps.
     ///
-    /// `scale` is some number that makes the entries of `a` at rest about 1: `1 / Σ |R0|²` will do. The result depends on
-    /// it in round-off only.
+    /// `scale` is any number that makes the entries of `a` at rest about 1, such as `1 / Σ |R0|²`. The result depends
+    /// on it in round-off only.
     fn follow_two<L: Lanes>(
         self,
         a: [&Matrix<L>; 2],
@@ -28,31 +29,32 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
         live: [L::Mask; 2],
     ) -> [[L; 4]; 2];
 
-    /// How many passes most rotations take. Who has many vectors takes them by [`Self::pass`] and [`turn`] instead.
+    /// The number of passes that most rotations need. A caller with many vectors calls [`Self::pass`] and [`turn`] so
+    /// often instead of [`Self::follow_two`].
     fn passes(self) -> u32;
 
-    /// One of them for `b = RᵀA`: the turn up to its length, where it is sound as far as is known before [`turn`], and
-    /// where no pass beyond these is needed.
+    /// One pass for `b = RᵀA`. Returns the increment as a quaternion of any length, the lanes where it is valid as far
+    /// as is known before [`turn`], and the lanes where it is the last pass needed.
     fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
 
-    /// What remains after these passes, which led to `q`: lanes that are `open` need more of them, those that have `failed`
-    /// the global solver.
+    /// What remains to be done after these passes, which led to `q`: lanes that are `open` need more passes, lanes that
+    /// have `failed` need the global solver.
     fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
-/// Eq. (15) as printed, solved a number of times, each solution a rotation by `atan |w|`: the lanes of
-/// [`linearised::iterate`](crate::sim::rotation::linearised::iterate).
+/// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`: the same as
+/// [`linearised::iterate`](crate::sim::rotation::linearised::iterate), in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arctangent {
-    /// How often.
+    /// The number of passes.
     pub(super) passes: u32,
 }
 
-/// The optimum to round-off, by as many passes of seventh order as that takes: one where an element turns by less than
-/// some 1/80 rad from one evaluation to the next. Where no pass is certified to lead there, the global solver.
+/// The optimum to round-off, by passes of seventh order, as many as needed: one pass if an element rotates by less than
+/// about 1/80 rad from one evaluation to the next. Where convergence is not certain, the global solver is used.
 ///
-/// The turn sought is the quaternion `(v, 1)`, up to its length, with `(2H + μ) v = g` and `μ = g·v`: Davenport's
-/// eigenvalue problem, seen from the last rotation. With `v0 = (2H)⁻¹ g` and `μ0 = g·v0`, one Newton step leads to
+/// The increment is the quaternion `(v, 1)`, up to its length, with `(2H + μ) v = g` and `μ = g·v`: Davenport's
+/// eigenvalue problem, relative to the last rotation. With `v0 = (2H)⁻¹ g` and `μ0 = g·v0`, one Newton step leads to
 /// `μ1 = μ0 (1 − |v0|²)`, and `v = v0 − μ1 (2H)⁻¹ v0 + μ0² (2H)⁻² v0` up to terms of seventh order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Optimum;
@@ -117,7 +119,7 @@ impl Solver for Optimum {
             let sound = L::bits(sound);
             failed |= open & !sound;
             open &= sound;
-            // A lane that has arrived stays as it is, so that its bits do not depend on its neighbours.
+            // A lane that has converged is not changed, so that its bits do not depend on its neighbours.
             q = choose(L::mask(open), next, q);
             open &= !L::bits(last);
             if open == 0 {
@@ -160,20 +162,20 @@ impl Solver for Optimum {
     }
 }
 
-/// After so many passes of [`Optimum`] the global solver takes over. Most sound lanes are there after three.
+/// The global solver is used after so many passes of [`Optimum`]. Most valid lanes converge in three.
 const MOST_PASSES: u32 = 4;
 
-/// A pass of [`Optimum`] is sound where `H` is positive definite and `det H` at least this part of `(tr H)³`; a cube at
-/// rest has 1/27.
+/// A pass of [`Optimum`] is valid where `H` is positive definite and `det H` is at least this times `(tr H)³`; for a
+/// cube at rest the ratio is 1/27.
 const SOUND: f64 = 1e-5;
 
 /// A pass of [`Optimum`] is the last where `|v|²` is at most this, times the margin `m = 27 det H / (tr H)³`.
 ///
-/// `|v|` is half the angle. From an angle of `τ √m` a pass leaves at most `0.09 τ⁷` (rad; the worst of many, with m from
-/// 0.005 to 1), so the last one leaves less than 5e-15.
+/// `|v|` is half the angle. From an angle of `τ √m` a pass leaves an error of at most `0.09 τ⁷` (rad; the worst of
+/// many, with m from 0.005 to 1), so after the last one the error is less than 5e-15.
 const SHORT: f64 = 4e-5;
 
-/// What keeps the squares of homogeneous numbers within the range of doubles.
+/// Keeps the squares of homogeneous coordinates within the range of doubles.
 const RANGE: (f64, f64) = (1e-200, 1e200);
 
 /// `scale` times the matrix of a unit quaternion.
@@ -200,13 +202,13 @@ fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
     a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
-/// The torque over `k` (m²), in the axes of the element.
+/// The torque divided by `k` (m²), in the frame of the element.
 #[inline(always)]
 fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
     [b[2][1] - b[1][2], b[0][2] - b[2][0], b[1][0] - b[0][1]]
 }
 
-/// `q ⊗ (v, s)`, made of unit length, and whether that was possible.
+/// `q ⊗ (v, s)`, normalised, and whether that was possible.
 #[inline(always)]
 pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
     let product = [
@@ -229,7 +231,7 @@ fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
     turn(q, [x, y, z], s)
 }
 
-/// Its turn up to its length.
+/// The increment as a quaternion of any length.
 #[inline(always)]
 fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
     let g = axial(b);
@@ -238,7 +240,7 @@ fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
     let c2 = [-b[2][0], -b[2][1], b[0][0] + b[1][1]];
     let c12 = cross(&c1, &c2);
     let determinant = dot(&c0, &c12);
-    // In units of the determinant.
+    // Multiplied by the determinant.
     let w = [dot(&g, &c12), dot(&g, &cross(&c2, &c0)), dot(&g, &cross(&c0, &c1))];
     let root = determinant.mul_add(determinant, dot(&w, &w)).sqrt();
     [w[0], w[1], w[2], determinant + root]
@@ -252,7 +254,7 @@ fn cross<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> Vector<L> {
 /// [`linearised::is_well_posed`](crate::sim::rotation::linearised::is_well_posed).
 #[inline(always)]
 fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
-    /// As there.
+    /// The same as in [`linearised`](crate::sim::rotation::linearised).
     const WELL_POSED: f64 = 1e-9;
     let (hx, hy, hz) = (b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]);
     let half = L::splat(-0.5);
@@ -266,7 +268,7 @@ fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
     L::both(least.lt(hx), L::both(second.lt(minor), third.lt(determinant)))
 }
 
-/// One pass of [`Optimum`], where it is sound, and where it is the last.
+/// One pass of [`Optimum`], where it is valid, and where it is the last.
 #[inline(always)]
 fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Mask) {
     let ([x, y, z, s], definite, short) = optimum_turn(b);
@@ -274,18 +276,19 @@ fn optimum_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask, L::Ma
     (next, L::both(definite, in_range), short)
 }
 
-/// The turn of a pass up to its length, where it is sound but for that, and where it is the last.
+/// The increment of a pass as a quaternion of any length, the lanes where it is valid if it can be normalised, and the
+/// lanes where it is the last.
 ///
-/// Homogeneous, so that nothing is divided: with `d = det 2H`, `w = adj(2H) g`, `x = adj(2H) w`, `y = adj(2H) x` and
-/// `m = g·w` the turn is `(d⁴ w − m (d² − |w|²) x + m² y, d⁵)`.
+/// In homogeneous coordinates, without divisions: with `d = det 2H`, `w = adj(2H) g`, `x = adj(2H) w`, `y = adj(2H) x`
+/// and `m = g·w` the increment is `(d⁴ w − m (d² − |w|²) x + m² y, d⁵)`.
 #[inline(always)]
 fn optimum_turn<L: Lanes>(b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
     let g = axial(b);
     let sums = [b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]];
-    // 2H, of which the off-diagonal entries are kept with their signs turned.
+    // 2H; the off-diagonal entries are stored with opposite signs.
     let [hx, hy, hz] = each!(3, axis => sums[axis] + sums[axis]);
     let (xy, xz, yz) = (b[0][1] + b[1][0], b[0][2] + b[2][0], b[1][2] + b[2][1]);
-    // Its adjugate, which is symmetric, too.
+    // Its adjugate, which is also symmetric.
     let (axx, ayy, azz) = (hy.mul_sub(hz, yz * yz), hx.mul_sub(hz, xz * xz), hx.mul_sub(hy, xy * xy));
     let (axy, axz, ayz) = (xz.mul_add(yz, xy * hz), xy.mul_add(yz, xz * hy), xy.mul_add(xz, yz * hx));
     let d = xz.neg_mul_add(axz, xy.neg_mul_add(axy, hx * axx));
@@ -303,7 +306,7 @@ fn optimum_turn<L: Lanes>(b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask) {
     let cube = trace * trace * trace;
     let zero = L::splat(0.0);
     let definite = L::both(zero.lt(hx), L::both(zero.lt(azz), (L::splat(SOUND) * cube).lt(d)));
-    // |v|² ≤ SHORT · 27 d / tr³, with v in units of d⁵.
+    // v|² ≤ SHORT · 27 d / tr³, with v multiplied by d⁵.
     let short = (dot(&v, &v) * cube).le(L::splat(27.0 * SHORT) * d * (d5 * d5));
     ([v[0], v[1], v[2], d5], definite, short)
 }
@@ -326,7 +329,7 @@ fn global<L: Lanes>(a: &Matrix<L>, last: [L; 4], lanes: u32) -> [L; 4] {
 #[inline(never)]
 fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: u32) {
     for lane in (0..MOST).filter(|lane| lanes >> lane & 1 == 1) {
-        // The solver takes the transposed of `a`.
+        // The solver takes the transpose of `a`.
         let at_rest = DMat3::from_cols_array_2d(&[0, 1, 2].map(|row| [0, 1, 2].map(|column| a[column][row][lane])));
         let last = DQuat::from_array([0, 1, 2, 3].map(|part| q[part][lane]));
         let found = davenport1968::optimum(at_rest, last).to_array();
@@ -341,7 +344,7 @@ mod tests {
     use crate::sim::rotation::linearised;
     use glam::DVec3;
 
-    /// Follows one element after the other.
+    /// Computes the rotations of elements, one vector after the other.
     struct Follow<'a, S>(S, &'a [(DMat3, DQuat)]);
 
     impl<S: Solver> Work for Follow<'_, S> {
@@ -353,7 +356,7 @@ mod tests {
                 let lane = |of: &dyn Fn(&(DMat3, DQuat)) -> f64| {
                     L::from_array(std::array::from_fn(|at| some.get(at).map_or(0.0, of)))
                 };
-                // `Σ R0 rᵀ` has in its columns the rows of `a`.
+                // The columns of `Σ R0 rᵀ` are the rows of `a`.
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
                 let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
                 let live = L::mask((1u32 << some.len()) - 1);
@@ -365,12 +368,12 @@ mod tests {
         }
     }
 
-    /// The sine of half the angle between two rotations, times two.
+    /// Twice the sine of half the angle between two rotations.
     fn angle(a: DQuat, b: DQuat) -> f64 {
         2.0 * (a * b.conjugate()).xyz().length()
     }
 
-    /// Numbers from −1 to 1 that look random.
+    /// Pseudo-random numbers from −1 to 1.
     fn random(seed: u64) -> impl FnMut() -> f64 {
         let mut state = seed;
         move || {
@@ -383,8 +386,8 @@ mod tests {
         DQuat::from_xyzw(random() * size, random() * size, random() * size, 1.0).normalize()
     }
 
-    /// Moments of elements of all sorts, each with a rotation to start from: well-shaped and turned a little, turned
-    /// far, squeezed, turned inside out, flat, on a line, at a point.
+    /// Moments of many kinds of elements, each with an initial rotation: well-shaped and rotated a little, rotated far,
+    /// squeezed, turned inside out, flat, on a line, at a point.
     fn all_sorts(largest_turn: f64) -> Vec<(DMat3, DQuat)> {
         let mut random = random(3);
         let stretches = [
@@ -412,7 +415,7 @@ mod tests {
             .collect()
     }
 
-    /// Whether the optimum is one, and no small error of `at_rest` turns it far.
+    /// Whether the optimum is unique and not sensitive to small errors of `at_rest`.
     fn is_decided(at_rest: DMat3) -> bool {
         let s = DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)) * at_rest;
         let trace = s.x_axis.x + s.y_axis.y + s.z_axis.z;
@@ -425,7 +428,7 @@ mod tests {
         for set in Set::all() {
             assert_eq!(set.run(Follow(solver, elements)), found, "{set:?}");
         }
-        // Nor do neighbours matter.
+        // Neighbours have no influence either.
         let backwards: Vec<_> = elements.iter().copied().rev().collect();
         let mut again = Set::best().run(Follow(solver, &backwards));
         again.reverse();
@@ -473,7 +476,7 @@ mod tests {
 
     #[test]
     fn one_pass_takes_the_error_to_its_seventh_power() {
-        /// One pass from a turn (rad) about a slanting axis.
+        /// One pass from a rotation (rad) about an oblique axis.
         struct Pass(DMat3, DQuat);
         impl Work for Pass {
             type Output = (DQuat, bool, bool);

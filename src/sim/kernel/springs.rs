@@ -1,15 +1,15 @@
-//! Eq. (1) in lanes, for springs that come in families: pairs of nodes whose indices differ by the same number, as on
-//! every lattice.
+//! Eq. (1) in lanes, for springs in families. A family is all pairs of nodes whose indices differ by the same number,
+//! as on every lattice.
 //!
-//! Lanes are nodes that follow each other; a spring pulls at its lower node's lane and, that many places further on, at
-//! its upper node's. As all springs of a node lead to later nodes or come from earlier ones, a node whose turn has
-//! come has all its forces: one pass evaluates the springs and moves the nodes in place.
+//! Lanes are consecutive nodes. A spring adds its force to the lane of its lower node and, at the offset of the family,
+//! to that of its upper node. As the other ends of a node's springs are either earlier or later nodes, all forces of a
+//! node are known when the pass reaches it: one pass evaluates the springs and moves the nodes in place.
 //!
-//! The sum of a node is: what comes from earlier nodes, the farthest first, plus what comes from later ones, the farthest
+//! The sum of a node is: the forces from earlier nodes, the farthest first, plus those from later nodes, the farthest
 //! first. It is the same for every width.
 //!
-//! A body of some size is cut in slabs, always the same for a body. The first nodes of a slab, which the slab before
-//! still needs and pulls at, move after all others: their sum has one term more.
+//! A large body is divided into slabs, which depend on the body only. The first nodes of a slab, which the previous
+//! slab still reads and adds forces to, are moved after all others: their sum has one more term.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
@@ -24,40 +24,41 @@ use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Nodes for which one family is done before the next: what they need stays in the first cache. It changes no bit.
+/// Nodes for which one family is evaluated before the next, so that their data stay in the first-level cache. The size
+/// does not change any bit.
 const CHUNK: usize = 128;
 /// Nodes that share a byte of presence.
 const BLOCK: usize = 8;
-/// Natural lengths that differ by no more than this part count as equal: round-off of coordinates up to a thousand
-/// lengths.
+/// Natural lengths that differ by no more than this fraction count as equal. Covers round-off of coordinates up to a
+/// thousand lengths from the origin.
 const ALIKE: f64 = 1e-13;
 
 /// Springs of one family.
 struct Family {
-    /// How many places the second node stands behind the first.
+    /// The difference of the indices of the two nodes.
     offset: usize,
-    /// `k L` (N) if all have the same.
+    /// `k L` (N) if it is the same for all.
     tension: f64,
-    /// Else where `k L` of the spring of each first node begins in the list of all.
+    /// Otherwise the start of the family's `k L`, by first node, in the list of all.
     tensions: Option<usize>,
 }
 
-/// A body of springs at work.
+/// The springs of a body, in families.
 pub(in crate::sim) struct Stencil {
     set: Set,
     nodes: usize,
     constants: Constants,
-    /// By falling offset.
+    /// Sorted by offset, the largest first.
     families: Vec<Family>,
     /// One bit for each spring: chunk by chunk, family by family, block by block.
     presence: Vec<[u8; CHUNK / BLOCK]>,
     tensions: Aligned,
-    /// Positions, velocities, inverse masses and accelerations, each coordinate for itself.
+    /// Positions, velocities, inverse masses and accelerations, with a separate array for each coordinate.
     state: Aligned,
     stride: usize,
     kept: Aligned,
     slabs: Vec<Slab>,
-    /// Chunks at the beginning of every slab but the first that move after all others.
+    /// Chunks at the beginning of every slab but the first that are moved after all others.
     deferred: usize,
 }
 
@@ -66,19 +67,20 @@ struct Slab {
     /// Its chunks.
     first: usize,
     last: usize,
-    /// What earlier nodes pull at its nodes and at those behind it (N), each coordinate for itself.
+    /// The forces of springs from earlier nodes on its nodes and on those after it (N), with a separate array for each
+    /// coordinate.
     pulls: Aligned,
     stride: usize,
 }
 
-/// Where each array begins, in strides.
+/// The start of each array, in strides.
 const VELOCITY: usize = 3;
 const INVERSE_MASS: usize = 6;
 const ACCELERATION: usize = 7;
 const ARRAYS: usize = 10;
 
 impl Stencil {
-    /// The springs of a body at work, or nothing if they come in no families: where most lanes would be empty.
+    /// The springs of a body, or `None` if they form no families, so that most lanes would be empty.
     pub(in crate::sim) fn new(
         springs: &[[u32; 2]],
         rest: &[DVec3],
@@ -86,7 +88,7 @@ impl Stencil {
         constants: Constants,
         set: Set,
     ) -> Option<Self> {
-        /// Lanes for each spring, at most. With less than half of them in use, gathering is faster.
+        /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
@@ -96,7 +98,7 @@ impl Stencil {
             sorted.push((high - low, low, high));
         }
         sorted.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
-        // Two springs between the same nodes are two families with one offset.
+        // Two springs between the same nodes are in two families with the same offset.
         let mut families: Vec<Vec<(usize, usize, usize)>> = Vec::new();
         for family in sorted.chunk_by(|a, b| a.0 == b.0) {
             let mut doubles = 0;
@@ -125,7 +127,7 @@ impl Stencil {
             for &(_, low, _) in family {
                 presence[low / CHUNK * families.len() + at][low % CHUNK / BLOCK] |= 1 << (low % BLOCK);
             }
-            // On a lattice lengths differ by the rounding of coordinates alone.
+            // On a lattice lengths differ only by the rounding of coordinates.
             let common = tension(&family[0]);
             let differs = |spring| (tension(spring) - common).abs() > ALIKE * common;
             let tensions = family.iter().any(differs).then(|| {
@@ -140,7 +142,7 @@ impl Stencil {
         tensions.as_mut_slice()[..listed.len()].copy_from_slice(&listed);
         let behind = reach + BLOCK;
         let deferred = behind.div_ceil(CHUNK);
-        // Slabs are long beside what is deferred, and in number a power of two.
+        // Slabs are long compared with the deferred chunks, and their number is a power of two.
         let slabs = 1 << (chunks / (4 * deferred)).clamp(1, 16).ilog2();
         let slabs: Vec<Slab> = (0..slabs)
             .map(|at| {
@@ -173,7 +175,8 @@ impl Stencil {
         Arrays { state: self.state.pointer(), stride: self.stride }
     }
 
-    /// Evaluates the forces once, unless they are known, and moves all nodes. The first that becomes too fast.
+    /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
+    /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
         let (springs, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
         let slabs = self.slabs.len();
@@ -239,7 +242,7 @@ impl Stepper for Stencil {
     }
 }
 
-/// A length for arrays that are used together, so that their cache lines do not fall into the same sets.
+/// An array length for arrays that are used together, so that their cache lines are not in the same sets of the cache.
 fn staggered(count: usize) -> usize {
     let lines = count.div_ceil(Aligned::LINE);
     (lines + (5 + 64 - lines % 64) % 64) * Aligned::LINE
@@ -256,7 +259,7 @@ impl Arrays {
     /// Three coordinates of nodes from `at` on.
     #[inline(always)]
     unsafe fn load<L: Lanes>(&self, array: usize, at: usize) -> [L; 3] {
-        // SAFETY: the caller's; nodes and what is behind them are within a stride.
+        // SAFETY: the caller's; nodes and the padding after them are within a stride.
         each!(3, axis => unsafe { L::load(self.state.add((array + axis) * self.stride + at)) })
     }
 

@@ -1,4 +1,4 @@
-//! Steps as passes over all nodes, and a body that takes them.
+//! Steps as passes over all nodes, and [`Way`], which advances a body by them.
 
 use super::motion::Stage;
 use super::{Around, Lost};
@@ -7,7 +7,7 @@ use crate::sim::dynamics::Runaway;
 use glam::DVec3;
 use std::ops::Range;
 
-/// How positions and velocities move from one step to the next.
+/// How positions and velocities are advanced by a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::sim) enum Scheme {
     /// Eq. (2), then Eq. (3) with the new velocity.
@@ -18,22 +18,23 @@ pub(in crate::sim) enum Scheme {
     VelocityVerlet,
 }
 
-/// One motion of all nodes, with one evaluation of the forces unless they are known.
+/// One pass over all nodes, with one evaluation of the forces unless they are known.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::sim) struct Pass {
-    /// What is done.
+    /// What the pass computes.
     pub(in crate::sim) stage: Stage,
-    /// In which step.
+    /// The number of the step.
     pub(in crate::sim) number: u64,
-    /// Whether the rotations that it finds are those from which the next evaluation starts.
+    /// Whether the rotations of this pass are stored, so that the next evaluation starts from them.
     pub(in crate::sim) commit: bool,
 }
 
-/// The passes of some steps.
+/// The passes of a number of steps.
 ///
-/// Without damping the forces at the end of a step of velocity Verlet serve the next step, too. Those at the end of the last
-/// step do not keep their rotations: the next call finds both again from the same rotations, with the same bits. So positions,
-/// velocities and rotations are all that is remembered, and however steps are cut up, they have the same bits.
+/// Without damping, velocity Verlet uses the forces at the end of a step in the next step, too. The last pass does not
+/// store its rotations: the next call evaluates the same forces again, from the same rotations, with the same bits. So
+/// positions, velocities and rotations are the whole state, and the bits do not depend on how steps are divided into
+/// calls.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::sim) struct Passes {
     pub(in crate::sim) scheme: Scheme,
@@ -47,7 +48,7 @@ pub(in crate::sim) struct Passes {
 }
 
 impl Passes {
-    /// How many there are.
+    /// The number of passes.
     #[inline(always)]
     pub(in crate::sim) fn len(&self) -> u64 {
         match self.scheme {
@@ -57,7 +58,7 @@ impl Passes {
         }
     }
 
-    /// One of them.
+    /// One pass.
     #[inline(always)]
     pub(in crate::sim) fn get(&self, pass: u64) -> Pass {
         let is_last = pass + 1 == self.len();
@@ -77,46 +78,46 @@ impl Passes {
     }
 }
 
-/// Forces and motion of a body in lanes. It holds positions, velocities and rotations in arrays of its own.
+/// Forces and motion of a body in lanes, with positions, velocities and rotations in arrays of their own.
 pub(in crate::sim) trait Stepper: Send + Sync {
-    /// Takes over a state: positions (m), velocities (m/s), and what the model remembers.
+    /// Reads a state: positions (m), velocities (m/s), and the memory of the model.
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]);
-    /// Hands the state out.
+    /// Writes the state.
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]);
     /// The position (m) and velocity (m/s) of a node.
     fn node(&mut self, node: usize) -> (DVec3, DVec3);
-    /// Puts a node somewhere else.
+    /// Sets the position and velocity of a node.
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3);
     /// Whether forces depend on velocities.
     fn is_damped(&self) -> bool;
-    /// Copies the state.
+    /// Keeps a copy of the state.
     fn keep(&mut self);
-    /// Puts the copy in the state's place.
+    /// Restores the state from the copy.
     fn restore(&mut self);
-    /// Carries out some of the passes, until a node has become too fast. A crew of one finds the first such node, a larger one
-    /// any. The state is of no use then.
+    /// Executes some of the passes, until a node becomes too fast. With one thread that is the first such node, with
+    /// more threads any of them. The state is then undefined.
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost>;
 }
 
-/// A body on its way from step to step.
+/// A body with its stepper and its number of steps.
 pub(in crate::sim) struct Way {
     pub(in crate::sim) stepper: Box<dyn Stepper>,
     scheme: Scheme,
     /// Steps taken.
     steps: u64,
-    /// How many it had taken when the state was copied, if that copy may be returned to.
+    /// The number of steps of the copy of the state, if steps since then may be repeated.
     kept: Option<u64>,
 }
 
 impl Way {
-    /// The steps after which the state is copied anew. A copy costs a small part of them.
+    /// Number of steps between copies of the state. A copy costs a small part of that many steps.
     const KEPT: u64 = 32;
 
     pub(in crate::sim) fn new(stepper: Box<dyn Stepper>, scheme: Scheme) -> Self {
         Self { stepper, scheme, steps: 0, kept: None }
     }
 
-    /// Takes over a state after so many steps.
+    /// Reads a state after `steps` steps.
     pub(in crate::sim) fn load(&mut self, steps: u64, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         self.stepper.load(position, velocity, memory);
         (self.steps, self.kept) = (steps, None);
@@ -127,20 +128,20 @@ impl Way {
         self.steps
     }
 
-    /// The first of the steps that may be taken again.
+    /// The first step that may be repeated.
     pub(in crate::sim) fn earliest(&self) -> u64 {
         self.kept.filter(|kept| self.steps < kept + Self::KEPT).unwrap_or(self.steps)
     }
 
-    /// Takes no step again that was taken so far.
+    /// Ensures that no step taken so far is repeated.
     pub(in crate::sim) fn arrive(&mut self) {
         self.kept = None;
     }
 
-    /// Goes on until so many steps are taken. `around` knows all steps from [`Self::earliest`] on.
+    /// Advances until `until` steps are taken. `around` must be valid for all steps from [`Self::earliest`] on.
     ///
     /// # Errors
-    /// When a node would become faster than the limit: it then stands before that step.
+    /// When a node would become faster than the limit: the state is then the one before that step.
     pub(in crate::sim) fn advance(&mut self, until: u64, around: &Around<'_>, crew: &mut Crew) -> Result<(), Runaway> {
         while self.steps < until {
             let from = self.earliest();
@@ -153,8 +154,8 @@ impl Way {
                 self.steps = end;
                 continue;
             }
-            // Threads are not always in the same step, and steps overlap: an earlier one may have been lost, which shows when
-            // one thread takes only those before.
+            // Threads are not always in the same step, so another node may have exceeded the limit in an earlier step.
+            // It is found by repeating the steps before with one thread.
             let mut node = 0;
             loop {
                 self.stepper.restore();

@@ -1,4 +1,4 @@
-//! Any elements and springs in lanes against the reference, and against each other.
+//! Kernels for any elements and springs, compared with the reference and with each other.
 
 use super::general::{Constants, General};
 use super::springs::Stencil;
@@ -25,10 +25,10 @@ use std::sync::Arc;
 const STIFFNESS: f64 = 1e4;
 const STEP: f64 = 2e-4;
 const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.0);
-/// Steps in which a run departs from the reference by round-off alone.
+/// Steps in which a run differs from the reference by round-off only.
 const STEPS: u64 = 1000;
 
-/// Numbers from −1 to 1 that look random.
+/// Pseudo-random numbers from −1 to 1.
 struct Random(u64);
 
 impl Random {
@@ -47,8 +47,8 @@ impl Random {
     }
 }
 
-/// The nodes of a block of cells of a tenth of a metre, each moved by up to a part of that, and the corners of each
-/// cell: in bit order, or counter-clockwise.
+/// The nodes of a block of cells with a side of 0.1 m, each moved by up to a fraction of that, and the corners of each
+/// cell: x fastest, or in the plane counter-clockwise.
 fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Vec<DVec3>, Vec<Vec<u32>>) {
     let [nx, ny, nz] = cells;
     let dimension = if nz == 0 { Dimension::Plane } else { Dimension::Space };
@@ -71,14 +71,14 @@ fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &m
     Arc::new(Body::new(dimension, rest, mass, elements, Solids::Convex, None))
 }
 
-/// The cells of a block whole.
+/// A block of whole cells.
 fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
     let random = &mut Random(seed);
     let (dimension, rest, corners) = block(cells, irregular, random);
     body(dimension, rest, corners.iter().map(|corners| &corners[..]).collect(), random)
 }
 
-/// As many elements as a block has cells, each with some of the corners of a cell; some nodes may have none.
+/// As many elements as a block has cells, each with some of the corners of a cell; some nodes may belong to no element.
 fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
     let random = &mut Random(seed);
     let (dimension, rest, corners) = block(cells, 0.2, random);
@@ -93,7 +93,7 @@ fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
     body(dimension, rest, elements, random)
 }
 
-/// Turned, stretched and in motion.
+/// Rotated, stretched and moving.
 fn start(body: &Body, seed: u64) -> State {
     let random = &mut Random(seed);
     let turn = match body.dimension {
@@ -108,7 +108,7 @@ fn start(body: &Body, seed: u64) -> State {
     State::new(position, velocity)
 }
 
-/// The rotations of the elements at a state: from where the reference starts, too.
+/// The rotations of the elements at a state, with which the reference starts as well.
 fn rotations(body: &Body, state: &State) -> Vec<f64> {
     let mut memory = Vec::new();
     for nodes in body.elements.iter() {
@@ -125,7 +125,7 @@ fn rotations(body: &Body, state: &State) -> Vec<f64> {
     memory
 }
 
-/// No obstacle and no limit.
+/// No obstacles and no speed limit.
 const FREE: Around<'_> = Around {
     bounds: &[],
     row: &|_| 0..0,
@@ -142,7 +142,7 @@ fn constants(damping: f64) -> Constants {
 /// A state with the rotations.
 type Whole = (State, Vec<f64>);
 
-/// A kernel on its way from a state, with the threads that work on it.
+/// A kernel advancing from a state, with its threads.
 struct Moving(Way, Crew);
 
 impl Moving {
@@ -191,8 +191,8 @@ fn reference(
     World::new(body, start.clone(), model, surroundings, Stepping { integrator, step: STEP, kernel: Kernel::Reference })
 }
 
-/// The largest distance between two states, in units of their extent and of the speed at which a node swings through
-/// that.
+/// The largest distance between two states, relative to their extent and to the speed of an oscillation over that
+/// extent.
 fn distance(a: &State, b: &State) -> f64 {
     let extent = b.position.iter().fold(0.0, |far: f64, p| far.max(p.length()));
     let frequency = STIFFNESS.sqrt();
@@ -204,14 +204,14 @@ fn distance(a: &State, b: &State) -> f64 {
     distance / extent
 }
 
-/// Steps a body in lanes of every set, which must agree bit for bit, and by the reference.
+/// Steps a body with the lanes of every set, which must agree bit for bit, and with the reference.
 fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
     let memory = rotations(body, &start);
     let start = (start, memory);
     let mut found: Option<Whole> = None;
     for set in Set::all() {
         let mut kernel = general(body, &start, rotation, damping, scheme, set);
-        // Calls of any length do the same.
+        // The result does not depend on how steps are divided into calls.
         for steps in [1, 7, 100, STEPS - 108] {
             assert_eq!(kernel.advance(steps, FREE), Ok(()), "{name}");
         }
@@ -261,7 +261,7 @@ fn any_scheme_steps_like_the_reference() {
     }
 }
 
-/// Several parts, with nodes that they share, and blocks that are not full.
+/// Several parts that share nodes, and blocks that are not full.
 #[test]
 fn a_body_of_several_parts_steps_like_the_reference() {
     let body = pieces([23, 17, 19], &[4, 6, 8], 11);
@@ -282,7 +282,7 @@ fn a_body_of_several_parts_steps_like_the_reference() {
     assert!(far <= 1e-12, "{far:e}");
 }
 
-/// Elements turned inside out, flattened or crushed to a point, in single lanes among others.
+/// Elements turned inside out, flattened or collapsed to a point, in single lanes among others.
 #[test]
 fn elements_without_a_guide_step_like_the_reference() {
     let body = whole([3, 2, 2], 0.1, 12);
@@ -310,7 +310,7 @@ fn elements_without_a_guide_step_like_the_reference() {
             assert!(far <= 1e-12, "{name}: {far:e}");
         }
     }
-    // In the plane all angles are as good for a triangle at a point: the last one stays.
+    // In the plane all angles are equally good for a triangle at a point: the last one is kept.
     let body = pieces([1, 1, 0], &[3], 13);
     let start = (State::at_rest(vec![DVec3::ZERO; body.len()]), vec![0.6, 0.8]);
     for set in Set::all() {
@@ -356,7 +356,7 @@ fn nodes_rebound_as_in_the_reference() {
     }
 }
 
-/// The step in which a node becomes too fast is not taken, and those before are, whatever the call.
+/// The step in which a node becomes too fast is rejected and those before are kept, for any division into calls.
 #[test]
 fn a_runaway_leaves_the_state_before_its_step() {
     let body = pieces([4, 3, 4], &[4, 8], 15);
@@ -366,7 +366,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
         for damping in [0.0, 10.0] {
             let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
             let mut one_by_one = make();
-            // Falling, it becomes too fast some time.
+            // It falls, and becomes too fast at some time.
             let limit = 8.0;
             let around = Around { speed_limit: &|_| limit, ..FREE };
             let taken = (0..10_000).take_while(|_| one_by_one.advance(1, around).is_ok()).count() as u64;
@@ -375,7 +375,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
             let runaway = at_once.advance(10_000, around).expect_err("it falls");
             assert_eq!(at_once.0.steps(), taken);
             assert_eq!(at_once.stored(&start), one_by_one.stored(&start));
-            // Without a limit that node is the first to be beyond it.
+            // Without a limit the same node is the first to exceed it.
             let mut free = make();
             assert_eq!(free.advance(taken + 1, FREE), Ok(()));
             let speeds = free.stored(&start).0.velocity;
@@ -391,7 +391,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
     assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
 }
 
-/// Springs in lanes by families, if they come in such, and without.
+/// The kernel for families of springs, if there are families, and the general one.
 fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
     let start = start(body, 6);
     let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.to_vec() };
@@ -461,7 +461,7 @@ fn a_spring_between_coincident_nodes_does_nothing() {
     }
 }
 
-/// Slabs, each with nodes that move after all others.
+/// Slabs, each with nodes that are moved after all others.
 #[test]
 fn springs_in_several_slabs_step_like_the_reference() {
     let body = whole([19, 19, 23], 0.1, 20);
@@ -484,7 +484,7 @@ fn springs_in_several_slabs_step_like_the_reference() {
     assert!(far <= 1e-12, "{far:e}");
 }
 
-/// Grips that take hold and let go on the way, and obstacles that move, with every scheme and kernel: a lattice, any elements,
+/// Grips that become active and inactive, and moving obstacles, with every scheme and kernel: a lattice, any elements,
 /// springs in families and others.
 #[test]
 fn what_holds_and_moves_is_that_of_the_reference() {
@@ -505,7 +505,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
         grip(&[17, 11], 0.11, 0.12, &dragging),
     ];
     let some_time = vec![grip(&[5, 12], 0.02, 0.03, &dragging)];
-    // It comes along with the nodes and pushes: nothing rebounds, which would cost digits.
+    // It moves with the nodes and pushes: nothing rebounds, which would lose digits.
     let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: offset(0.3, 0.4) };
     let paddle = Obstacle {
         shape: Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 },
@@ -528,7 +528,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
         ];
         for (body, model) in models {
             for integrator in [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet] {
-                // Without damping it gains energy without bound.
+                // Without damping its energy grows without bound.
                 if integrator == Integrator::ExplicitEuler && damping == 0.0 {
                     continue;
                 }
@@ -545,7 +545,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
                     plain.advance(STEPS);
                     let far = distance(fast.state(), plain.state());
                     let name = format!("{integrator:?} {damping} {} {model:?}", obstacles.len());
-                    // A rebound in velocity Verlet takes the root of a difference.
+                    // A rebound in velocity Verlet takes the square root of a difference.
                     assert!(far <= if obstacles.is_empty() { 1e-12 } else { 1e-11 }, "{far:e} {name}");
                     assert!(fast.state().memory.constraints.iter().any(|&gripped| gripped != 0.0));
                     let mut cut = world(Kernel::Fast, &obstacles);

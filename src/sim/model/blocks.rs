@@ -1,19 +1,19 @@
-//! Sharing the work of a model among threads so that the sums come out the same for any number of them.
+//! Sharing the work of a model among threads, with results that do not depend on the number of threads.
 //!
-//! Forces are first written down one by one, each by one thread; then each node adds up its own in a fixed order.
-//! No sum depends on who computed what, so the result has the same bits for 1, 2 or 8 threads.
+//! Each element or spring is evaluated by one thread, which stores its forces. Then each node adds up its own forces in
+//! a fixed order. So the result has the same bits for 1, 2 or 8 threads.
 
 use crate::sim::body::IndexLists;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Elements in one piece of work. Fewer and handing work over costs more than the work (an element takes some
-/// 150 ns, a hand-over some microseconds); more and small bodies find no second thread.
+/// Elements in one task. An element takes about 150 ns and starting a task some microseconds, so smaller blocks would
+/// cost more than they save; with larger ones small bodies would use one thread only.
 const BLOCK: usize = 512;
 
-/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. Each element has
-/// `width` numbers of the memory.
+/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. The memory has
+/// `width` numbers for each element.
 pub(super) fn for_each<T: Send>(
     elements: &IndexLists,
     width: usize,
@@ -63,7 +63,7 @@ pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mu
     }
 }
 
-/// For each node, which entries of a list of forces are its own.
+/// For each node, the entries of a list of forces that act on it.
 pub(super) struct Gather {
     entries: EntriesOfNode,
 }
@@ -74,7 +74,7 @@ impl Gather {
         Self { entries: EntriesOfNode::new(nodes, (0..).zip(node_of_entry)) }
     }
 
-    /// Adds to each node its own entries, in rising order.
+    /// Adds the entries of each node to its force, in rising order.
     pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
         for_each_one(forces, &|node, force| {
             for &entry in self.entries.of(node) {
@@ -84,9 +84,9 @@ impl Gather {
     }
 }
 
-/// For each node, which springs pull at it, and in which direction.
+/// For each node, the springs attached to it, and their signs.
 pub(super) struct SignedGather {
-    /// Twice the index of the spring, plus one at its second node.
+    /// Twice the index of the spring, plus one at the second node of the spring.
     entries: EntriesOfNode,
 }
 
@@ -96,7 +96,8 @@ impl SignedGather {
         Self { entries: EntriesOfNode::new(nodes, ends) }
     }
 
-    /// Adds to each node the forces of its springs, in rising order, reversed at a spring's second node.
+    /// Adds the forces of its springs to each node, in rising order; with the opposite sign at the second node of a
+    /// spring.
     pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
         for_each_one(forces, &|node, force| {
             for &entry in self.entries.of(node) {
@@ -107,15 +108,15 @@ impl SignedGather {
     }
 }
 
-/// The entries of each node, node after node, each node's in rising order.
+/// The entries of all nodes, sorted by node, and rising for each node.
 struct EntriesOfNode {
-    /// Where each node's entries begin, and at last where all end.
+    /// Where the entries of each node begin; the last number is where all end.
     starts: Vec<usize>,
     entries: Vec<usize>,
 }
 
 impl EntriesOfNode {
-    /// Sorts rising entries by their nodes, which are fewer than `nodes`.
+    /// Sorts entries, given in rising order, by their nodes. Node numbers are below `nodes`.
     fn new(nodes: usize, entries: impl Iterator<Item = (usize, u32)> + Clone) -> Self {
         let mut starts = vec![0; nodes + 1];
         for (_, node) in entries.clone() {

@@ -1,9 +1,9 @@
-//! The model the paper improves on: springs between pairs of nodes (section 2, Eq. (1)).
+//! Springs between pairs of nodes, the model that the paper compares with (section 2, Eq. (1)).
 //!
 //! Force on node `i` from the spring to `j`: `−{k (1 − L/|p|) + D (v·p)/(p·p)} p`, with `p` and `v` the position and
 //! velocity of `i` relative to `j` and `L` the natural length.
 //!
-//! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, which is why a turned-over element stays so.
+//! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::Body;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a scene types for this model.
+/// The parameters of the model in a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
@@ -37,7 +37,7 @@ pub struct Parameters {
     pub springs: Option<Springs>,
 }
 
-/// The model with its parameters resolved.
+/// The model with its parameters in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassSpring {
     /// Elastic constant `k_ij` of each spring (N/m).
@@ -49,7 +49,7 @@ pub struct MassSpring {
 }
 
 impl Parameters {
-    /// With an elastic constant (N/m), and all else as it is by default.
+    /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
         Self { stiffness, damping: None, damping_ratio: None, springs: None }
     }
@@ -61,7 +61,7 @@ impl TypedModel for Parameters {
             (None, Some(listed)) => listed.to_vec(),
             (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
         };
-        // The doubles that were taken out are several times as many.
+        // Duplicates were removed, so the capacity is several times the length.
         springs.shrink_to_fit();
         if springs.is_empty() {
             let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
@@ -91,7 +91,7 @@ impl TypedModel for Parameters {
     }
 }
 
-/// The springs of bodies that list none.
+/// The springs of bodies that list none and of models that name none.
 const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
 
 impl ElasticModel for MassSpring {
@@ -123,12 +123,12 @@ impl ElasticModel for MassSpring {
     }
 }
 
-/// A body's springs.
+/// The springs of a body, prepared for evaluation.
 struct Lattice {
     model: MassSpring,
     /// `L_ij` of each spring (m).
     natural_length: Vec<f64>,
-    /// Of the force of each spring on its first node, of which its second gets the opposite, the sums for each node.
+    /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
     gather: blocks::SignedGather,
 }
 
@@ -173,10 +173,10 @@ impl ForceModel for Lattice {
     }
 }
 
-/// Eq. (1), one spring: the force on node `i` (N) from its position `p` (m) and velocity `v` (m/s) relative to `j`,
+/// Eq. (1) for one spring: the force on node `i` (N) from its position `p` (m) and velocity `v` (m/s) relative to `j`,
 /// the natural length `l` (m), `k` (N/m) and `d` (N s/m).
 ///
-/// The formula is singular for coincident nodes, where a spring has no direction: there the force is zero.
+/// The formula is singular if both nodes are at one point, where a spring has no direction: the force is then zero.
 #[doc(alias = "Eq. 1")]
 fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
     let squared = p.dot(p);
@@ -208,7 +208,8 @@ mod tests {
         for (nodes, (dimension, solids)) in (2..12).flat_map(|nodes| cases.map(|case| (nodes, case))) {
             let own: Vec<u32> = (0..nodes as u32).collect();
             let elements: IndexLists = [own.as_slice()].into_iter().collect();
-            // On this curve every face of the hull is a triangle: as many edges as there can be.
+            // On this curve every face of the hull is a triangle, so the hull has the greatest possible number of
+            // edges.
             let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
             let body = Body::new(dimension, rest, vec![1.0; nodes], elements, solids, None);
             for springs in named {

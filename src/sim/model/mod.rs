@@ -1,7 +1,8 @@
-//! The elastic models. One file each; the list below is all that the rest of the crate knows of them.
+//! The elastic models, one file each. The rest of the crate refers to them only through the list below.
 //!
-//! To add a model, write a file with `Parameters`, what a scene types, which implement `TypedModel`, a resolved
-//! description that implements [`ElasticModel`], and its forces, which implement [`ForceModel`]; then name it in the list.
+//! To add a model, write a file with three types: `Parameters`, the parameters in a scene file, which implements
+//! `TypedModel`; the model with its parameters resolved, which implements [`ElasticModel`]; and its forces, which
+//! implement [`ForceModel`]. Then add it to the list.
 
 mod blocks;
 pub mod mass_spring;
@@ -17,10 +18,10 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Makes [`ModelParameters`] from a list of models.
+/// Defines [`ModelParameters`] from a list of models.
 macro_rules! models {
     ($($(#[$doc:meta])* $name:ident => $module:ident,)*) => {
-        /// What a scene types for a model: `model = { kind = "…", … }`.
+        /// A model as written in a scene file: `model = { kind = "…", … }`.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "kind", rename_all = "kebab-case")]
         pub enum ModelParameters {
@@ -54,7 +55,7 @@ models! {
 }
 
 impl ModelParameters {
-    /// The model for a body. `springs` are those that the body lists by hand, if it does.
+    /// The model for a body. `springs` are the springs that the scene lists for the body, if it lists any.
     ///
     /// # Errors
     /// Parameters that contradict each other or do not fit the body.
@@ -62,14 +63,14 @@ impl ModelParameters {
         self.typed().resolve(body, springs)
     }
 
-    /// How many springs the model makes, at most, of so many elements of each number of nodes; `listed` is how many the
-    /// body lists, if it does.
+    /// An upper bound for the number of springs that the model makes. `elements` has the number of elements for each
+    /// number of nodes; `listed` is the number of springs that the body lists, if it lists any.
     pub(crate) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
         self.typed().most_springs(elements, listed)
     }
 }
 
-/// What a scene types for one model.
+/// The parameters of one model in a scene file.
 trait TypedModel {
     /// See [`ModelParameters::resolve`].
     fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit>;
@@ -80,48 +81,48 @@ trait TypedModel {
     }
 }
 
-/// A parameter that does not fit, said about one key of the model's table.
+/// A parameter of the model that does not fit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub(crate) struct Misfit {
-    /// The key, as typed in the scene.
+    /// The key in the scene file.
     pub key: &'static str,
     /// What was found, what was expected and what to do.
     pub message: String,
 }
 
-/// An elastic model with all its parameters in SI units. It does not change; the work is done by what
-/// [`Self::prepare`] makes.
+/// An elastic model with all its parameters in SI units. It is immutable; [`Self::prepare`] makes the object that
+/// evaluates the forces.
 pub trait ElasticModel: Debug + Send + Sync {
-    /// Elastic constant `k` (N/m), by which diagrams divide forces.
+    /// Elastic constant `k` (N/m). Figures divide forces by it to draw them as lengths.
     fn stiffness(&self) -> f64;
 
-    /// The shortest period (s) with which a node of the body swings: `T = 2π√(m/k)` of its lightest node. Steps may be
-    /// given as a fraction of it.
+    /// The shortest period (s) with which a node of the body oscillates: `T = 2π√(m/k)` of its lightest node. A scene
+    /// can give time steps as a fraction of it.
     fn shortest_period(&self, body: &Body) -> f64 {
         std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
     }
 
-    /// A few words for a picture's second line, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
+    /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
     fn describe(&self, body: &Body) -> String;
 
-    /// The two nodes of each spring, for models that are made of springs.
+    /// The two nodes of each spring; empty for models without springs.
     fn springs(&self) -> &[[u32; 2]] {
         &[]
     }
 
-    /// Which model it is, for vectorised steps; `None` for one that has the plain code alone.
+    /// The model as vectorised steps support it; `None` for a model that has the reference code only.
     #[doc(hidden)]
     fn known(&self) -> Option<Known<'_>> {
         None
     }
 
-    /// Works out beforehand what evaluating the forces on `body` needs.
+    /// Precomputes what the evaluation of the forces on `body` needs.
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
 }
 
 impl dyn ElasticModel + '_ {
-    /// The internal forces (N) on each node of a body at a state with which the model starts.
+    /// The internal forces (N) on each node of a body, with the initial memory of the model for this state.
     pub fn forces_at_start(&self, body: &Arc<Body>, state: &State) -> Vec<DVec3> {
         let model = self.prepare(body);
         let memory = model.start(&state.position);
@@ -131,21 +132,20 @@ impl dyn ElasticModel + '_ {
     }
 }
 
-/// Models that vectorised steps know.
+/// Models that have vectorised steps.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub enum Known<'a> {
-    /// Section 3 of the paper.
+    /// The model of section 3 of the paper.
     ShapeBased(&'a shape_based::ShapeBased),
-    /// Section 2 of the paper.
+    /// The model of section 2 of the paper.
     MassSpring(&'a mass_spring::MassSpring),
 }
 
-/// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the same
-/// next memory. So trial evaluations and steps that are given up leave nothing behind.
+/// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
+/// same next memory. So trial evaluations and rejected steps have no side effects.
 ///
-/// # Example
-/// A whole model: between any two nodes of an element a rod with the energy `k/(8 L²) (|p|² − L²)²`.
+/// # Example A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
 /// ```
 #[doc = include_str!("../../../tests/physics/example_model.rs")]
 /// # use localshape::scene::{BodyBuilder, Limits, Scene};
@@ -159,39 +159,40 @@ pub enum Known<'a> {
 /// # Ok::<(), localshape::scene::SceneError>(())
 /// ```
 pub trait ForceModel: Send + Sync {
-    /// The memory at the start, with the nodes at `position` (m); its length stays as it is.
+    /// The initial memory, with the nodes at `position` (m). Its length never changes.
     fn start(&self, position: &[DVec3]) -> Vec<f64> {
         let _ = position;
         Vec::new()
     }
 
-    /// Adds elastic and damping forces (N) to `forces`, one per node, and writes the whole `next` memory.
+    /// Adds elastic and damping forces (N) to `forces`, one per node, and writes every entry of the `next` memory.
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]);
 
     /// Whether the forces depend on velocities.
     fn is_damped(&self) -> bool;
 
-    /// Energy and errors, as an evaluation of the forces with the same nodes and memory finds them. `share` is told of each
-    /// element or spring in order.
+    /// Energy and residuals, from the same computation as the forces with these nodes and this memory. Calls `share`
+    /// for each element or spring, in order.
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;
 
-    /// α of Eq. (18) of each element (rad/s²) in an evaluation of the forces with the nodes at `position` (m) that has led
-    /// to this memory; none for a model without rotations.
+    /// α of Eq. (18) of each element (rad/s²) at the evaluation of the forces with the nodes at `position` (m) that
+    /// returned this memory; empty for a model without rotations.
     fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
         let _ = (position, memory);
         Vec::new()
     }
 }
 
-/// Is told the number of an element or spring, its nodes, and the part of its energy (J) that is each node's.
+/// Called with the number of an element or spring, its nodes, and the part of its energy (J) that belongs to each node.
 pub type Share<'a> = dyn FnMut(usize, &[u32], &[f64]) + 'a;
 
-/// Room for intermediate results, kept from one evaluation to the next. What it holds in between means nothing.
+/// A buffer for intermediate results, kept to avoid allocations. Its contents do not survive from one evaluation to the
+/// next.
 #[derive(Debug, Default)]
 pub struct Scratch(Vec<DVec3>);
 
 impl Scratch {
-    /// Room for so many vectors, with anything in them.
+    /// A slice of this many vectors, with unspecified values.
     pub fn vectors(&mut self, count: usize) -> &mut [DVec3] {
         if self.0.len() < count {
             self.0.resize(count, DVec3::ZERO);
@@ -200,28 +201,28 @@ impl Scratch {
     }
 }
 
-/// What a model says about a state.
+/// Energy and residuals of a model in a state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Elastic energy (J), of which the elastic forces are the negative gradient; `None` for a model without one.
     pub energy: Option<f64>,
-    /// What is left of conditions that the model meets only approximately, by name.
+    /// The residuals of conditions that the model satisfies only approximately, by name.
     pub residuals: Vec<(&'static str, f64)>,
 }
 
 impl Report {
-    /// The name of the largest α of Eq. (18) over all elements (rad/s²).
+    /// The name of the residual that is the largest α of Eq. (18) over all elements (rad/s²).
     pub const ROTATION: &'static str = "rotation";
 
-    /// A residual by its name; `None` for a model without it.
+    /// The residual with this name; `None` for a model without it.
     pub fn residual(&self, name: &str) -> Option<f64> {
         self.residuals.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 }
 
-/// The damping constant (N s/m) from what was typed: itself, or a ratio `ζ = D / 2√(km)`, or nothing for 0. `m` is the
-/// mass of the lightest node, as in the cycle of which a step is a fraction: so a ratio and a fraction that are stable
-/// together stay so whatever the other masses are.
+/// The damping constant (N s/m), from either parameter: the constant, or the ratio `ζ = D / 2√(km)`; 0 if neither is
+/// given. `m` is the mass of the lightest node, as in the period of which a step is a fraction. So whether a ratio and
+/// a fraction are stable together does not depend on the other masses.
 fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
     match (constant, ratio) {
         (Some(_), Some(_)) => {
@@ -234,7 +235,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
     }
 }
 
-/// The second line of a picture: what the model is made of, its stiffness and, if it has any, its damping.
+/// The second line of a picture: the parts of the model, its stiffness and, if it has any, its damping.
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
     let (factor, prefix) = words::prefix(stiffness);
     let mut text = format!("{parts}, k = {} {prefix}N/m", words::rounded(stiffness / factor, 3));
@@ -245,7 +246,7 @@ fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
     text
 }
 
-/// The elements of a body in a few words, such as `27 cubes`.
+/// The elements of a body in words, such as `27 cubes`.
 fn elements_in_words(body: &Body) -> String {
     match words::elements(body).as_slice() {
         [(count, name)] => format!("{count} {name}"),

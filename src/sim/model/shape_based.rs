@@ -1,12 +1,12 @@
 //! The paper's model: every element keeps its own shape (section 3, Eq. (4)).
 //!
-//! Force on node `i`: `−Σ_e (k d_ie + D v_ie)`, with `d_ie = r_i − R_i` its distance from the equilibrium shape of
+//! Force on node `i`: `−Σ_e (k d_ie + D v_ie)`, with `d_ie = r_i − R_i` its displacement from the equilibrium shape of
 //! element `e`, and `v_ie` its velocity relative to the mean velocity of the element's nodes.
 //!
-//! Energy: `E = k/2 Σ_e Σ_i |r_i − R_i|²`. With the exact rotation its negative gradient is the elastic force,
-//! because moving along the optimum changes `E` only in second order.
+//! Energy: `E = k/2 Σ_e Σ_i |r_i − R_i|²`. With the exact rotation its negative gradient is the elastic force, because
+//! `E` is stationary with respect to the rotation.
 //!
-//! The centre of an element is the unweighted mean of its nodes: with any other, unequal masses would give a net
+//! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
 //! internal force.
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What a scene types for this model.
+/// The parameters of the model in a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
@@ -34,13 +34,14 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// How often Eq. (15) is solved at each evaluation of the forces, each time from the last result (paper,
-    /// section 4). Default: 2, as the paper advises. Given alone it asks for `rotation = "arctangent"`.
+    /// Number of passes, each of which solves Eq. (15), at each evaluation of the forces. The first pass starts from
+    /// the last rotation (paper, section 4). Default: 2, as the paper advises. If `rotation` is not given, it becomes
+    /// `arctangent`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100))]
     pub passes: Option<u32>,
-    /// How the rotation of an element is found. Default: `exact`; the paper's way is `arctangent`. In the plane Eq. (9) is
-    /// exact and there is nothing to choose.
+    /// How the rotation of an element is computed. Default: `exact`; the paper's method is `arctangent`. In the plane
+    /// all use Eq. (9), which is exact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationReading>,
     /// Which velocity the damping of Eq. (4) acts on.
@@ -48,25 +49,26 @@ pub struct Parameters {
     pub damping_of: Option<DampingReading>,
 }
 
-/// How the rotation of an element is found. The paper's Eqs. (15) and (16) can be read in three ways; two better
-/// solvers stand beside them.
+/// How the rotation of an element is computed. There are three readings of the paper's Eqs. (15) and (16), and two more
+/// accurate methods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RotationReading {
-    /// The paper's Eq. (15), and a turn about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis; true
-    /// rotations are accumulated. Two passes are off by 5e-14 rad after an element has turned by 0.01 rad in a step, by
-    /// 2e-9 after 0.1 rad.
+    /// Eq. (15), and a rotation about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis;
+    /// rotations are accumulated as quaternions. With two passes the error is 5e-14 rad after an element has rotated by
+    /// 0.01 rad in a step, and 2e-9 rad after 0.1 rad.
     Arctangent,
-    /// About `w` by the angle `|w|`; true rotations are accumulated. It overshoots and can spin a free body up.
+    /// Rotation about `w` by the angle `|w|`, accumulated as quaternions. It overshoots and can make a free body spin
+    /// faster and faster.
     VectorLength,
-    /// Eq. (16) as printed, `R + w × R`. That is no rotation: a spinning body swells.
+    /// Eq. (16) as printed, `R + w × R`. The result is not a rotation: a spinning body grows.
     LinearUpdate,
-    /// Like `arctangent`, with the symmetric part of Eq. (15)'s matrix: each pass takes the error to its third power
-    /// instead of its second. Not in the paper.
+    /// Like `arctangent`, with the symmetric part of the matrix of Eq. (15). It converges cubically instead of
+    /// quadratically. Not in the paper.
     Symmetric,
-    /// The optimum to round-off at every evaluation, without passes: one step of higher order from the last rotation, where
-    /// it is certain that this is enough, else an eigenvector. Faster than two passes of Eq. (15), and its residual α is
-    /// round-off. Not in the paper. The default.
+    /// The optimal rotation, to round-off, at every evaluation, without passes: one step of higher order from the last
+    /// rotation where its error is bounded by round-off, else an eigenvector. Faster than two passes of Eq. (15), and
+    /// its residual α is round-off. Not in the paper. The default.
     #[default]
     Exact,
 }
@@ -75,31 +77,30 @@ pub enum RotationReading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DampingReading {
-    /// As printed: a node's velocity relative to the element's mean. It brakes the spin of a rigid body, too. The
-    /// default.
+    /// As printed: the velocity of a node relative to the element's mean. It also damps rigid rotation. The default.
     #[default]
     RelativeMotion,
-    /// What is left of that velocity when the best-fitting rigid spin is taken away.
+    /// That velocity minus the best-fitting rigid rotation.
     Deformation,
 }
 
-/// The model with its parameters resolved.
+/// The model with its parameters in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeBased {
     /// Elastic constant `k_e` of each element (N/m).
     pub stiffness: f64,
     /// Damping constant `D_e` of each element (N s/m).
     pub damping: f64,
-    /// How often Eq. (15) is solved at each evaluation.
+    /// Number of passes, each of which solves Eq. (15), at each evaluation.
     pub passes: u32,
-    /// How the rotation of an element is found.
+    /// How the rotation of an element is computed.
     pub rotation: RotationReading,
     /// Which velocity is damped.
     pub damping_of: DampingReading,
 }
 
 impl Parameters {
-    /// With an elastic constant (N/m), and all else as it is by default.
+    /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
         Self { stiffness, damping: None, damping_ratio: None, passes: None, rotation: None, damping_of: None }
     }
@@ -141,7 +142,7 @@ impl ElasticModel for ShapeBased {
     fn describe(&self, body: &Body) -> String {
         let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
         text.push_str(match self.rotation {
-            // In the plane there is nothing to choose.
+            // In the plane there is only one method.
             _ if body.dimension == Dimension::Plane => "",
             RotationReading::Arctangent => "",
             RotationReading::VectorLength => ", θ = |w|",
@@ -155,7 +156,7 @@ impl ElasticModel for ShapeBased {
         text
     }
 
-    /// Readings that are here for study have the plain code alone.
+    /// The readings for comparison and the damping of deformation have the reference code only.
     fn known(&self) -> Option<Known<'_>> {
         let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Exact)
             && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
@@ -167,19 +168,19 @@ impl ElasticModel for ShapeBased {
     }
 }
 
-/// How the rotation of an element is found and remembered.
+/// How the rotation of an element is computed and stored.
 #[derive(Clone, Copy, Debug)]
 enum Solver {
-    /// Eq. (9); remembered is `(cos θ, sin θ)`.
+    /// Eq. (9); stored as `(cos θ, sin θ)`.
     Plane,
-    /// Eq. (15) and its rivals; remembered is a unit quaternion.
+    /// Eq. (15) and the alternatives to it; stored as a unit quaternion.
     Space,
-    /// Eq. (16); remembered is the matrix, which is no rotation for long.
+    /// Eq. (16); stored as a matrix, which drifts away from a rotation.
     Linear,
 }
 
 impl Solver {
-    /// How many numbers an element remembers.
+    /// How many numbers are stored for each element.
     fn width(self) -> usize {
         match self {
             Self::Plane => 2,
@@ -188,7 +189,7 @@ impl Solver {
         }
     }
 
-    /// The rotation that is remembered.
+    /// The stored rotation as a matrix.
     fn matrix(self, memory: &[f64]) -> DMat3 {
         match self {
             Self::Plane => planar::matrix(DVec2::from_slice(memory)),
@@ -207,7 +208,7 @@ impl ShapeBased {
         }
     }
 
-    /// The rotation of an element from its last one, as read. `at_rest` is `Σ R0 rᵀ` (m²).
+    /// The rotation of an element from its last one, by the method chosen. `at_rest` is `Σ R0 rᵀ` (m²).
     fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
         match solver {
             Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
@@ -219,7 +220,7 @@ impl ShapeBased {
         solver.matrix(next)
     }
 
-    /// The rotation of an element in space from its last one, as read.
+    /// The rotation of an element in space from its last one, by the method chosen.
     fn rotation_in_space(&self, at_rest: DMat3, last: DQuat) -> DQuat {
         use linearised::{iterate, rotation_by_arctangent, rotation_by_length, solve, solve_symmetric};
         match self.rotation {
@@ -233,7 +234,7 @@ impl ShapeBased {
     }
 }
 
-/// A body's elements.
+/// The elements of a body, prepared for evaluation.
 struct Elements {
     model: ShapeBased,
     solver: Solver,
@@ -242,11 +243,11 @@ struct Elements {
     rest: Vec<DVec3>,
     /// `Σ m |R0|²` of each element (kg m²), Eq. (17).
     inertia: Vec<f64>,
-    /// Of the forces on each corner, element after element, the sums for each node.
+    /// Adds up the forces on the corners of all elements for each node.
     gather: blocks::Gather,
 }
 
-/// Where the equilibrium shape of an element is.
+/// The position and rotation of the equilibrium shape of an element.
 struct Fit {
     /// The unweighted mean of its nodes (m).
     centre: DVec3,
@@ -276,13 +277,13 @@ impl Elements {
         (&self.body.elements[element], &self.rest[self.body.elements.range(element)])
     }
 
-    /// The part of the memory that is an element's.
+    /// The memory of an element.
     fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
         let width = self.solver.width();
         &memory[element * width..][..width]
     }
 
-    /// Finds an element's rotation from the last one.
+    /// Computes the rotation of an element from the last one.
     fn fit(&self, element: usize, position: &[DVec3], last: &[f64], next: &mut [f64]) -> Fit {
         let (nodes, rest) = self.element(element);
         let centre = mean(nodes, position);
@@ -290,7 +291,7 @@ impl Elements {
         Fit { centre, at_rest, rotation: self.model.rotation(self.solver, at_rest, last, next) }
     }
 
-    /// α of an element with a rotation, for its `Σ R0 rᵀ` (m²).
+    /// α of Eq. (18) of an element with a rotation (rad/s²), from its `Σ R0 rᵀ` (m²).
     fn residual(&self, element: usize, at_rest: DMat3, rotation: DMat3) -> f64 {
         angular_acceleration(rotation * at_rest, self.model.stiffness, self.inertia[element])
     }
@@ -323,7 +324,7 @@ impl Elements {
 }
 
 impl ForceModel for Elements {
-    /// The exact optimum of the initial positions, not the identity.
+    /// The rotations that are optimal for the initial positions, which need not be the identity.
     fn start(&self, position: &[DVec3]) -> Vec<f64> {
         let mut memory = vec![0.0; self.solver.width() * self.body.elements.len()];
         for (element, memory) in memory.chunks_exact_mut(self.solver.width()).enumerate() {
@@ -367,7 +368,7 @@ impl ForceModel for Elements {
         for (element, nodes) in self.body.elements.iter().enumerate() {
             share(element, nodes, &shares[self.body.elements.range(element)]);
         }
-        // In the order of the corners, whoever measured them.
+        // In the order of the corners, for any number of threads.
         let energy = shares.iter().sum();
         let residual = alphas.into_iter().fold(0.0, f64::max);
         Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
@@ -394,10 +395,12 @@ fn mean(nodes: &[u32], values: &[DVec3]) -> DVec3 {
     sum / nodes.len() as f64
 }
 
-/// The spin `ω` (rad/s) that takes most away from velocities: `Σ (r² I − r rᵀ) ω = Σ r × v`, for corners given by place
-/// (m) and velocity (m/s) relative to their means. Forces in proportion to what is left have no torque.
+/// The angular velocity `ω` (rad/s) of the rigid rotation that fits velocities best: `Σ (r² I − r rᵀ) ω = Σ r × v`.
+/// Corners are given by position (m) and velocity (m/s) relative to their means. Forces proportional to the remaining
+/// velocities exert no torque.
 fn best_spin(corners: impl Iterator<Item = (DVec3, DVec3)>) -> DVec3 {
-    /// Corners whose matrix has a determinant below this part of what it would be in a ball lie on a line.
+    /// Corners are taken to lie on a line if the determinant of their matrix, relative to that of a ball, is below
+    /// this.
     const LINE: f64 = 1e-12;
     let (mut matrix, mut momentum, mut squares) = (DMat3::ZERO, DVec3::ZERO, 0.0);
     for (r, v) in corners {
@@ -410,19 +413,21 @@ fn best_spin(corners: impl Iterator<Item = (DVec3, DVec3)>) -> DVec3 {
         return DVec3::ZERO;
     }
     if matrix.determinant() <= LINE * squares * squares * squares {
-        // A line has no spin about itself, and the same moment about all axes across.
+        // Rotation about the line itself has no effect; across it the moment is the same about all axes.
         return momentum / squares;
     }
     matrix.inverse() * momentum
 }
 
-/// Eq. (17): the rough moment of inertia `I = Σ m |R0|²` of an element (kg m²); it overstates a cube's by half.
+/// Eq. (17): the approximate moment of inertia `I = Σ m |R0|²` of an element (kg m²); for a cube it is 1.5 times the
+/// true one.
 #[doc(alias = "Eq. 17")]
 fn inertia(nodes: &[u32], rest: &[DVec3], mass: &[f64]) -> f64 {
     nodes.iter().zip(rest).map(|(&node, rest)| mass[node as usize] * rest.length_squared()).sum()
 }
 
-/// Eq. (18): `|α| = k |Σ r × R| / I` (rad/s²), what the error of an element's rotation amounts to. `a` is `Σ R rᵀ`.
+/// Eq. (18): `|α| = k |Σ r × R| / I` (rad/s²), the angular acceleration that the error of an element's rotation causes.
+/// `a` is `Σ R rᵀ`.
 #[doc(alias = "Eq. 18")]
 fn angular_acceleration(a: DMat3, stiffness: f64, inertia: f64) -> f64 {
     stiffness * rotation::torque(a).length() / inertia

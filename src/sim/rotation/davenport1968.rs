@@ -1,21 +1,23 @@
 //! The exact rotation for any input: the eigenvector of Davenport's 4×4 matrix with the largest eigenvalue.
 //!
 //! P. Davenport, "A vector approach to the algebra of rotations with applications", NASA TN D-4696, 1968; in the form
-//! of B. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4(4), 1987,
-//! p. 635. The eigenvectors come from Jacobi's cyclic method, which cannot fail and uses square roots alone.
+//! of B. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4(4), 1987, p.
+//! 635. The eigenvectors are computed by the cyclic Jacobi method, which always converges and needs only square roots.
 
 use glam::{DMat3, DQuat, DVec4};
 
-/// Eigenvalues closer to the largest than this, in units of the size of the matrix, count as equal to it.
+/// Eigenvalues that differ from the largest by less than this, relative to the size of the matrix, count as equal to
+/// it.
 ///
-/// Smaller, and the round-off of Jacobi's method (1e-15) would choose a direction at random where there is none to
-/// choose; larger, and clearly different optima would be mixed. Being wrong costs this part of the elastic energy.
+/// With a smaller bound the round-off of the Jacobi method (1e-15) would select an arbitrary direction where all are
+/// equally good. With a larger one distinct optima would be mixed. A wrong decision costs this fraction of the elastic
+/// energy.
 const EQUAL: f64 = 1e-12;
 
 /// The rotation `M` that maximises `tr(M Σ R0 rᵀ)`, that is, minimises `Σ |r − M R0|²`.
 ///
-/// `at_rest` is `Σ R0 rᵀ`. Where there are many (corners on a line or at a point, or turned inside out)
-/// the one nearest to `last`. Never NaN: what cannot be decided keeps `last`.
+/// `at_rest` is `Σ R0 rᵀ`. If several rotations are optimal (corners on a line or at a point, or turned inside out),
+/// the one nearest to `last` is returned. Never NaN: if nothing can be determined, `last` is returned.
 pub(crate) fn optimum(at_rest: DMat3, last: DQuat) -> DQuat {
     let size = at_rest.to_cols_array().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
     if !(size > 0.0 && at_rest.is_finite()) {
@@ -43,9 +45,9 @@ fn matrix(s: DMat3) -> [[f64; 4]; 4] {
     ]
 }
 
-/// Eigenvalues and eigenvectors of a symmetric matrix by Jacobi's cyclic method.
+/// Eigenvalues and eigenvectors of a symmetric matrix by the cyclic Jacobi method.
 ///
-/// The method converges quadratically; six sweeps are enough for every input, the others are a reserve.
+/// The method converges quadratically; six sweeps suffice for every input, the others are a reserve.
 fn eigen(mut m: [[f64; 4]; 4]) -> ([f64; 4], [DVec4; 4]) {
     let mut vectors = [DVec4::X, DVec4::Y, DVec4::Z, DVec4::W];
     for _sweep in 0..12 {
@@ -114,7 +116,7 @@ mod tests {
         let last = DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize();
         assert_eq!(optimum(DMat3::ZERO, last), last);
         assert_eq!(optimum(DMat3::from_cols_array(&[f64::NAN; 9]), last), last);
-        // On a line: the last turn about the line stays, and the line itself is met.
+        // On a line: the last rotation about the line is kept, and the line itself is matched.
         let rest = cube();
         let line = DVec3::new(1.0, 2.0, -0.5).normalize();
         let a = moment(&rest, rest.iter().map(|r| line * r.x));

@@ -1,16 +1,16 @@
-//! Eq. (16) as printed: `R ← R + w × R`, which is no rotation. Here for study.
+//! Eq. (16) as printed: `R ← R + w × R`, whose result is not a rotation. For comparison only.
 //!
-//! What lies across the axis grows by `√(1 + |w|²)` at every step, so a spinning element swells: by 22 % after 1000
-//! steps of 0.02 rad. After one pass the torque of Eq. (5) is exactly zero, for Eq. (15) is then solved exactly.
+//! Components perpendicular to the axis grow by `√(1 + |w|²)` in each step, so a spinning element grows: by 22 % after
+//! 1000 steps of 0.02 rad. After one pass the torque of Eq. (5) is exactly zero, as Eq. (15) is then solved exactly.
 
 use super::linearised;
 use glam::{DMat3, DVec3};
 
-/// How far from singular the matrix of Eq. (15) must be, in units of its size (to the third power).
+/// The least determinant of the matrix of Eq. (15) that counts as regular, relative to the third power of its size.
 const SINGULAR: f64 = 1e-12;
 
-/// The matrix `M` of an element's equilibrium shape `R = M R0` from its last one: `passes` solutions of Eq. (15), each
-/// put into Eq. (16).
+/// The matrix `M` of an element's equilibrium shape `R = M R0` from its last one: `passes` times Eq. (15), with each
+/// solution inserted in Eq. (16).
 ///
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) has no solution (corners at a point or on a line) the last matrix is kept.
 #[doc(alias = "Eq. 16")]

@@ -1,11 +1,11 @@
-//! The paper's solver in space: Eq. (15), solved a fixed number of times from the last rotation.
+//! The paper's solver in space: Eq. (15), solved a fixed number of times, starting from the last rotation.
 
 use super::{davenport1968, torque};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Eq. (15): `(tr(A) I − A) w = Σ R × r`, the rotation vector that balances the torque to first order.
 ///
-/// The matrix must not be singular; [`is_well_posed`] makes sure of that.
+/// The matrix must be regular; see [`is_well_posed`].
 #[doc(alias = "Eq. 15")]
 pub(crate) fn solve(a: DMat3) -> DVec3 {
     cramer(columns(a), -torque(a))
@@ -13,9 +13,9 @@ pub(crate) fn solve(a: DMat3) -> DVec3 {
 
 /// Eq. (15) with the symmetric part of its matrix, `H w = Σ R × r` with `H = tr(A) I − (A + Aᵀ)/2`.
 ///
-/// That is the Hessian of the element's energy, and so Newton's method: with the angle of [`rotation_by_arctangent`] each pass takes the
-/// error to its third power, where the printed matrix takes it to its second. Not in the paper. [`is_well_posed`] is
-/// about this matrix, too.
+/// The matrix is the Hessian of the element's energy, so this is Newton's method: with the angle of
+/// [`rotation_by_arctangent`] it converges cubically, with the printed matrix quadratically. Not in the paper.
+/// [`is_well_posed`] tests this matrix, too.
 pub(crate) fn solve_symmetric(a: DMat3) -> DVec3 {
     cramer(columns((a + a.transpose()) * 0.5), -torque(a))
 }
@@ -41,37 +41,36 @@ fn columns(a: DMat3) -> [DVec3; 3] {
 
 /// The rotation with axis `u = w/|w|` and angle `θ = atan |w|`, which is Eq. (9) about that axis.
 ///
-/// `tan(θ/2) = |w| / (1 + √(1 + w²))` makes it a quaternion without any trigonometric function. The quaternion is not
-/// normalised.
+/// `tan(θ/2) = |w| / (1 + √(1 + w²))` gives a quaternion without trigonometric functions. It is not normalised.
 #[doc(alias = "Eq. 10")]
 pub(crate) fn rotation_by_arctangent(w: DVec3) -> DQuat {
     DQuat::from_xyzw(w.x, w.y, w.z, 1.0 + (1.0 + w.length_squared()).sqrt())
 }
 
-/// The rotation with axis `u = w/|w|` and angle `θ = |w|`, the other reading of the paper. It overshoots and can spin a
-/// free body up; here for study.
+/// The rotation with axis `u = w/|w|` and angle `θ = |w|`, the other reading of the paper. It overshoots and can make a
+/// free body spin faster and faster. For comparison only.
 pub(crate) fn rotation_by_length(w: DVec3) -> DQuat {
     let angle = w.length();
     if angle == 0.0 {
         return DQuat::IDENTITY;
     }
-    // To the same bits on every machine: this library computes its sine in plain arithmetic.
+    // With the same bits on every machine: this library uses basic arithmetic only.
     let (sine, cosine) = libm::sincos(0.5 * angle);
     let axis = w * (sine / angle);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
 }
 
-/// How far above zero, in units of the size of `A`, the leading minors of the Hessian must lie.
+/// The least value of the leading minors of the Hessian that counts as positive, relative to the size of `A`.
 ///
-/// Nearer to zero the three rows of Eq. (15) no longer determine an axis: corners on a line give exactly zero up to
-/// round-off (1e-16), corners in a plane 2 and more. The exact solver that takes over has no such edge, so the value
-/// decides which road is taken and hardly what comes out.
+/// Below it the three rows of Eq. (15) no longer determine an axis: corners on a line give zero up to round-off
+/// (1e-16), corners in a plane 2 or more. The exact solver that is used instead has no such limit, so the value selects
+/// the method but hardly affects the result.
 const WELL_POSED: f64 = 1e-9;
 
-/// Whether Eq. (15) has one solution that leads to the wanted equilibrium: the Hessian
-/// `H = tr(A) I − (A + Aᵀ)/2` of the element's energy is positive definite (its leading minors are positive).
+/// Whether Eq. (15) has one solution and it leads to the equilibrium: the Hessian `H = tr(A) I − (A + Aᵀ)/2` of the
+/// element's energy is positive definite (its leading minors are positive).
 ///
-/// Then the matrix of Eq. (15), whose symmetric part is `H`, is not singular either.
+/// Then the matrix of Eq. (15), whose symmetric part is `H`, is regular as well.
 pub(crate) fn is_well_posed(a: DMat3) -> bool {
     let (xx, yy, zz) = (a.x_axis.x, a.y_axis.y, a.z_axis.z);
     let xy = -0.5 * (a.y_axis.x + a.x_axis.y);
@@ -84,12 +83,12 @@ pub(crate) fn is_well_posed(a: DMat3) -> bool {
     hx > WELL_POSED * size && minor > WELL_POSED * size * size && determinant > WELL_POSED * size * size * size
 }
 
-/// The rotation of an element from its last one: `passes` solutions of Eq. (15), each made a true rotation and
-/// accumulated (Eq. (10) instead of Eq. (16), which is no rotation). `rotation_of` makes one solution for `A` a rotation:
-/// `|a| rotation_by_arctangent(solve(a))` and its rivals.
+/// The rotation of an element from its last one: `passes` times Eq. (15), with each solution converted to a rotation
+/// and accumulated (Eq. (10) instead of Eq. (16), whose result is not a rotation). `rotation_of` solves for `A` and
+/// converts, such as `|a| rotation_by_arctangent(solve(a))`.
 ///
-/// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) is no guide (turned inside out, flattened to a line or a point, more than
-/// a quarter turn away) the exact optimum nearest to `last` is taken instead.
+/// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) is not well posed (turned inside out, flattened to a line or a point, more
+/// than a quarter turn away) the exact optimum nearest to `last` is used instead.
 pub(crate) fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> DQuat {
     let mut rotation = last;
     for _ in 0..passes {
@@ -121,9 +120,8 @@ mod tests {
 
     #[test]
     fn errors_after_each_pass_are_those_of_an_independent_implementation() {
-        // A 1 × 0.7 × 0.4 box. The independent figures are for another axis, so magnitudes are what must agree; they
-        // set this reading of Eq. (15) apart from `θ = |w|` (0.16, 4.9e-3, 1e-6 at 40°) and from the symmetric
-        // matrix (0.033, 1.9e-6, 1e-16).
+        // A 1 × 0.7 × 0.4 box. The independent values are for another axis, so only magnitudes can agree. They exclude
+        // the reading `θ = |w|` (0.16, 4.9e-3, 1e-6 at 40°) and the symmetric matrix (0.033, 1.9e-6, 1e-16).
         let rest = corners(1.0, 0.7, 0.4);
         for (degrees, independent) in [(10f64, [4.2e-3, 1.8e-6, 4e-13]), (40.0, [0.075, 5.7e-4, 5e-8])] {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
@@ -131,7 +129,7 @@ mod tests {
             for (passes, expected) in (1..).zip(independent) {
                 let error =
                     angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve(a))));
-                // Each pass squares the error, so a factor in the first is its power in the later ones.
+                // Each pass squares the error, so a factor in the first one is squared as well.
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
             }
@@ -171,7 +169,7 @@ mod tests {
                     turned,
                     iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve_symmetric(a))),
                 );
-                // The independent figures are for another axis; each pass takes a factor to its third power.
+                // The independent values are for another axis; each pass raises a factor to its third power.
                 let factor = 2f64.powi(3i32.pow(passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
             }
@@ -191,7 +189,7 @@ mod tests {
 
     #[test]
     fn corners_nearly_on_a_line_are_where_the_exact_optimum_takes_over() {
-        // The least minor of the Hessian is 2δ, of rows whose absolute entries sum to 2 + 4δ: δ = 4e-9 is the bound.
+        // The least minor of the Hessian is 2δ, of rows whose absolute entries sum to 2 + 4δ: the limit is at δ = 4e-9.
         let moments = |delta: f64| DMat3::from_diagonal(DVec3::new(1.0, delta, delta));
         for size in [1e-6, 1.0, 1e6] {
             assert!(is_well_posed(moments(4.01e-9) * size), "{size}");

@@ -8,9 +8,9 @@
 //! | `A` | `Σ R rᵀ` (m²), the matrix of which Eq. (15) is made |
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
-//! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are visited once however often
-//! Eq. (15) is solved. But for one reading kept for study no function here uses a sine, a cosine or an arctangent:
-//! square roots and divisions alone are rounded alike on every machine.
+//! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are read only once for any number of
+//! passes. Except for one reading, for comparison, no function here uses a sine, a cosine or an arctangent: square
+//! roots and divisions are rounded identically on every machine.
 
 pub(crate) mod davenport1968;
 pub(crate) mod linear_update;
@@ -20,7 +20,7 @@ pub(crate) mod planar;
 use super::body::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-/// `A = Σ R rᵀ` of an element: `shape` its equilibrium (or rest) corners, `now` its present ones (m), both relative
+/// `A = Σ R rᵀ` of an element: `shape` has its equilibrium (or rest) corners, `now` its present ones (m), both relative
 /// to their own mean.
 pub(crate) fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
     let mut a = DMat3::ZERO;
@@ -32,8 +32,8 @@ pub(crate) fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> D
     a
 }
 
-/// The rotation that minimises `Σ |r − M R0|²`, exactly, for `at_rest` = `Σ R0 rᵀ`; where there are many, the one
-/// nearest to none.
+/// The rotation that minimises `Σ |r − M R0|²`, exactly, for `at_rest` = `Σ R0 rᵀ`; if there are several, the one
+/// nearest to the identity.
 pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
     match dimension {
         Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),

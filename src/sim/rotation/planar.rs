@@ -1,10 +1,10 @@
-//! The rotation in the plane, which is exact: Eq. (9).
+//! The rotation in the plane by Eq. (9), which is exact.
 
 use glam::{DMat3, DVec2};
 
-/// Eq. (9): `(cos θ, sin θ)` in proportion to `(Σ X x + Y y, Σ X y − Y x)`, which is the four-quadrant arctangent.
+/// Eq. (9): `(cos θ, sin θ)` is proportional to `(Σ X x + Y y, Σ X y − Y x)`, which is the four-quadrant arctangent.
 ///
-/// `at_rest` is `Σ R0 rᵀ`. When both sums are zero every angle is as good, and `last` is kept.
+/// `at_rest` is `Σ R0 rᵀ`. If both sums are zero all angles are equally good, and `last` is returned.
 #[doc(alias = "Eq. 9")]
 pub(crate) fn solve(at_rest: DMat3, last: DVec2) -> DVec2 {
     let cosine = at_rest.x_axis.x + at_rest.y_axis.y;
