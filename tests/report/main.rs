@@ -460,7 +460,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     assert_eq!((&scales[0], &scales[1]), (&scales[2], &scales[2]), "pictures of two sizes are shown at one scale");
 
     // Whatever is told of a frame, the charts stay where they are.
-    let runs = Report { courses: [courses(41), courses(41), courses(41)].concat(), ..sequence() };
+    let runs = Report { courses: vec![courses(41); 4].concat(), ..sequence() };
     browser.open(&runs.page(), "");
     browser.until("the charts", "document.querySelector('#charts text') !== null");
     let heights = "(() => { const [strip, charts] = ['strip', 'charts'].map((id) => document.getElementById(id)); \
