@@ -238,6 +238,15 @@ fn it_works_by_keys(browser: &mut Browser) {
         let room = browser.number("document.getElementById('difference-key').getBoundingClientRect().height");
         assert_eq!(room > 0.0, mode == "side", "after {key}");
     }
+    // Of pictures that a held key passes only the last is told to screen readers.
+    let told = browser.value(
+        "new Promise((done) => { \
+         new MutationObserver((records) => done(records.flatMap(({ addedNodes }) => [...addedNodes].map((node) => node.data)))) \
+         .observe(document.getElementById('announced'), { childList: true }); \
+         for (const key of ['ArrowLeft', 'ArrowRight', 'ArrowRight', 'ArrowLeft']) \
+         document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true })); })",
+    );
+    assert_eq!(told, json!(["010.png: 3 pixels differ by more than 2 of 255; 8 may"]));
     // Zoom, from what fits to one to one and back; a view larger than its pane is moved about in.
     let scale = "document.getElementById('scale').textContent";
     let fit = browser.text(scale);
@@ -355,8 +364,11 @@ fn the_blink_blinks(browser: &mut Browser) {
         until_seen(browser, places, wanted);
         browser.press(" ", PLAIN);
     }
-    // Who asked for less motion starts it himself.
+    // Who asks for less motion stops it, and starts it himself.
+    browser.press("b", PLAIN);
+    assert_eq!(browser.text("document.getElementById('run').textContent"), "Stop");
     browser.pretend("prefers-reduced-motion", "reduce");
+    browser.until("a stop", "document.getElementById('run').textContent === 'Start'");
     browser.open(&sequence().page(), "#picture=040.png&mode=blink");
     assert_eq!(browser.text("document.getElementById('run').textContent"), "Start");
     assert_eq!(browser.text(shown), "expected");
@@ -410,10 +422,12 @@ fn it_works_by_pointer(browser: &mut Browser) {
 
     // The command is copied, or at least selected.
     browser.click_on("#copy");
-    browser.until("the command", "['Copied', 'Selected'].includes(document.getElementById('copy').textContent)");
-    if browser.text("document.getElementById('copy').textContent") == "Selected" {
+    let told = "document.getElementById('announced').textContent";
+    browser.until("the command", &format!("['Copied', 'Selected'].includes({told})"));
+    if browser.text(told) == "Selected" {
         assert_eq!(browser.text("getSelection().toString()"), "localshape accept goldens/two output/two");
     }
+    browser.until("the button as it was", "document.getElementById('copy').textContent === 'Copy'");
     assert_eq!(browser.complaints(), [""; 0]);
 }
 
@@ -423,6 +437,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     let [one, two, three, four, _] = &mut report.pictures[..] else { panic!("five pictures") };
     (one.verdict, one.actual, one.difference, one.passes) = ("missing".into(), None, None, false);
     (two.verdict, two.expected, two.difference, two.visible) = ("extra".into(), None, None, None);
+    two.actual = Some(b"no picture".into());
     (three.expected, three.actual, three.difference) = (None, None, None);
     four.actual = Some(png([32, 96], |_, _| INK));
     let Some((mut browser, _)) = browser_with(&report, "#picture=000.png") else { return };
@@ -434,6 +449,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     browser.until("the pictures", LOADED);
     let seen = browser.value(captions);
     assert_eq!(seen[0], "Expected missing: nothing like it was expected");
+    assert_eq!(seen[2], "Actual this picture cannot be shown");
     browser.press("ArrowRight", PLAIN);
     assert_eq!(browser.value(captions)[2], "Actual not embedded in this report");
     browser.press("ArrowRight", PLAIN);
@@ -442,6 +458,21 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     let scales = "[...document.images].map((image) => image.getBoundingClientRect().width / image.naturalWidth)";
     let scales = browser.value(scales);
     assert_eq!((&scales[0], &scales[1]), (&scales[2], &scales[2]), "pictures of two sizes are shown at one scale");
+
+    // Whatever is told of a frame, the charts stay where they are.
+    let runs = Report { courses: vec![courses(41); 4].concat(), ..sequence() };
+    browser.open(&runs.page(), "");
+    browser.until("the charts", "document.querySelector('#charts text') !== null");
+    let heights = "(() => { const [strip, charts] = ['strip', 'charts'].map((id) => document.getElementById(id)); \
+                   return new Set(Array.from({ length: 41 }, (_, frame) => { strip.value = frame; \
+                   strip.dispatchEvent(new Event('input')); return charts.getBoundingClientRect().top; })).size; })()";
+    assert_eq!(browser.value(heights), 1);
+    // Words in the table of all numbers are not broken.
+    browser.click_on("summary");
+    browser.until("the table", "document.querySelector('#numbers th') !== null");
+    let lines =
+        "document.querySelector('#numbers tr').offsetHeight / parseFloat(getComputedStyle(document.body).lineHeight)";
+    assert!(browser.number(lines) < 2.0);
 
     // Any number of pictures on any screen.
     let single = Report { courses: vec![], pictures: vec![sheet("only.png", None, false)], ..sequence() };

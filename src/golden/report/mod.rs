@@ -147,7 +147,7 @@ impl Report {
             format!(
                 "<div class=\"accept\"><p id=\"accept-label\">If this is what you meant, accept it:</p>\n\
                  <div class=\"command\"><code id=\"command\" tabindex=\"0\" aria-labelledby=\"accept-label\">{}</code>\
-                 <button type=\"button\" id=\"copy\" aria-live=\"polite\" hidden>Copy</button></div></div>",
+                 <button type=\"button\" id=\"copy\" hidden>Copy</button></div></div>",
                 escaped(command)
             )
         })

@@ -13,6 +13,10 @@
   const TALLEST = 0.74;
   /** How far a key moves a picture (px). */
   const STEP = 60;
+  /** Words are told to screen readers once nothing follows for this time (ms): not for every picture that a held key passes. */
+  const QUIET = 300;
+  /** The button of the command says for this time (ms) what it has done. */
+  const DONE = 2000;
   const MODES = ["side", "slider", "blink"];
   const TITLES = { expected: "Expected", difference: "Difference", actual: "Actual" };
 
@@ -20,10 +24,15 @@
   const sheets = report.pictures;
   const failures = sheets.filter((sheet) => !sheet.passes).length;
   const [stage, divider, list] = [the("stage"), the("divider"), the("list")];
+  const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 
+  let announcing = null;
   /** Tells those who do not see the page. */
   function announce(words) {
-    the("announced").textContent = words;
+    clearTimeout(announcing);
+    announcing = setTimeout(() => {
+      the("announced").textContent = words;
+    }, QUIET);
   }
 
   // The viewer: three figures, which stand side by side or lie over each other (`page.css`).
@@ -52,9 +61,9 @@
     for (const [side, title] of Object.entries(TITLES)) {
       const [view, size] = ["view", "size"].map((part) => stage.querySelector(`.${side} .${part}`));
       size.textContent = "";
+      const words = document.createElement("p");
+      words.textContent = sheet[side] === null ? absent(sheet, side) : "this picture cannot be shown";
       if (sheet[side] === null) {
-        const words = document.createElement("p");
-        words.append(absent(sheet, side));
         view.replaceChildren(words);
         continue;
       }
@@ -66,6 +75,7 @@
         size.textContent = `${image.naturalWidth} × ${image.naturalHeight}`;
         layout();
       });
+      image.addEventListener("error", () => image.replaceWith(words));
       image.src = sheet[side];
       view.replaceChildren(image);
     }
@@ -185,7 +195,7 @@
     stage.dataset.shown = "expected";
     the("blinking").hidden = mode !== "blink";
     divider.hidden = mode !== "slider";
-    blink(mode === "blink" && !matchMedia("(prefers-reduced-motion: reduce)").matches);
+    blink(mode === "blink" && !reduced.matches);
     layout();
     remember();
   }
@@ -347,6 +357,7 @@
   for (const [id, action] of Object.entries(BUTTONS)) the(id).addEventListener("click", action);
   for (const button of the("modes").children) button.addEventListener("click", () => setMode(button.dataset.mode));
   divider.addEventListener("input", layout);
+  reduced.addEventListener("change", () => reduced.matches && blink(false));
   list.addEventListener("change", () => go(Number(list.value)));
   const copy = the("copy");
   copy?.toggleAttribute("hidden", false);
@@ -359,6 +370,10 @@
       getSelection().selectAllChildren(the("command"));
       copy.textContent = "Selected";
     }
+    announce(copy.textContent);
+    setTimeout(() => {
+      copy.textContent = "Copy";
+    }, DONE);
   });
 
   // The beginning.

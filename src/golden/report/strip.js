@@ -98,7 +98,8 @@ function showSequence(report, go) {
   /** Room for ticks at the left, and how high the rows of the charts and one line of them are (px). */
   const [GUTTER, TALL, LINE] = [84, 110, 22];
   let cell = 1; // The width of a station (px).
-  const colour = (run) => `run-${(run % 4) + 1}`;
+  /** How a run is drawn: four colours and three kinds of lines make twelve runs of their own look. */
+  const look = (run) => `run-${(run % 4) + 1} dash-${(run % 3) + 1}`;
 
   function draw(svg, name, attributes, text) {
     const element = document.createElementNS(svg.namespaceURI, name);
@@ -126,6 +127,14 @@ function showSequence(report, go) {
     style.setProperty("--gutter", `${GUTTER}px`);
     style.setProperty("--cell", `${cell}px`);
     svg.setAttribute("height", y + 1.5 * LINE);
+    // Room for the longest words, so that nothing moves below the pointer.
+    const longest = stations.map(stationInWords).reduce((one, other) => (one.length < other.length ? other : one));
+    const reading = the("reading");
+    const told = reading.textContent;
+    reading.style.minHeight = "";
+    reading.textContent = longest;
+    reading.style.minHeight = `${reading.offsetHeight}px`;
+    reading.textContent = told;
   }
 
   function tick(svg, y, words, kind = "hairline") {
@@ -167,8 +176,9 @@ function showSequence(report, go) {
       const its = kind(moment, precision);
       return its === "known" ? scale(logarithm(moment)) : lanes[its];
     };
-    report.courses.forEach(({ precision }, run) => {
-      let [line, area, before] = ["", "", false];
+    let area = ""; // Of all runs, so that it does not grow darker where they lie over each other.
+    const lines = report.courses.map(({ precision }, run) => {
+      let [line, before] = ["", false];
       stations.forEach(({ moments }, index) => {
         const moment = moments[run];
         if (moment) {
@@ -178,9 +188,10 @@ function showSequence(report, go) {
         }
         before = Boolean(moment);
       });
-      draw(svg, "path", { d: area, class: "alarm-area" });
-      draw(svg, "path", { d: line, class: `run ${colour(run)}` });
+      return line;
     });
+    draw(svg, "path", { d: area, class: "alarm-area" });
+    lines.forEach((line, run) => draw(svg, "path", { d: line, class: `run ${look(run)}` }));
     return y;
   }
 
@@ -256,7 +267,7 @@ function showSequence(report, go) {
   strip.max = stations.length - 1;
   report.courses.forEach(({ run }, index) => {
     const item = the("runs").appendChild(document.createElement("li"));
-    item.className = colour(index);
+    item.className = look(index);
     item.textContent = run;
   });
   point(null);
