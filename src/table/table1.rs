@@ -15,6 +15,7 @@ use crate::sim::snapshot::Status;
 use crate::sim::state::State;
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use rayon::prelude::*;
+use std::cmp::Reverse;
 use std::sync::Arc;
 
 /// The names of the table's files: Markdown, the same as CSV, and each start as CSV.
@@ -196,12 +197,17 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> 
     let starts = orientations.par_iter().map(|orientation| watch(0).then(|| start(orientation, &cases)));
     let starts: Vec<Scene> = starts.collect::<Option<_>>()?;
     let crowds: Vec<_> = starts.chunks(CROWD).collect();
-    let of_crowds = (0..crowds.len() * cases.len()).into_par_iter().map(|at| {
+    // The longest first, so that no thread is left with one of them at the end.
+    let mut tasks: Vec<_> = (0..crowds.len() * cases.len()).collect();
+    tasks.sort_by_key(|at| Reverse(protocol.evaluations(&cases[at % cases.len()])));
+    let of_crowds = tasks.into_iter().par_bridge().map(|at| {
         let (crowd, case) = (at / cases.len(), at % cases.len());
-        courses(crowds[crowd], case, protocol.evaluations(&cases[case]), watch)
+        Some((at, courses(crowds[crowd], case, protocol.evaluations(&cases[case]), watch)?))
     });
-    let of_crowds: Vec<Vec<Course>> = of_crowds.collect::<Option<_>>()?;
-    let start = |at: usize| of_crowds[at / CROWD * cases.len()..][..cases.len()].iter().map(move |all| all[at % CROWD]);
+    let mut of_crowds: Vec<(usize, Vec<Course>)> = of_crowds.collect::<Option<_>>()?;
+    of_crowds.sort_by_key(|&(at, _)| at);
+    let start =
+        |at: usize| of_crowds[at / CROWD * cases.len()..][..cases.len()].iter().map(move |(_, all)| all[at % CROWD]);
     let courses = (0..starts.len()).flat_map(start).collect();
     Some(Table1 { protocol: *protocol, cases, orientations, courses })
 }
