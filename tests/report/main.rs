@@ -95,6 +95,8 @@ const NAME: &str = "document.getElementById('name').textContent";
 const MODE: &str = "document.querySelector('#modes [aria-pressed=true]').dataset.mode";
 /// Whether all pictures in view are loaded.
 const LOADED: &str = "[...document.images].every((image) => image.complete && image.naturalWidth > 0)";
+/// Whether the charts are drawn, which happens at the first frame of the page.
+const CHARTS: &str = "document.querySelector('#charts text') !== null";
 
 /// A browser with a page open, or `None` where there is no browser.
 fn browser_with(report: &Report, hash: &str) -> Option<(Browser, String)> {
@@ -381,6 +383,7 @@ fn the_blink_blinks(browser: &mut Browser) {
 
 fn it_works_by_pointer(browser: &mut Browser) {
     // The strip: numbers under the pointer, the nearest picture by a click.
+    browser.until("the charts", CHARTS);
     let [left, top, width, height] = browser.place("#strip");
     browser.point([left + width - 20.0, top + height / 2.0]);
     assert!(browser.text("document.getElementById('reading').textContent").starts_with("Frame 40"));
@@ -462,7 +465,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     // Whatever is told of a frame, the charts stay where they are.
     let runs = Report { courses: vec![courses(41); 4].concat(), ..sequence() };
     browser.open(&runs.page(), "");
-    browser.until("the charts", "document.querySelector('#charts text') !== null");
+    browser.until("the charts", CHARTS);
     let heights = "(() => { const [strip, charts] = ['strip', 'charts'].map((id) => document.getElementById(id)); \
                    return new Set(Array.from({ length: 41 }, (_, frame) => { strip.value = frame; \
                    strip.dispatchEvent(new Event('input')); return charts.getBoundingClientRect().top; })).size; })()";
