@@ -70,7 +70,9 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runner::Runner;
     use crate::scene::Limits;
+    use crate::sim::diagnostics::Diagnostic;
 
     fn scene(duration: &str, rate: &str, step: &str) -> Scene {
         let text = format!(
