@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// One body in a simulation, and where its nodes and its memory lie in the [`State`](super::State).
-pub struct Part {
+pub(crate) struct Part {
     /// The body.
     pub body: Arc<Body>,
     /// Its model's forces.

@@ -268,7 +268,7 @@ impl World {
     /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must have been one of an Euler method,
     /// with its nodes at `before` (m) when it began; empty for a model without rotations. It takes the rotations of the step
     /// itself, and so costs much less than [`Self::report`].
-    pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
+    pub(crate) fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
         let part = &self.system.parts[0];
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
     }
