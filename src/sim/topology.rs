@@ -27,7 +27,7 @@ pub struct Elements<'a> {
     /// What each element is.
     pub kinds: &'a [ElementKind],
     /// The faces of those of no particular kind.
-    pub hulls: &'a Hulls,
+    pub(crate) hulls: &'a Hulls,
     /// Rest position of each node (m).
     pub rest: &'a [DVec3],
 }
