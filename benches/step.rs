@@ -4,9 +4,9 @@
 //! many short samples counts. `-- 3 10 40` measures these sizes alone.
 
 use localshape::internals::multiply_adds;
-use localshape::internals::{Crew, lanes, limit_lanes};
+use localshape::internals::{lanes, limit_lanes};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::World;
+use localshape::sim::{Crew, World};
 use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
 use std::time::Instant;

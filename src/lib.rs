@@ -111,7 +111,6 @@ pub mod internals {
     pub use crate::golden::report::{PicturePair, Report};
     pub use crate::golden::{Displacement, FrameDifference, RunDifference};
     pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
-    pub use crate::sim::crew::Crew;
     pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
     pub use crate::table::ratio;
 }

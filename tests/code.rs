@@ -3,11 +3,11 @@
 use localshape::glam::DVec3;
 use localshape::look::Theme;
 use localshape::scene::{
-    BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, Scene, SceneBuilder, Start,
-    StartShape, Swing,
+    BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene,
+    SceneBuilder, Start, StartShape, Swing,
 };
 use localshape::sim::model::{mass_spring, shape_based};
-use localshape::sim::{Diagnostic, Ease, Field, Integrator, Springs};
+use localshape::sim::{Diagnostic, Ease, Field, Integrator, Kernel, Springs};
 
 fn springs(stiffness: f64) -> mass_spring::Parameters {
     mass_spring::Parameters::new(stiffness)
@@ -97,6 +97,8 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
         .frames_per_second(30.0)
         .run("One", shape_based::Parameters { damping_ratio: Some(0.1), ..shape(1e4) })
         .run("Two", mass_spring::Parameters { springs: Some(Springs::All), ..springs(1e3) })
+        .run("Three", RunBuilder::new(shape(1e4)).step(1e-3).kernel(Kernel::Reference).colour([0, 114, 178]))
+        .run("Four", RunBuilder::new(springs(1e3)).steps_per_cycle(200.0).integrator(Integrator::ExplicitEuler))
         .obstacle(ObstacleBuilder::floor(-1.0).restitution(0.5).friction(0.3))
         .obstacle(ObstacleBuilder::wall([-1.0, 0.0, 0.0], -3.0))
         .obstacle(ObstacleBuilder::plate([0.0, 3.0, 0.0], [0.0, -1.0, 0.0]).path(path(-0.5).ease(Ease::Linear)))
@@ -127,6 +129,10 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
         run = [
             { name = 'One', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 } },
             { name = 'Two', model = { kind = 'mass-spring', stiffness = 1e3, springs = 'all' } },
+            { name = 'Three', model = { kind = 'shape-based', stiffness = 1e4 }, step = 1e-3, kernel = 'reference',
+                colour = '#0072b2' },
+            { name = 'Four', model = { kind = 'mass-spring', stiffness = 1e3 }, step = 'T/200',
+                integrator = 'explicit-euler' },
         ]
         hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
         view = { size = [640, 360], theme = 'dark', colour.by = 'strain', opacity = 0.5, strip = 'energy',
@@ -254,6 +260,10 @@ fn mistakes_in_code_are_told_as_those_in_files() {
         (
             with(arrays()).run("Two", shape_based::Parameters { passes: Some(3), ..shape(1.0) }),
             "`run[1].model.passes`: `passes` is about Eq. (15), but the body is in the plane, where Eq. (9) is exact; take it out",
+        ),
+        (
+            with(arrays()).run("Two", RunBuilder::new(shape(1.0)).step(-1.0)),
+            "`run[1].step` is -1.0; expected a number greater than 0",
         ),
         (
             with(arrays()).obstacle(ObstacleBuilder::floor(0.5)),

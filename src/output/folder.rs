@@ -327,7 +327,7 @@ impl Owner {
 mod tests {
     use super::*;
     use crate::output::Summary;
-    use crate::scene::{BodyBuilder, Limits};
+    use crate::scene::{BodyBuilder, Limits, RunBuilder};
     use crate::sim::model::shape_based::ShapeBased;
     use std::sync::Arc;
 
@@ -337,7 +337,8 @@ mod tests {
         let scene = |title: &str, side: f64| {
             let (rotation, damping_of) = Default::default();
             let model = ShapeBased { stiffness: 1e4, damping: 0.0, passes: 2, rotation, damping_of };
-            let scene = Scene::builder(title, BodyBuilder::polygon(3, side)).own_run("run", Arc::new(model));
+            let run = RunBuilder::own(Arc::new(model));
+            let scene = Scene::builder(title, BodyBuilder::polygon(3, side)).run("run", run);
             scene.build(&Limits::default()).unwrap()
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));

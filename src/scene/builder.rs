@@ -11,13 +11,15 @@ use super::resolve::Unwritten;
 use super::step::FractionOfCycle;
 use super::{Limits, Scene};
 use crate::look::file::{ColourFile, ViewFile};
-use crate::look::{ColourMap, Theme};
+use crate::look::typed::TypedColour;
+use crate::look::{Colour, ColourMap, Theme};
 use crate::reading::Mistakes;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::field::Field;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::{ElasticModel, ModelParameters, shape_based};
 use crate::sim::motion::Ease;
+use crate::sim::world::Kernel;
 use std::ops::RangeBounds;
 use std::path::Path;
 use std::sync::Arc;
@@ -116,26 +118,11 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a run: a model on the body, and a panel of the picture. Each run has a name of its own.
-    pub fn run(mut self, name: impl Into<String>, model: impl Into<ModelParameters>) -> Self {
-        self.0.run.push(RunFile {
-            name: name.into(),
-            model: model.into(),
-            step: None,
-            integrator: None,
-            kernel: None,
-            colour: None,
-            own: None,
-        });
+    /// Adds a run: a model on the body, and a panel of the picture. Each run has a name of its own. It is stepped like the
+    /// others, unless a [`RunBuilder`] says more than the model.
+    pub fn run(mut self, name: impl Into<String>, run: impl Into<RunBuilder>) -> Self {
+        self.0.run.push(RunFile { name: name.into(), ..run.into().0 });
         self
-    }
-
-    /// Adds a run with a model of your own. The scene then has no digest.
-    pub fn own_run(self, name: impl Into<String>, model: Arc<dyn ElasticModel>) -> Self {
-        // Its stiffness is checked like that of any other.
-        let mut scene = self.run(name, shape_based::Parameters::new(model.stiffness()));
-        scene.0.run.iter_mut().last().into_iter().for_each(|run| run.own = Some(Arc::clone(&model)));
-        scene
     }
 
     /// Adds something that the body bounces off. Obstacles act in the order in which they are added.
@@ -219,6 +206,76 @@ impl SceneBuilder {
             }
             Err(other) => Err(other),
         }
+    }
+}
+
+/// Makes a run of a scene that has more than a model: its own time step, integrator, kernel or colour, or a model of your
+/// own.
+///
+/// ```
+/// use localshape::scene::{BodyBuilder, Limits, RunBuilder, Scene};
+/// use localshape::sim::Integrator;
+/// use localshape::sim::model::shape_based;
+///
+/// let model = shape_based::Parameters::new(1e4);
+/// let fine = RunBuilder::new(model.clone()).steps_per_cycle(200.0).integrator(Integrator::VelocityVerlet);
+/// let scene = Scene::builder("hexagon", BodyBuilder::polygon(6, 1.0)).run("Coarse", model).run("Fine", fine);
+/// let runs = scene.build(&Limits::default())?.runs;
+/// assert_eq!(runs[0].step, 4.0 * runs[1].step);
+/// # Ok::<(), localshape::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug)]
+#[must_use = "a builder makes nothing until its scene is built"]
+pub struct RunBuilder(RunFile);
+
+impl RunBuilder {
+    /// A run of a model.
+    pub fn new(model: impl Into<ModelParameters>) -> Self {
+        let (name, model) = (String::new(), model.into());
+        Self(RunFile { name, model, step: None, integrator: None, kernel: None, colour: None, own: None })
+    }
+
+    /// A run of a model of your own. The scene then has no digest.
+    pub fn own(model: Arc<dyn ElasticModel>) -> Self {
+        // Its stiffness is checked like that of any other.
+        let Self(run) = Self::new(shape_based::Parameters::new(model.stiffness()));
+        Self(RunFile { own: Some(model), ..run })
+    }
+
+    /// Time step ΔT of this run (s).
+    pub fn step(mut self, seconds: f64) -> Self {
+        self.0.step = Some(StepFile::Seconds(seconds));
+        self
+    }
+
+    /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
+    pub fn steps_per_cycle(mut self, steps: f64) -> Self {
+        self.0.step = Some(StepFile::Cycles(FractionOfCycle::Divided(steps)));
+        self
+    }
+
+    /// How positions and velocities of this run move from one step to the next.
+    pub fn integrator(mut self, integrator: Integrator) -> Self {
+        self.0.integrator = Some(integrator);
+        self
+    }
+
+    /// How a step of this run is computed, instead of in the fastest way that its model has.
+    pub fn kernel(mut self, kernel: Kernel) -> Self {
+        self.0.kernel = Some(kernel);
+        self
+    }
+
+    /// The colour of its lines. It must stand out from the background and from elements that are turned over.
+    pub fn colour(mut self, colour: Colour) -> Self {
+        self.0.colour = Some(TypedColour(colour));
+        self
+    }
+}
+
+impl<M: Into<ModelParameters>> From<M> for RunBuilder {
+    fn from(model: M) -> Self {
+        Self::new(model)
     }
 }
 

@@ -1,9 +1,12 @@
 //! The digest of a scene's meaning.
 
+use super::file::{BodyFile, Coordinates, Positive};
 use super::schema::{SCHEMA, variants, without_nulls};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::io::{self, BufWriter, Write};
 
 /// Digests of the files that a scene names.
 #[derive(Debug, Default)]
@@ -16,7 +19,8 @@ pub(super) struct FileDigests {
     pub(super) semi_bold: Option<String>,
 }
 
-/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits.
+/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its body,
+/// which are in `lists`: they may have millions of entries, and are written without a copy.
 ///
 /// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
 /// whose value is its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and
@@ -24,7 +28,7 @@ pub(super) struct FileDigests {
 /// describes only in words, such as `passes = 2`, do count when they are typed.
 ///
 /// The name of a file is replaced by the digest of its content.
-pub(super) fn digest(typed: &impl Serialize, files: FileDigests) -> String {
+pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigests) -> String {
     // The types have only finite numbers and text keys, which JSON can represent.
     let mut value = serde_json::to_value(typed).unwrap_or_default();
     if let Some(body) = files.body {
@@ -36,7 +40,58 @@ pub(super) fn digest(typed: &impl Serialize, files: FileDigests) -> String {
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
     value.sort_all_objects();
-    Sha256::digest(value.to_string().as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    let mut body = table(&value["body"]);
+    body.extend(listed(lists));
+    let mut scene = table(&value);
+    scene.insert("body", Part::Table(body));
+    let mut hash = Hash(Sha256::new());
+    serde_json::to_writer(BufWriter::new(&mut hash), &scene).expect("hashing cannot fail");
+    hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A part of the canonical scene.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Part<'a> {
+    Value(&'a Value),
+    Table(BTreeMap<&'a str, Part<'a>>),
+    Points(&'a [Coordinates]),
+    Indices(&'a [Vec<u32>]),
+    Pairs(&'a [[u32; 2]]),
+    Numbers(&'a [Positive]),
+}
+
+/// The entries of a table.
+fn table(value: &Value) -> BTreeMap<&str, Part<'_>> {
+    value.as_object().into_iter().flatten().map(|(key, value)| (key.as_str(), Part::Value(value))).collect()
+}
+
+/// The lists that a body has.
+fn listed(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
+    let lists = [
+        ("nodes", body.nodes.as_deref().map(Part::Points)),
+        ("elements", body.elements.as_deref().map(Part::Indices)),
+        ("springs", body.springs.as_deref().map(Part::Pairs)),
+        ("faces", body.faces.as_deref().map(Part::Indices)),
+        ("positions", body.positions.as_deref().map(Part::Points)),
+        ("velocities", body.velocities.as_deref().map(Part::Points)),
+        ("masses", body.masses.as_deref().map(Part::Numbers)),
+    ];
+    lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
+}
+
+/// Hashes what is written to it.
+struct Hash(Sha256);
+
+impl Write for Hash {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// Removes every entry whose value is the default that the schema names.

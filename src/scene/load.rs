@@ -5,7 +5,7 @@ use super::limits::Limits;
 use super::resolve::{self, Parts, Unwritten};
 use super::schema::SCHEMA;
 use super::structure::Checked;
-use super::{Scene, digest, structure};
+use super::{Scene, structure};
 use crate::reading::Mistakes;
 use crate::reading::report::{Report, Way, mistake};
 use crate::reading::source::Source;
@@ -67,7 +67,7 @@ impl Scene {
             let mut parts = Parts::new(&checked, folder, limits, report);
             parts.put_back(unwritten, report);
             let has_digest = report.total() == 0 && !parts.has_own_models();
-            let digest = if has_digest { digest::digest(&parts, parts.digests_of_files()) } else { String::new() };
+            let digest = if has_digest { parts.digest() } else { String::new() };
             let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
             let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
             Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))

@@ -28,13 +28,14 @@ mod summary;
 pub(crate) use generate::random;
 
 pub use crate::reading::{Mistake, Mistakes};
-pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, SceneBuilder};
+pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;
 pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Start, StartShape, Swing};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use schema::schema;
+pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
@@ -58,8 +59,8 @@ pub struct Scene {
     pub name: String,
     /// The scene file, as a full path; none if the scene was read from a text.
     pub file: Option<PathBuf>,
-    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty for a
-    /// scene made in code.
+    /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty if
+    /// a run has a model of its own ([`RunBuilder::own`]).
     pub digest: String,
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,

@@ -63,7 +63,7 @@ impl Crew {
     ///
     /// # Panics
     /// If `work` panics on any thread.
-    pub fn run(&mut self, work: &Work<'_>) {
+    pub(crate) fn run(&mut self, work: &Work<'_>) {
         let Shared { busy, panicked, .. } = &*self.shared;
         if self.helpers.is_empty() {
             return work(0);

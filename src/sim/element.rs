@@ -35,7 +35,7 @@ pub enum ElementKind {
 
 /// How elements of four, five, six and eight nodes in space are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Solids {
+pub(crate) enum Solids {
     /// As tetrahedra, pyramids, wedges and hexahedra, with the order of nodes of their kind.
     #[default]
     Ordered,
@@ -45,7 +45,7 @@ pub enum Solids {
 }
 
 /// The kind of an element from the number of its nodes.
-pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
+pub(crate) fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
     match (dimension, nodes) {
         (Dimension::Space, 4..) if solids == Solids::Convex => ElementKind::Other,
         (_, 2) => ElementKind::Segment,
@@ -92,7 +92,7 @@ pub(super) fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
 
 /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; the only face of a
 /// polygon is itself.
-pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
+pub(crate) fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
     if kind == ElementKind::Polygon {
         return visit(nodes);
     }
@@ -106,11 +106,11 @@ pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u
 }
 
 /// The sides of a polygon: each node with the next.
-pub fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+pub(crate) fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     face.iter().enumerate().map(|(at, &node)| [node, face[(at + 1) % face.len()]])
 }
 
 /// A pair with the smaller index first.
-pub fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }

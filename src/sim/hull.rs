@@ -18,7 +18,7 @@ const TOLERANCES: [f64; 4] = [1e-6, 1e-5, 1e-8, 1e-10];
 ///
 /// Empty, and without cost, for a body without such elements.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Hulls {
+pub(crate) struct Hulls {
     /// These elements, in rising order.
     elements: Vec<u32>,
     /// Where the faces of each element begin; the last number is where all end.
@@ -29,7 +29,7 @@ pub struct Hulls {
 
 impl Hulls {
     /// The hulls of all elements of the kind [`ElementKind::Other`].
-    pub fn new(elements: &IndexLists, kinds: &[ElementKind], rest: &[DVec3]) -> Self {
+    pub(crate) fn new(elements: &IndexLists, kinds: &[ElementKind], rest: &[DVec3]) -> Self {
         let mut hulls = Self::default();
         let mut corners = Vec::new();
         for (element, nodes) in (0u32..).zip(elements.iter()) {
@@ -49,7 +49,7 @@ impl Hulls {
 
     /// The faces of one element: none if it has a table of faces or if all its nodes are on a line; one if they are in
     /// a plane.
-    pub fn of(&self, element: usize) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
+    pub(crate) fn of(&self, element: usize) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         let faces = match self.elements.binary_search_by(|&other| (other as usize).cmp(&element)) {
             Ok(at) => self.starts[at]..self.starts[at + 1],
             Err(_) => 0..0,

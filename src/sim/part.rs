@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
-pub struct Part {
+pub(crate) struct Part {
     /// The body.
     pub body: Arc<Body>,
     /// The forces of its model.

@@ -27,7 +27,7 @@ pub struct Elements<'a> {
     /// The kind of each element.
     pub kinds: &'a [ElementKind],
     /// The faces of the elements of kind [`ElementKind::Other`].
-    pub hulls: &'a Hulls,
+    pub(crate) hulls: &'a Hulls,
     /// Rest position of each node (m).
     pub rest: &'a [DVec3],
 }

@@ -270,7 +270,7 @@ impl World {
     /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
     /// that began with the nodes at `before` (m); empty for a model without rotations. It uses the rotations of the
     /// step itself, and so costs much less than [`Self::report`].
-    pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
+    pub(crate) fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
         let part = &self.system.parts[0];
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
     }

@@ -88,3 +88,24 @@ fn plain() -> String {
 fn the_digest_of_a_shipped_scene_stays() {
     assert_eq!(good(&plain()).digest, "bec31a5b1d034f3ebe7424a483d69fa0fff969e7fac5e7935823dfcf452ecca1");
 }
+
+/// Lists are hashed from where they are, in the order of their keys among the others.
+#[test]
+fn the_digest_of_listed_nodes_stays() {
+    let text = "
+        title = 'scene'
+        time.duration = 1
+        body.nodes = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]
+        body.elements = [[3, 2, 1, 0]]
+        body.convex = true
+        body.springs = [[0, 1], [1, 2]]
+        body.faces = [[0, 1, 2]]
+        body.masses = [1, 2, 3, 4]
+        body.positions = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 0.1]]
+        body.velocities = [[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, -0.0]]
+        [[run]]
+        name = 'One'
+        model = { kind = 'shape-based', stiffness = 1.0 }
+    ";
+    assert_eq!(good(text).digest, "ecb913a14c89933dee410bd3912bfd8ddd2ebcbb6bed7724740e981b56f2d3ca");
+}

@@ -9,7 +9,7 @@ mod motion;
 mod obstacles;
 mod runs;
 
-use super::digest::FileDigests;
+use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile};
 use super::generate::Generator;
 use super::limits::Limits;
@@ -114,13 +114,18 @@ impl Parts {
         self.runs.iter().flatten().any(|run| run.own.is_some())
     }
 
-    /// Digests of the files in the scene's folder.
-    pub(super) fn digests_of_files(&self) -> FileDigests {
+    /// The digest of the scene's meaning, if there are no mistakes.
+    pub(super) fn digest(&mut self) -> String {
         let [regular, semi_bold] = match &self.font {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
             None => [None, None],
         };
-        FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold }
+        let files = FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold };
+        let mut lists = BodyFile::default();
+        self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
+        let digest = digest(self, &lists, files);
+        self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
+        digest
     }
 }
 

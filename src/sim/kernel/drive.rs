@@ -59,7 +59,7 @@ fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, 
         // Eq. (9) is the optimum.
         _ if body.dimension == Dimension::Plane => Rotation::Optimum,
         RotationReading::Exact => Rotation::Optimum,
-        _ => Rotation::Arctangent { passes: passes.max(1) },
+        _ => Rotation::Arctangent { passes },
     };
     let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
     if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best()) {

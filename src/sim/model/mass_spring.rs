@@ -37,15 +37,15 @@ pub struct Parameters {
     pub springs: Option<Springs>,
 }
 
-/// The model with its parameters in SI units.
+/// The model with its parameters in SI units, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassSpring {
     /// Elastic constant `k_ij` of each spring (N/m).
-    pub stiffness: f64,
+    pub(crate) stiffness: f64,
     /// Damping constant `D_ij` of each spring (N s/m).
-    pub damping: f64,
+    pub(crate) damping: f64,
     /// The two nodes of each spring; the natural length is their distance at rest.
-    pub springs: Vec<[u32; 2]>,
+    pub(crate) springs: Vec<[u32; 2]>,
 }
 
 impl Parameters {

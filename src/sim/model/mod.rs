@@ -148,10 +148,11 @@ pub enum Known<'a> {
 /// # Example A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
 /// ```
 #[doc = include_str!("../../../tests/physics/example_model.rs")]
-/// # use localshape::scene::{BodyBuilder, Limits, Scene};
+/// # use localshape::scene::{BodyBuilder, Limits, RunBuilder, Scene};
 /// let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let body = BodyBuilder::arrays(rest, [[0, 1, 2, 3]]).positions(rest.map(|node| node * 1.1));
-/// let scene = Scene::builder("tetrahedron", body).step(1e-3).own_run("Rods", Arc::new(Rods { stiffness: 100.0 }));
+/// let rods = RunBuilder::own(Arc::new(Rods { stiffness: 100.0 }));
+/// let scene = Scene::builder("tetrahedron", body).step(1e-3).run("Rods", rods);
 /// let mut world = scene.build(&Limits::default())?.world(0);
 /// let energy = world.diagnostics().elastic;
 /// world.advance(1000);

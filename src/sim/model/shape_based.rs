@@ -84,19 +84,19 @@ pub enum DampingReading {
     Deformation,
 }
 
-/// The model with its parameters in SI units.
+/// The model with its parameters in SI units, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeBased {
     /// Elastic constant `k_e` of each element (N/m).
-    pub stiffness: f64,
+    pub(crate) stiffness: f64,
     /// Damping constant `D_e` of each element (N s/m).
-    pub damping: f64,
+    pub(crate) damping: f64,
     /// Number of passes, each of which solves Eq. (15), at each evaluation.
-    pub passes: u32,
+    pub(crate) passes: u32,
     /// How the rotation of an element is computed.
-    pub rotation: RotationReading,
+    pub(crate) rotation: RotationReading,
     /// Which velocity is damped.
-    pub damping_of: DampingReading,
+    pub(crate) damping_of: DampingReading,
 }
 
 impl Parameters {
