@@ -94,19 +94,19 @@ impl SceneBuilder {
         self
     }
 
-    /// Time step ΔT of all runs (s).
+    /// Time step ΔT of all runs that have none of their own (s).
     pub fn step(mut self, seconds: f64) -> Self {
         self.0.time.step = StepFile::Seconds(seconds);
         self
     }
 
-    /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50.
+    /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
     pub fn steps_per_cycle(mut self, steps: f64) -> Self {
         self.0.time.step = StepFile::Cycles(FractionOfCycle::Divided(steps));
         self
     }
 
-    /// How positions and velocities of all runs move from one step to the next.
+    /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
     pub fn integrator(mut self, integrator: Integrator) -> Self {
         self.0.time.integrator = integrator;
         self
