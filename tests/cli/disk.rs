@@ -1,7 +1,7 @@
 //! A full disk: one message, no partial files, and finished files are kept.
 #![cfg(target_os = "linux")]
 
-use crate::support::{Place, Ran, frame_file, lasting, run, skip};
+use crate::support::{Place, Ran, lasting, run, skip};
 use std::process::Command;
 
 /// Runs the program with its output in `out`, on a temporary disk of `size`, and then `after` in a shell.
@@ -89,7 +89,7 @@ fn animations_on_a_full_disk() {
         place.write(&format!("in/frame_{number:05}.png"), "");
         std::fs::write(
             place.path(format!("in/frame_{number:05}.png")),
-            frame_file([320, 240], &noise.collect::<Vec<_>>(), &tags),
+            crate::support::frame_file([320, 240], &noise.collect::<Vec<_>>(), &tags),
         )
         .unwrap();
     }
