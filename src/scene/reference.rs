@@ -46,8 +46,9 @@ impl<'s> Reference<'s> {
                 (false, false) => ("##", format!("[{path}]")),
             };
             self.text += &format!("\n{depth} `{heading}`\n\n{}\n", description(table));
-            if table["items"]["description"].is_string() {
-                self.text += &format!("\n{}\n", description(&table["items"]));
+            let each = description(&table["items"]);
+            if !description(table).starts_with(each) {
+                self.text += &format!("\n{each}\n");
             }
             self.body(table_of(table).expect("a table"), &path);
             self.finish();
@@ -75,8 +76,12 @@ impl<'s> Reference<'s> {
         for (key, value) in properties.iter().filter(|(key, value)| wanted(key, value)) {
             let (mut kind, mut meaning) = (kind(value), description(value));
             if table_of(value).is_some() {
-                kind = format!("[{kind}](#{})", self.section(value, path, key));
-                meaning = first_sentence(meaning);
+                let anchor = self.section(value, path, key);
+                // The section begins with the whole description, unless it was written for another key.
+                if anchor == joined(path, key).replace('.', "") {
+                    meaning = first_sentence(meaning);
+                }
+                kind = format!("[{kind}](#{anchor})");
             }
             if required.is_some_and(|required| required.iter().any(|name| name == key)) {
                 kind += ", required";

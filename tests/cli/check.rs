@@ -67,7 +67,9 @@ fn says_which_runs_take_the_plain_code() {
         let runs = &document["scenes"][0]["scene"]["runs"];
         assert_eq!((&runs[0]["kernel"], &runs[1]["kernel"]), (&"reference".into(), &"fast".into()));
         place.write("plain.toml", &typed(more).replacen("[[run]]", "[[run]]\nkernel = 'fast'", 1));
-        place.run("check plain.toml").bad(2, &["`kernel`", "no vectorised steps", "reference"]);
+        place
+            .run("check plain.toml")
+            .bad(2, &["`run[0].kernel`", "`model.rotation`", "no vectorised steps", "reference"]);
     }
 }
 

@@ -69,8 +69,10 @@ pub(super) fn resolve(
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
             let path = [Way::Key("run"), Way::Index(at), Way::Key("kernel")];
-            let message = "`kernel` is \"fast\", but this reading of the model has no vectorised steps".to_owned();
-            report.at(&path, message, "take it out, or write \"reference\"".to_owned());
+            let message = format!(
+                "`run[{at}].kernel` is \"fast\", but this `model.rotation` or `model.damping_of` has no vectorised steps"
+            );
+            report.at(&path, message, "remove it, or write \"reference\"".to_owned());
             return None;
         }
         runs.push(Run { name: run.name.clone(), model, integrator, step, kernel, place: 0, colour });
