@@ -342,7 +342,7 @@ mod portable {
     use super::*;
     use std::array::from_fn;
 
-    const N: usize = 4;
+    const N: usize = 2;
 
     #[derive(Clone, Copy)]
     pub(super) struct Vector([f64; N]);
