@@ -32,8 +32,8 @@ The folder then has frame_00000.png and so on, diagnostics.csv (energies, moment
 each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
 (--size) or choices of runs (--only); other frames of the same sequence stay.
 
-Results in output/NAME of an earlier version of the scene file are replaced. Results in a folder given with -o, and results \
-of another scene, are replaced only with --overwrite.
+Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
+another scene, or of another version of it, are replaced only with --overwrite; of the same scene the tables are replaced.
 
 Without a GPU, pictures are drawn by a software driver; `localshape info` names it.";
 

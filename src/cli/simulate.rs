@@ -15,8 +15,8 @@ Examples:
 The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \
 (command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.
 
-Results in output/NAME of an earlier version of the scene file are replaced. Results in a folder given with -o, and results \
-of another scene, are replaced only with --overwrite.";
+Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
+another scene, or of another version of it, are replaced only with --overwrite; of the same scene the tables are replaced.";
 
 /// Simulate scenes without drawing them; needs no graphics adapter
 #[derive(Args, Debug)]
