@@ -21,7 +21,7 @@ const BETWEEN: Duration = Duration::from_millis(10);
 const LISTEN: Duration = Duration::from_millis(100);
 
 /// Tests whether `ffmpeg` exists.
-pub(super) fn look(format: Format) -> Result<(), AnimationError> {
+pub(super) fn check_program(format: Format) -> Result<(), AnimationError> {
     let mut command = Command::new("ffmpeg");
     let status = command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
     match status {

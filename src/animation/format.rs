@@ -47,16 +47,14 @@ impl Format {
             )
         })
     }
-}
 
-impl Format {
     /// Tests whether the program that the format needs exists.
     ///
     /// # Errors
     /// If it needs `ffmpeg`, which is missing.
-    pub(crate) fn look(self) -> Result<(), AnimationError> {
+    pub(crate) fn check_program(self) -> Result<(), AnimationError> {
         match self {
-            Self::Mp4 | Self::WebM => super::ffmpeg::look(self),
+            Self::Mp4 | Self::WebM => super::ffmpeg::check_program(self),
             _ => Ok(()),
         }
     }

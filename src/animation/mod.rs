@@ -110,8 +110,7 @@ pub struct Animation<'a> {
 /// The result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Written {
-    /// Number of pictures in the file. Formats with a fixed rate repeat some; others omit frames that would be shown
-    /// too shortly.
+    /// Number of pictures in the file. Formats with a fixed rate repeat some; others omit frames that would be too short.
     pub pictures: usize,
     /// Duration of one play (s); 0 for a still picture.
     pub duration: f64,

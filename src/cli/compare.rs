@@ -12,7 +12,7 @@ use super::{
     scenes::status_of,
 };
 #[cfg(feature = "render")]
-use crate::golden::draw::{DrawError, Subject, Wish, draw, usual_gpu};
+use crate::golden::draw::{DrawError, DrawOptions, Subject, draw, usual_gpu};
 use crate::golden::{BlessError, Blessed, Comparison, ComparisonError, Side};
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
@@ -124,7 +124,7 @@ impl Compare {
             };
             console::print_json(&document(&comparison, &written))?;
         } else if !self.telling.quiet {
-            console::print(&comparison.told(!blesses))?;
+            console::print(&comparison.text(!blesses))?;
             if let Ok(Some(blessed)) = &blessed {
                 let nothing = comparison.passes().then(|| "nothing to accept\n".to_owned());
                 console::print(&nothing.unwrap_or_else(|| blessed.to_string()))?;
@@ -227,7 +227,7 @@ impl Compare {
                 return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
             }
         };
-        let wish = Wish { frames, size: *size, samples: *samples, ..Wish::default() };
+        let wish = DrawOptions { frames, size: *size, samples: *samples, ..DrawOptions::default() };
         let gpu =
             adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new).map_err(|error| Failure::adapter(&error))?;
         interrupt::listen();
@@ -235,7 +235,7 @@ impl Compare {
         let drawn = drawn.map_err(|error| match error {
             DrawError::Render(error) => error.into(),
             DrawError::Disk(_) => Failure::files(error.to_string()),
-            DrawError::Wish(message) => Failure::usage(message),
+            DrawError::Options(message) => Failure::usage(message),
         })?;
         // If interrupted while the last picture was drawn, nothing is accepted.
         Ok(drawn.filter(|_| !interrupt::requested()))

@@ -111,7 +111,7 @@ impl Render {
         }
         let film = |path: &PathBuf| {
             let format = Format::of(path).map_err(Failure::usage)?;
-            format.look()?;
+            format.check_program()?;
             if !self.options.overwrite {
                 replaceable(path)?;
             }

@@ -1,6 +1,6 @@
 //! The exact states in a folder of frames: `states.npz`, whose frames are listed in `diagnostics.csv`.
 
-use super::states::{Places, State, States};
+use super::states::{Positions, State, States};
 use crate::output::{DIAGNOSTICS_FILE, STATES_FILE, state_digest};
 use crate::scene::npz::Npz;
 use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
@@ -24,7 +24,7 @@ struct Row {
 /// The states in a folder; `None` if it has no archive of them.
 ///
 /// # Errors
-/// What is wrong with the archive, in words.
+/// What is wrong with the archive.
 pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
     let path = folder.join(STATES_FILE);
     match path.metadata() {
@@ -73,9 +73,9 @@ pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
             let snapshot =
                 Snapshot { position: vectors(&position), velocity: vectors(&velocity), ..Snapshot::default() };
             let digest = state_digest(&snapshot);
-            let places = Places { quantum: 0.0, every: 1, nodes: snapshot.position.len(), at: snapshot.position };
-            let (places, numbers) = (Some(places), Some(numbers.clone()));
-            states.add(&run, row.frame, State { time: Some(row.time), digest, places, numbers });
+            let positions = Positions { quantum: 0.0, every: 1, nodes: snapshot.position.len(), at: snapshot.position };
+            let (positions, numbers) = (Some(positions), Some(numbers.clone()));
+            states.add(&run, row.frame, State { time: Some(row.time), digest, positions, numbers });
         }
     }
     Ok(Some(states))

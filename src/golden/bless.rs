@@ -19,28 +19,28 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Blessed {
     /// Files that were written, in order.
     pub written: Vec<PathBuf>,
-    /// Files of a golden that were removed because nothing stands for them any more.
+    /// Files of a golden that were removed because they are no longer drawn.
     pub removed: Vec<PathBuf>,
-    /// What was left as it is, and why.
+    /// Files that were kept, and why.
     pub left: Vec<String>,
 }
 
 /// Why nothing was accepted.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum BlessError {
-    /// The simulation gave other states, or ends earlier, and accepting that was not asked for.
+    /// States moved, or the scene ends earlier, and accepting that was not requested.
     #[error("the state moved, so nothing was accepted; to accept it anyway: {command}")]
     StateMoved {
-        /// What would accept it.
+        /// The command that accepts it.
         command: String,
     },
-    /// What the golden expected cannot be read, so that nobody knows whether the state moved.
+    /// A file of the golden cannot be read, so it is unknown whether the state moved.
     #[error("the expected side is damaged, so nothing was accepted; to replace it: {command}")]
     Damaged {
-        /// What would accept it.
+        /// The command that accepts it.
         command: String,
     },
-    /// What is there cannot be accepted.
+    /// The actual side cannot be accepted.
     #[error("nothing was accepted: {0}")]
     Unfit(String),
     /// The golden records more states than the other side knows.
@@ -54,28 +54,28 @@ pub(crate) enum BlessError {
         /// Those that could be renewed.
         known: usize,
     },
-    /// A file cannot be written; nothing was changed but what is told.
+    /// A file cannot be written.
     #[error("{source}; {blessed}")]
     Write {
-        /// What was done before.
+        /// The changes made before.
         blessed: Blessed,
-        /// What failed.
+        /// The cause.
         source: OutputError,
     },
 }
 
 impl Comparison {
-    /// Whether accepting means to accept other states, or states instead of what cannot be read.
+    /// Whether accepting replaces states, or files that cannot be read.
     pub(super) fn needs_state(&self) -> bool {
         self.state_moved() || self.is_damaged()
     }
 
-    /// Whether something that was expected cannot be read.
+    /// Whether a picture cannot be read.
     fn is_damaged(&self) -> bool {
         self.pictures.iter().any(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }))
     }
 
-    /// What is wrong with a picture that would have to be accepted.
+    /// Why the actual side cannot be accepted; `None` if it can.
     pub(super) fn unfit(&self) -> Option<String> {
         let [expected, actual] = &self.sides;
         if actual.is_undrawn {
@@ -117,7 +117,7 @@ impl Comparison {
         wrong.next()
     }
 
-    /// Whether pictures of other states come into a folder that may also hold these states themselves.
+    /// Whether moved states are accepted into a folder of frames, which may also have files of these states.
     fn brings_states(&self) -> bool {
         let are_folders = self.sides.iter().all(|side| side.kind == Kind::Folder);
         are_folders && self.needs_state()
@@ -136,11 +136,11 @@ impl Comparison {
         pictures || record.is_some() && record != expected.record
     }
 
-    /// Replaces what was expected by what is there, as far as it failed. States are replaced only if that is asked for. All
-    /// files are written before the first one takes its place.
+    /// Replaces what failed on the expected side by the actual side. States are replaced only on request. All files are
+    /// written under hidden names before the first one is renamed.
     ///
     /// # Errors
-    /// If states moved and that was not to be accepted, if what is there cannot be read, or a file cannot be written.
+    /// If states moved and accepting them was not requested, if the actual side cannot be read, or a file cannot be written.
     pub(crate) fn bless(&self, with_states: bool) -> Result<Blessed, BlessError> {
         if self.passes() {
             return Ok(Blessed::default());
@@ -275,8 +275,8 @@ impl Comparison {
             let before = old.states.run(&run.name);
             run.states.retain(|frame, state| {
                 let Some(known) = before.and_then(|before| before.states.get(frame)) else { return false };
-                state.places.take_if(|_| known.places.is_none());
-                known.places.is_none() || state.places.is_some()
+                state.positions.take_if(|_| known.positions.is_none());
+                known.positions.is_none() || state.positions.is_some()
             });
         }
         let (recorded, known) = (count(&old.states), count(&states));

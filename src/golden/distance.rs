@@ -4,13 +4,10 @@
 //! where a silhouette passes through the corner of a pixel. Another kind of adapter has other sample positions: pixels
 //! differ a little along all silhouettes, but those between them must be the same.
 
-#[cfg(test)]
 use super::picture::Pixels;
-use super::silhouettes::{CONTRAST, Finder, Place};
-use crate::output::Tags;
+use super::silhouettes::{CONTRAST, Location, silhouettes};
 use serde::Serialize;
 use std::fmt;
-use std::ops::Range;
 
 /// Pixels differ visibly if a channel differs by more than this: drivers round differently.
 pub(super) const CHANNEL: u8 = 2;
@@ -27,22 +24,22 @@ const PART_OF_SILHOUETTES: f64 = 0.25;
 /// [`AT_LEAST`] pixels, measured as 2.
 const PART_OF_INTERIORS: f64 = 1e-3;
 
-/// What is known of the machines that drew two pictures.
+/// How the adapters that drew two pictures are related.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Machines {
     /// The same adapter with the same driver, for software on the same type of processor: not a byte may differ.
     Same,
-    /// Neither picture says who drew it, so that nothing excuses a difference.
+    /// Neither picture records its adapter: not a byte may differ.
     Unknown,
-    /// Adapters of one kind, or one of the pictures does not say.
+    /// Adapters of one kind, or one of them is not recorded.
     OneKind,
     /// Adapters of different kinds.
     OtherKind,
 }
 
 impl Machines {
-    /// What two adapters, as pictures name them, are to each other.
+    /// The relation of two adapters, as recorded in pictures.
     pub(crate) fn of(expected: Option<&str>, actual: Option<&str>) -> Self {
         match (expected, actual) {
             (None, None) => Self::Unknown,
@@ -53,7 +50,7 @@ impl Machines {
     }
 }
 
-/// The kind of an adapter. What stands in brackets of its own is a version: of the compiler, the driver, the interface.
+/// The kind of an adapter: its name without the versions of compiler, driver and interface, which are in brackets.
 pub(super) fn kind(adapter: &str) -> &str {
     adapter.split(" (").next().unwrap_or_default().trim()
 }
@@ -72,7 +69,7 @@ pub(crate) struct Count {
 /// How far two pictures of one size are apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Distance {
-    /// What the limits are made for.
+    /// The relation of the adapters, which determines the limits.
     pub machines: Machines,
     /// Pixels that are not equal.
     pub unequal: u64,
@@ -89,29 +86,56 @@ pub(crate) struct Distance {
 }
 
 impl Distance {
-    /// That of two pictures; `None` if their sizes or channels are not alike.
-    #[cfg(test)]
-    pub(crate) fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
+    /// The distance of two pictures; `None` if their sizes or channels differ.
+    pub(super) fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
         if expected.size != actual.size || expected.channels != actual.channels {
             return None;
         }
-        let labels = [expected.label.as_ref(), actual.label.as_ref()];
-        let mut tally = Tally::new(expected.size, expected.channels, labels);
-        tally.count([&expected.bytes, &actual.bytes], 0..expected.size[1] as usize);
-        Some(tally.distance())
+        let adapters = [expected, actual].map(|picture| picture.label.as_ref().map(|label| label.adapter.as_str()));
+        let machines = Machines::of(adapters[0], adapters[1]);
+        let are_equal = expected.bytes == actual.bytes;
+        let places = (machines == Machines::OtherKind && !are_equal).then(|| silhouettes([expected, actual]));
+        let mut unequal = 0;
+        let [mut counted, mut interiors, mut one_sided] = [Count::default(); 3];
+        differences(expected, actual, |at, difference| {
+            unequal += 1;
+            let (count, least) = match places.as_ref().map_or(Location::Silhouette, |places| places[at]) {
+                Location::Silhouette | Location::Beside => (&mut counted, CHANNEL),
+                Location::OneSided if difference > CONTRAST => (&mut one_sided, CONTRAST),
+                Location::OneSided => {
+                    interiors.visible += u64::from(difference > CHANNEL);
+                    return;
+                }
+                Location::Interior => (&mut interiors, CHANNEL),
+            };
+            count.visible += u64::from(difference > least);
+            count.largest = difference.max(count.largest);
+        });
+        let all = u64::from(expected.size[0]) * u64::from(expected.size[1]);
+        // In very small pictures the tolerance is smaller.
+        let part = |part: f64, of: u64| AT_LEAST.min(of / 100).max((part * of as f64) as u64);
+        let Some(places) = places else {
+            counted.allowed = if machines == Machines::OneKind { part(PART, all) } else { 0 };
+            return Some(Self { machines, unequal, counted, interiors: None, one_sided: None });
+        };
+        let of_silhouettes = places.iter().filter(|&&place| place == Location::Silhouette).count() as u64;
+        counted.allowed = part(PART_OF_SILHOUETTES, of_silhouettes);
+        interiors.allowed = part(PART_OF_INTERIORS, all - of_silhouettes);
+        one_sided.allowed = part(0.0, all);
+        Some(Self { machines, unequal, counted, interiors: Some(interiors), one_sided: Some(one_sided) })
     }
 
-    /// Whether it is no more than such machines differ.
+    /// Whether the limits for these adapters are kept.
     pub(crate) fn is_allowed(&self) -> bool {
         self.limits().all(|limit| limit.is_kept())
     }
 
-    /// How much of what is allowed is used: 1 at the limit, and more if there is too much.
+    /// The largest part of a limit that is used: 1 at the limit, more above it.
     pub(crate) fn of_limit(&self) -> f64 {
         self.limits().map(|limit| limit.used()).fold(0.0, f64::max)
     }
 
-    /// Pixels that differ and how many may, of those of which most that may differ do.
+    /// The count that is nearest to its limit.
     pub(crate) fn nearest_to_limit(&self) -> Count {
         let nearest = self.limits().max_by(|one, other| one.part().total_cmp(&other.part()));
         nearest.map_or(self.counted, |limit| limit.count)
@@ -128,7 +152,7 @@ impl Distance {
     }
 }
 
-/// How many pixels may differ, and by how much if that is limited.
+/// A count with its limits.
 struct Limit {
     count: Count,
     largest: Option<u8>,
@@ -139,7 +163,7 @@ impl Limit {
         self.count.visible <= self.count.allowed && self.largest.is_none_or(|largest| self.count.largest <= largest)
     }
 
-    /// How many of the pixels that may differ do.
+    /// The part of the allowed number of pixels that differs.
     fn part(&self) -> f64 {
         match (self.count.visible, self.count.allowed) {
             (visible, 0) => visible as f64 * 2.0,
@@ -147,119 +171,26 @@ impl Limit {
         }
     }
 
-    /// How much is used of what is allowed, be it their number or their largest difference.
+    /// The used part of the limit on the number of pixels or on their largest difference, whichever is larger.
     fn used(&self) -> f64 {
         let strength = self.largest.map_or(0.0, |largest| f64::from(self.count.largest) / f64::from(largest));
         self.part().max(strength)
     }
 }
 
-/// Counts how far two pictures are apart while their rows come: whole pictures are large.
-pub(super) struct Tally {
-    machines: Machines,
-    size: [u32; 2],
-    channels: usize,
-    /// Lines that were given.
-    given: u32,
-    counts: Counts,
-    /// Pixels along silhouettes, which are looked for if the machines are of different kinds.
-    of_silhouettes: u64,
-    finder: Option<Finder>,
-}
-
-#[derive(Default)]
-struct Counts {
-    unequal: u64,
-    counted: Count,
-    interiors: Count,
-    one_sided: Count,
-}
-
-impl Tally {
-    /// For pictures of one size, by what they say of themselves.
-    pub(super) fn new(size: [u32; 2], channels: usize, labels: [Option<&Tags>; 2]) -> Self {
-        let [expected, actual] = labels.map(|label| label.map(|label| label.adapter.as_str()));
-        let machines = Machines::of(expected, actual);
-        let finder = (machines == Machines::OtherKind).then(|| Finder::new(size[0] as usize, channels));
-        Self { machines, size, channels, given: 0, counts: Counts::default(), of_silhouettes: 0, finder }
-    }
-
-    /// Adds some lines, given the same rows of both pictures: these lines, and those just above and below if there are any.
-    pub(super) fn count(&mut self, rows: [&[u8]; 2], lines: Range<usize>) {
-        let row = self.size[0] as usize * self.channels;
-        let part = |line: usize| rows.map(|rows| &rows[line * row..(line + 1) * row]);
-        for line in lines {
-            self.given += 1;
-            let Some(finder) = &mut self.finder else {
-                self.counts.add(part(line), self.channels, |_| Place::Silhouette);
-                continue;
-            };
-            self.of_silhouettes += finder.advance(rows, line);
-            if self.given > 1 {
-                self.counts.add(part(line - 1), self.channels, |at| finder.place(at));
-            }
-            if self.given == self.size[1] {
-                finder.end();
-                self.counts.add(part(line), self.channels, |at| finder.place(at));
-            }
-        }
-    }
-
-    /// How far apart they are.
-    pub(super) fn distance(self) -> Distance {
-        let Self { machines, size, of_silhouettes, counts, .. } = self;
-        let Counts { unequal, mut counted, mut interiors, mut one_sided } = counts;
-        let all = u64::from(size[0]) * u64::from(size[1]);
-        // In very small pictures the tolerance is smaller.
-        let part = |part: f64, of: u64| AT_LEAST.min(of / 100).max((part * of as f64) as u64);
-        if machines == Machines::OtherKind && unequal > 0 {
-            counted.allowed = part(PART_OF_SILHOUETTES, of_silhouettes);
-            interiors.allowed = part(PART_OF_INTERIORS, all - of_silhouettes);
-            one_sided.allowed = part(0.0, all);
-            return Distance { machines, unequal, counted, interiors: Some(interiors), one_sided: Some(one_sided) };
-        }
-        counted.allowed = if machines == Machines::OneKind { part(PART, all) } else { 0 };
-        Distance { machines, unequal, counted, interiors: None, one_sided: None }
-    }
-}
-
-impl Counts {
-    /// Adds a line of both pictures.
-    fn add(&mut self, [expected, actual]: [&[u8]; 2], channels: usize, place: impl Fn(usize) -> Place) {
-        differences(expected, actual, channels, |at, difference| {
-            self.unequal += 1;
-            let (count, least) = match place(at) {
-                Place::Silhouette => (&mut self.counted, CHANNEL),
-                Place::OneSided if difference > CONTRAST => (&mut self.one_sided, CONTRAST),
-                Place::OneSided => {
-                    self.interiors.visible += u64::from(difference > CHANNEL);
-                    return;
-                }
-                Place::Interior => (&mut self.interiors, CHANNEL),
-            };
-            count.visible += u64::from(difference > least);
-            count.largest = difference.max(count.largest);
-        });
-    }
-}
-
-/// Each pixel of a row that is not equal, by its place in the row, with its largest difference of a channel as it is seen: on
-/// whatever ground, a colour counts as much as its opacity.
-pub(super) fn differences(expected: &[u8], actual: &[u8], channels: usize, each: impl FnMut(usize, u8)) {
-    // Most rows are equal, and whole rows are compared quickly.
-    if expected == actual {
-        return;
-    }
-    match channels {
-        3 => unequal::<3>(expected, actual, each),
-        _ => unequal::<4>(expected, actual, each),
+/// Calls `each` for every pixel of two pictures of one size that is not equal, with its index and its largest difference of a
+/// channel.
+pub(super) fn differences(expected: &Pixels, actual: &Pixels, each: impl FnMut(usize, u8)) {
+    match expected.channels {
+        3 => unequal::<3>(&expected.bytes, &actual.bytes, each),
+        _ => unequal::<4>(&expected.bytes, &actual.bytes, each),
     }
 }
 
 fn unequal<const CHANNELS: usize>(expected: &[u8], actual: &[u8], mut each: impl FnMut(usize, u8)) {
     const BLOCK: usize = 32;
     let blocks = expected.as_chunks::<CHANNELS>().0.chunks(BLOCK).zip(actual.as_chunks::<CHANNELS>().0.chunks(BLOCK));
-    // So are blocks of pixels.
+    // Most pixels are equal, and whole blocks are compared quickly.
     for (block, (expected, actual)) in blocks.enumerate().filter(|(_, (expected, actual))| expected != actual) {
         for (at, (one, other)) in expected.iter().zip(actual).enumerate().filter(|(_, (one, other))| one != other) {
             each(block * BLOCK + at, seen(one, other));
@@ -267,7 +198,7 @@ fn unequal<const CHANNELS: usize>(expected: &[u8], actual: &[u8], mut each: impl
     }
 }
 
-/// The largest difference of a channel of two pixels.
+/// The largest difference of a channel of two pixels as it is seen: on whatever ground, colours count as much as their opacity.
 fn seen(one: &[u8], other: &[u8]) -> u8 {
     let largest = |weigh: [u32; 2]| {
         let weighed = |(&a, &b): (&u8, &u8)| (u32::from(a) * weigh[0] / 255).abs_diff(u32::from(b) * weigh[1] / 255);
@@ -324,6 +255,100 @@ impl fmt::Display for Distance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::{Shown, Tags};
+
+    /// Numbers below 256 that look random.
+    struct Numbers(u32);
+
+    impl Numbers {
+        fn next(&mut self) -> u32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            self.0 >> 24
+        }
+    }
+
+    /// A picture of smooth ground with spots, drawn by an adapter.
+    fn picture(size: [u32; 2], channels: u32, adapter: &str, seed: u32) -> Pixels {
+        // Spots that all pictures have, and some of its own.
+        let [mut common, mut own] = [Numbers(7), Numbers(seed)];
+        let bytes = (0..size[0] * size[1]).flat_map(|_| {
+            let spot = if common.next() < 12 || own.next() < 3 { 90 } else { 0 };
+            let faint = u32::from(own.next() < 20) * (own.next() % 5);
+            (0..channels).map(move |channel| if channel == 3 { 255 } else { (100 + spot + channel + faint) as u8 })
+        });
+        let tags = Tags {
+            shows: Shown::Frame { frame: 3, time: 0.05 },
+            scenes: vec!["1".repeat(64)],
+            states: vec![("0".repeat(64), "run".to_owned())],
+            version: "0".to_owned(),
+            adapter: adapter.to_owned(),
+        };
+        Pixels { size, channels: channels as usize, bytes: bytes.collect(), label: Some(tags) }
+    }
+
+    /// How far pictures of different kinds of adapters are apart, pixel by pixel as it is written in the documentation:
+    /// unequal pixels, then those that count and the largest difference along silhouettes, between them, and in one picture
+    /// only; and how many pixels lie along silhouettes.
+    fn naive(pictures: [&Pixels; 2]) -> ([u64; 4], [u8; 3], u64) {
+        let [width, height] = pictures[0].size.map(i64::from);
+        let channels = pictures[0].channels;
+        let around = |x: i64, y: i64| {
+            let near = |at: i64, end: i64| (at - 1).max(0)..(at + 2).min(end);
+            near(y, height).flat_map(move |y| near(x, width).map(move |x| (x, y)))
+        };
+        let byte = |picture: &Pixels, (x, y): (i64, i64), channel: usize| {
+            picture.bytes[(y * width + x) as usize * channels + channel]
+        };
+        let has = |side: usize, x: i64, y: i64| {
+            (0..channels).any(|channel| {
+                let all = || around(x, y).map(|at| byte(pictures[side], at, channel));
+                all().max().unwrap() - all().min().unwrap() > CONTRAST
+            })
+        };
+        let both = |x: i64, y: i64| has(0, x, y) && has(1, x, y);
+        let (mut counts, mut largest, mut silhouettes) = ([0; 4], [0; 3], 0);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            silhouettes += u64::from(both(x, y));
+            let of = |channel| byte(pictures[0], (x, y), channel).abs_diff(byte(pictures[1], (x, y), channel));
+            let difference = (0..channels).map(of).max().unwrap();
+            if difference == 0 {
+                continue;
+            }
+            let alone = has(0, x, y) != has(1, x, y) && !around(x, y).any(|(x, y)| both(x, y));
+            let (class, least) = match (has(0, x, y) || has(1, x, y)) && !alone {
+                true => (0, 2),
+                false if alone && difference > 8 => (2, 8),
+                false => (1, 2),
+            };
+            counts[0] += 1;
+            counts[class + 1] += u64::from(difference > least);
+            if !(alone && class == 1) {
+                largest[class] = difference.max(largest[class]);
+            }
+        }
+        (counts, largest, silhouettes)
+    }
+
+    #[test]
+    fn the_distance_is_what_single_pixels_say() {
+        let mut seen = [0; 4];
+        let sizes = [[1, 1], [1, 5], [2, 33], [31, 1], [70, 50]];
+        for (size, channels) in sizes.into_iter().flat_map(|size| [(size, 3), (size, 4)]) {
+            let [expected, actual] = [("soft (1)", 1), ("hard (1)", 2 + size[0])]
+                .map(|(adapter, seed)| picture(size, channels, adapter, seed));
+            let distance = Distance::new(&expected, &actual).unwrap();
+            let (counts, largest, silhouettes) = naive([&expected, &actual]);
+            if distance.unequal > 0 {
+                let three = [distance.counted, distance.interiors.unwrap(), distance.one_sided.unwrap()];
+                let told = [distance.unequal, three[0].visible, three[1].visible, three[2].visible];
+                assert_eq!(told, counts, "{size:?} {channels}");
+                assert_eq!(three.map(|count| count.largest), largest, "{size:?} {channels}");
+                assert_eq!(three[0].allowed, (silhouettes / 4).max(8.min(silhouettes / 100)));
+            }
+            (0..4).for_each(|at| seen[at] += counts[at]);
+        }
+        assert!(seen.iter().all(|&count| count > 10), "each kind of pixel occurs: {seen:?}");
+    }
 
     #[test]
     fn adapters_are_told_apart() {

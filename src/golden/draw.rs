@@ -46,9 +46,9 @@ impl Subject {
     }
 }
 
-/// How a golden is to be drawn. `None` means as the golden is, or as new ones are.
+/// Options for drawing a golden. `None` means as the existing golden, or the default for new ones.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Wish {
+pub(crate) struct DrawOptions {
     /// The frames to draw, rising.
     pub(crate) frames: Option<Vec<u64>>,
     /// How many frames a new golden has.
@@ -61,9 +61,9 @@ pub(crate) struct Wish {
     pub(crate) samples: Option<u32>,
 }
 
-impl Wish {
-    /// The options of the command line that ask for it, each with a space before it.
-    fn options(&self) -> String {
+impl DrawOptions {
+    /// The same as options of the command line, each with a space before it.
+    fn command_line(&self) -> String {
         let mut options = String::new();
         if let Some(frames) = &self.frames {
             let frames: Vec<_> = frames.iter().map(u64::to_string).collect();
@@ -88,12 +88,12 @@ pub(crate) enum DrawError {
     /// States that wait to be drawn could not be kept.
     #[error("states cannot be stored in the folder for temporary files: {0}")]
     Disk(#[from] std::io::Error),
-    /// What was asked for is not there.
+    /// An option that cannot be met.
     #[error("{0}")]
-    Wish(String),
+    Options(String),
 }
 
-/// The device to draw for a golden: the kind that drew it if this machine has it, else the processor.
+/// The device for a golden: the kind of adapter that drew it if this machine has it, else a software driver.
 ///
 /// # Errors
 /// If there is neither.
@@ -103,22 +103,22 @@ pub(crate) fn usual_gpu(golden: &Side) -> Result<Gpu, InitError> {
     same.map_or_else(|| Gpu::new(&AdapterChoice::Cpu), Ok)
 }
 
-/// Simulates a scene or figure and draws what its golden has, or what was wished. Without a device nothing is drawn, and
-/// states alone can be compared. `go_on` is asked now and then; if it says no, there is no result.
+/// Simulates a scene or figure and draws the pictures that its golden has, or those of the options. Without a device
+/// nothing is drawn, and states alone can be compared. If `go_on` returns `false`, there is no result.
 ///
 /// # Errors
-/// A device that fails, or a wish that cannot be met.
+/// A device that fails, or an option that cannot be met.
 pub(crate) fn draw(
     path: &Path,
     subject: &Subject,
-    wish: &Wish,
+    options: &DrawOptions,
     old: &Side,
     gpu: Option<&Gpu>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Side>, DrawError> {
     let drawn = match subject {
-        Subject::Scene(scene) => draw_scene(scene, wish, old.record.as_ref(), gpu, go_on)?,
-        Subject::Figure(figure) => draw_figure(figure, wish, old.record.as_ref(), gpu, go_on)?,
+        Subject::Scene(scene) => draw_scene(scene, options, old.record.as_ref(), gpu, go_on)?,
+        Subject::Figure(figure) => draw_figure(figure, options, old.record.as_ref(), gpu, go_on)?,
     };
     Ok(drawn.map(|Made { mut record, pictures, notes }| {
         record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -130,13 +130,13 @@ pub(crate) fn draw(
             pictures,
             record: Some(record),
             is_undrawn: gpu.is_none(),
-            options: wish.options(),
+            options: options.command_line(),
             notes,
         }
     }))
 }
 
-/// What was drawn.
+/// The result of simulating and drawing.
 struct Made {
     record: Record,
     /// PNG files by name.
@@ -146,25 +146,25 @@ struct Made {
 
 fn draw_scene(
     scene: &Scene,
-    wish: &Wish,
+    options: &DrawOptions,
     old: Option<&Record>,
     gpu: Option<&Gpu>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Made>, DrawError> {
     let last = scene.last_frame();
-    let frames: BTreeSet<u64> = match (&wish.frames, old) {
+    let frames: BTreeSet<u64> = match (&options.frames, old) {
         (Some(frames), _) => frames.iter().copied().collect(),
         (None, Some(old)) if old.pictures.iter().any(|drawn| drawn.frame <= last) => {
             old.pictures.iter().map(|drawn| drawn.frame).filter(|&frame| frame <= last).collect()
         }
         (None, old) => {
-            let count = old.map_or(wish.pictures.unwrap_or(PICTURES), |old| old.pictures.len() as u64).max(1);
+            let count = old.map_or(options.pictures.unwrap_or(PICTURES), |old| old.pictures.len() as u64).max(1);
             (1..=count).map(|at| (u128::from(last) * u128::from(at) / u128::from(count)) as u64).collect()
         }
     };
     let mut scene = scene.clone();
-    let size = size(scene.view.size, wish, old);
-    let samples = samples(wish, old);
+    let size = size(scene.view.size, options, old);
+    let samples = samples(options, old);
     scene.view.size = size;
     let runs: Vec<usize> = (0..scene.runs.len()).collect();
     let mut plan = Plan::new(last, runs.len(), scene.body.len(), &frames);
@@ -175,14 +175,15 @@ fn draw_scene(
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
-    let course = scene.view.strip.filter(|_| artist.is_some());
+    // Strips show the whole time series, which is simulated before the first frame is drawn.
+    let strip = scene.view.strip.filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let runner = match &course {
+    let runner = match &strip {
         Some(strip) => runner.with_course(std::slice::from_ref(strip)),
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, course.is_some(), &std::env::temp_dir());
+    let mut frames = Frames::new(runner, &frames, strip.is_some(), &std::env::temp_dir());
     loop {
         if !go_on() {
             return Ok(None);
@@ -198,13 +199,13 @@ fn draw_scene(
         };
         let index = frame.index;
         for run in &frame.runs {
-            let state = State::of(&run.snapshot, plan.places.contains(&index));
+            let state = State::of(&run.snapshot, plan.positions.contains(&index));
             let name = &scene.runs[run.run].name;
             states.add(name, index, state);
             if let Status::Diverged(Divergence { time, step, .. }) = run.snapshot.status {
-                let told =
+                let words =
                     || format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on");
-                stopped.entry(run.run).or_insert_with(told);
+                stopped.entry(run.run).or_insert_with(words);
             }
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
@@ -225,17 +226,17 @@ fn draw_scene(
 
 fn draw_figure(
     figure: &Figure,
-    wish: &Wish,
+    options: &DrawOptions,
     old: Option<&Record>,
     gpu: Option<&Gpu>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Made>, DrawError> {
     let mut figure = figure.clone();
-    if wish.frames.as_ref().is_some_and(|frames| frames != &[0]) {
-        return Err(DrawError::Wish(format!("{} is a figure and has no frames to choose from", figure.name)));
+    if options.frames.as_ref().is_some_and(|frames| frames != &[0]) {
+        return Err(DrawError::Options(format!("{} is a figure and has no frames to choose from", figure.name)));
     }
-    figure.size = size(figure.size, wish, old);
-    let samples = samples(wish, old);
+    figure.size = size(figure.size, options, old);
+    let samples = samples(options, old);
     let mut taking = Taking::new(&figure);
     while !taking.advance(SLICE) {
         if !go_on() {
@@ -254,7 +255,7 @@ fn draw_figure(
             FigureError::Render(error) => DrawError::Render(error),
             FigureError::NoRoom(error) => {
                 let [width, height] = figure.size;
-                DrawError::Wish(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
+                DrawError::Options(format!("{}: at {width}×{height} {error}; ask for another --size", figure.name))
             }
         })?;
         let label = Tags::of_figure(&figure, &moments, &gpu.description().to_string());
@@ -268,17 +269,17 @@ fn draw_figure(
 }
 
 /// The size to draw in (px).
-fn size(own: [u32; 2], wish: &Wish, old: Option<&Record>) -> [u32; 2] {
-    if let Some(size) = wish.size.or(old.map(|old| old.size)) {
+fn size(own: [u32; 2], options: &DrawOptions, old: Option<&Record>) -> [u32; 2] {
+    if let Some(size) = options.size.or(old.map(|old| old.size)) {
         return size;
     }
     let [width, height] = own;
-    let small = wish.width.unwrap_or(WIDTH).min(width);
+    let small = options.width.unwrap_or(WIDTH).min(width);
     [small, (u64::from(height) * u64::from(small) / u64::from(width.max(1))).max(16) as u32]
 }
 
-fn samples(wish: &Wish, old: Option<&Record>) -> u32 {
-    wish.samples.or(old.map(|old| old.samples)).unwrap_or(4)
+fn samples(options: &DrawOptions, old: Option<&Record>) -> u32 {
+    options.samples.or(old.map(|old| old.samples)).unwrap_or(4)
 }
 
 #[cfg(test)]
@@ -340,18 +341,6 @@ mod tests {
         let shorter = changed(|states| drop(states.runs[0].states.remove(&3)));
         assert_eq!((shorter.passes(), shorter.verdict(), shorter.ends_early), (false, "missing", Some([3, 2])));
         assert!(shorter.moved.is_empty() && shorter.state_moved());
-    }
-
-    #[test]
-    fn runs_on_one_side_only_never_pass() {
-        let told = |change: &dyn Fn(&mut States)| {
-            let found = changed(change);
-            assert_eq!((found.passes(), found.verdict()), (false, "state moved"));
-            found.moved.iter().map(ToString::to_string).collect::<Vec<_>>()
-        };
-        assert_eq!(told(&|states| states.add("other", 0, states.runs[0].states[&0].clone())), ["other is new"]);
-        let renamed = told(&|states| states.runs[0].name = "other".to_owned());
-        assert_eq!(renamed, ["one is gone", "other is new"]);
     }
 
     /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.

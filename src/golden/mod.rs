@@ -44,12 +44,12 @@ use pair::Pair;
 use rayon::prelude::*;
 use serde::Serialize;
 use side::{Kind, Source, states_of};
-use states::{States, courses, moved};
+use states::{States, moved, run_differences};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What keeps a comparison from being made at all.
+/// Why no comparison can be made.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ComparisonError {
     /// A file or folder is not there or cannot be read.
@@ -57,7 +57,7 @@ pub(crate) enum ComparisonError {
     Read {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The cause.
         source: io::Error,
     },
     /// One side is a folder, and the other one is not.
@@ -71,12 +71,12 @@ pub(crate) enum ComparisonError {
     /// There is nothing to compare.
     #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
     Empty {
-        /// The folder with what was expected.
+        /// The expected folder.
         expected: PathBuf,
-        /// The other folder.
+        /// The actual folder.
         actual: PathBuf,
     },
-    /// The record of a golden makes no sense.
+    /// The record of a golden is invalid.
     #[error(
         "{}: this record of a golden cannot be read: {what}; if nothing else helps, delete the folder and make the \
          golden again",
@@ -90,23 +90,24 @@ pub(crate) enum ComparisonError {
     },
 }
 
-/// Pictures beside each other, and the states behind them.
+/// The result of comparing the pictures and states of two sides.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Comparison {
     /// One for each picture on either side, in the order of their names.
     pub pictures: Vec<Compared>,
-    /// The runs whose states are not those that were expected, in any frame that is known on both sides, drawn or not.
+    /// The runs whose states are not as expected, in any frame known on both sides, drawn or not.
     pub moved: Vec<Moved>,
     /// Runs that are known on both sides, frame by frame.
-    pub courses: Vec<RunDifference>,
-    /// Whether both sides say that they come from the same scene; `None` if they do not say. Another scene with the same
-    /// states is no difference of physics or drawing.
+    #[serde(rename = "courses")]
+    pub differences: Vec<RunDifference>,
+    /// Whether both sides record the same scene; `None` if one of them records none. Another scene with the same states is
+    /// not a difference.
     pub same_scene: Option<bool>,
-    /// The last frame that the golden records and the one that its scene ends with now, if that is before it.
+    /// The last frame of the golden and that of its scene, if the scene ends earlier.
     pub ends_early: Option<[u64; 2]>,
     /// Recorded runs of which no state could be compared.
     pub unknown: Vec<String>,
-    /// What else is worth knowing, in words.
+    /// Further remarks.
     pub notes: Vec<String>,
     #[serde(skip)]
     sides: [Side; 2],
@@ -120,19 +121,19 @@ pub(crate) struct Comparison {
 pub(crate) struct Compared {
     /// Its file's name.
     pub name: String,
-    /// The frame that it shows, if it says so.
+    /// The frame that it shows, if it records one.
     pub frame: Option<u64>,
-    /// What is said of it.
+    /// Its verdict.
     #[serde(flatten)]
     pub verdict: Verdict,
 }
 
 impl Comparison {
-    /// Compares a picture, a folder of pictures, or what stands for a golden's scene, with what was expected. Pictures of
-    /// folders belong together by name.
+    /// Compares a picture, or a folder of pictures, with an expected picture, folder or golden. Pictures in folders are
+    /// paired by name.
     ///
     /// # Errors
-    /// If there is nothing to compare on one of the sides. What is wrong with single pictures is told in their verdicts.
+    /// If one of the sides cannot be read or has nothing to compare. Errors of single pictures are verdicts.
     pub(crate) fn of(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
         Self::between(Side::read_or_absent(expected)?, Side::read(actual)?)
     }
@@ -142,11 +143,11 @@ impl Comparison {
         let pairs = pairs(&expected, &actual)?;
         let read = |(name, sources)| Pair::read(name, sources);
         let read: Vec<Pair> = match pairs.len() {
-            // Threads take time to start, a tenth of all that a pair takes.
+            // Starting threads takes a tenth of the time of a pair.
             1 => pairs.into_iter().map(read).collect(),
             _ => pairs.into_par_iter().map(read).collect(),
         };
-        // Frames beside those of a golden tell of states, too.
+        // Frames that have no picture in the golden also record states.
         let beside = beside(&expected, &actual);
         let labels = [0, 1].map(|side| -> Vec<&Tags> {
             let more = beside.iter().filter_map(|(_, label)| label.as_ref().ok()?.as_ref()).filter(|_| side == 1);
@@ -154,8 +155,8 @@ impl Comparison {
         });
         let mut notes = Vec::new();
         let [before, after] = Self::states([&expected, &actual], &labels, &mut notes);
-        let courses = courses(&before, &after);
-        let moved = moved(&before, &after, &courses);
+        let differences = run_differences(&before, &after);
+        let moved = moved(&before, &after, &differences);
         let scenes = [(&expected, &labels[0]), (&actual, &labels[1])].map(|(side, labels)| scenes(side, labels));
         let same_scene = scenes.iter().all(|scenes| !scenes.is_empty()).then(|| scenes[0] == scenes[1]);
         let ends_early = ends(&expected, &actual).filter(|[recorded, end]| end < recorded);
@@ -179,7 +180,7 @@ impl Comparison {
             }
             _ => {}
         }
-        let compared = |run: &&states::Run| !courses.iter().any(|course| course.run == run.name);
+        let compared = |run: &&states::Run| !differences.iter().any(|difference| difference.run == run.name);
         let is_gone = |run: &&states::Run| moved.iter().any(|moved| moved.run == run.name);
         let recorded = expected.record.iter().flat_map(|record| &record.states.runs);
         let unknown: Vec<_> =
@@ -195,29 +196,27 @@ impl Comparison {
         }
         let mut pictures: Vec<Compared> = read
             .into_iter()
-            .map(|read| {
-                let label = read.labels[0].clone();
-                let mut picture = read.compared();
-                complete(&mut picture, label.as_ref(), &expected, &courses);
+            .map(|Pair { labels: [label, _], compared: mut picture }| {
+                complete(&mut picture, label.as_ref(), &expected, &differences);
                 picture
             })
             .chain(judged)
             .collect();
         pictures.sort_by(|one, other| one.name.cmp(&other.name));
         if actual.is_undrawn {
-            // Mistakes in the golden itself are reported even without pictures.
+            // Errors in the golden itself are reported even without pictures.
             pictures.retain(|picture| matches!(picture.verdict, Verdict::Unreadable { .. }));
             notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
         }
         let sides = [expected, actual];
-        Ok(Self { pictures, moved, courses, same_scene, ends_early, unknown, notes, sides, actual_states: after })
+        Ok(Self { pictures, moved, differences, same_scene, ends_early, unknown, notes, sides, actual_states: after })
     }
 
-    /// What is known of the states of both sides.
+    /// The known states of both sides.
     fn states(sides: [&Side; 2], labels: &[Vec<&Tags>; 2], notes: &mut Vec<String>) -> [States; 2] {
         let has_record = sides.iter().any(|side| side.record.is_some());
         let of_labels = [0, 1].map(|side| states_of(&labels[side], has_record));
-        let differs = !moved(&of_labels[0], &of_labels[1], &courses(&of_labels[0], &of_labels[1])).is_empty();
+        let differs = !moved(&of_labels[0], &of_labels[1], &run_differences(&of_labels[0], &of_labels[1])).is_empty();
         let mut of_labels = of_labels.into_iter();
         [0, 1].map(|at| {
             let mut states = of_labels.next().unwrap_or_default();
@@ -227,7 +226,7 @@ impl Comparison {
             // Archives can be large: they are read only for distances, or for states that pictures do not record.
             if has_record || differs {
                 match sides[at].archive(&labels[at]) {
-                    // It says the same of every frame that has a picture, and more of it.
+                    // It has the states of all pictures, and more of each.
                     Ok(Some(archive)) => states.extend(archive),
                     Ok(None) => {}
                     Err(note) => notes.push(note),
@@ -239,20 +238,20 @@ impl Comparison {
         })
     }
 
-    /// Whether nothing is wrong.
+    /// Whether everything is as expected.
     pub(crate) fn passes(&self) -> bool {
         let is_there = self.sides[0].kind != Kind::Absent;
         let all_known = self.ends_early.is_none() && self.unknown.is_empty();
         is_there && all_known && self.moved.is_empty() && self.pictures.iter().all(|picture| picture.verdict.passes())
     }
 
-    /// Whether there are other states than those that were expected, or fewer of them.
+    /// Whether states differ from the expected ones, or are fewer.
     pub(crate) fn state_moved(&self) -> bool {
         let moved = |picture: &Compared| matches!(picture.verdict, Verdict::StateMoved { .. });
         !self.moved.is_empty() || self.ends_early.is_some() || self.pictures.iter().any(moved)
     }
 
-    /// The verdict on the whole, in the words of the gravest on a picture.
+    /// The overall verdict: the most severe of all pictures.
     pub(crate) fn verdict(&self) -> &'static str {
         // From the most severe.
         const ORDER: [&str; 8] = [
@@ -282,7 +281,7 @@ impl Comparison {
         self.pictures.iter().find(|picture| matches!(picture.verdict, Verdict::StateMoved { .. }))
     }
 
-    /// The command that accepts what is actually there; `None` if nothing is to be accepted, or nothing can be.
+    /// The command that accepts the actual side; `None` if there is nothing to accept, or nothing that can be accepted.
     pub(crate) fn command_to_accept(&self) -> Option<String> {
         if self.passes() || self.unfit().is_some() || !self.has_something_to_accept() {
             return None;
@@ -297,13 +296,13 @@ impl Comparison {
         format!("localshape compare {option}{} {} {}", actual.options, expected.typed(), actual.typed())
     }
 
-    /// The states that were compared.
+    /// The number of compared states.
     fn states_compared(&self) -> usize {
-        self.courses.iter().map(|course| course.moments.len()).sum()
+        self.differences.iter().map(|difference| difference.moments.len()).sum()
     }
 }
 
-/// The pictures that belong together by name.
+/// Pictures paired by name.
 type Pairs = Vec<(String, [Option<Source>; 2])>;
 
 fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
@@ -331,7 +330,7 @@ fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
     for (name, source) in &expected.pictures {
         pairs.entry(name.clone()).or_default()[0] = Some(source.clone());
     }
-    // A picture that the record names belongs to the golden, also if its file is gone.
+    // A picture in the record belongs to the golden, even if its file is missing.
     for drawn in expected.record.iter().flat_map(|record| &record.pictures) {
         pairs.entry(drawn.file.clone()).or_default();
     }
@@ -347,7 +346,7 @@ fn pairs(expected: &Side, actual: &Side) -> Result<Pairs, ComparisonError> {
     Ok(pairs.into_iter().collect())
 }
 
-/// Frames of a folder that are not among the pictures of a golden, with what they say about themselves.
+/// Frames of a folder that have no picture in the golden, with their metadata.
 fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Tags>, PictureError>)> {
     if (expected.kind, actual.kind) != (Kind::Golden, Kind::Folder) {
         return Vec::new();
@@ -364,7 +363,7 @@ fn beside(expected: &Side, actual: &Side) -> Vec<(String, Result<Option<Tags>, P
     more.map(|(name, source)| (name.clone(), label(source))).collect()
 }
 
-/// The mistake in a frame that has no picture in the golden, if any.
+/// The verdict on a frame that has no picture in the golden; `None` if its states are as recorded.
 fn judge(name: &str, label: &Result<Option<Tags>, PictureError>, expected: &Side) -> Option<Compared> {
     let verdict = match label {
         Err(error) => Verdict::Unreadable { message: format!("{name}: {error}") },
@@ -388,13 +387,14 @@ fn judge(name: &str, label: &Result<Option<Tags>, PictureError>, expected: &Side
     Some(Compared { name: name.to_owned(), frame, verdict })
 }
 
-/// Adds what is known besides the two pictures: how far a state moved, and whether a golden is contradictory.
-fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, courses: &[RunDifference]) {
+/// Adds to a verdict how far a state moved, and whether the golden contradicts itself.
+fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, differences: &[RunDifference]) {
     if let Verdict::StateMoved { runs, .. } = &mut picture.verdict {
         for here in runs {
-            let course = courses.iter().find(|course| course.run == here.run);
+            let difference = differences.iter().find(|difference| difference.run == here.run);
             let frame = picture.frame.unwrap_or(0);
-            let moment = course.and_then(|course| course.moments.iter().find(|moment| moment.frame == frame));
+            let moment =
+                difference.and_then(|difference| difference.moments.iter().find(|moment| moment.frame == frame));
             here.displacement = moment.and_then(|moment| moment.displacement);
         }
     }
@@ -435,7 +435,7 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
             Shown::Figure(_) => None,
         };
         let ((recorded, was), (frame, is)) = (shown(&pair.labels[0])?, shown(&pair.labels[1])?);
-        let name = &pair.name;
+        let name = &pair.compared.name;
         if frame != recorded {
             return Some(format!("{name} shows frame {frame} instead of frame {recorded}"));
         }

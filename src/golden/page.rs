@@ -4,7 +4,7 @@ use super::distance::{CHANNEL, differences};
 use super::picture::Pixels;
 use super::report::{FAINT, INTERIOR, PicturePair, Report, SILHOUETTE};
 use super::side::Kind;
-use super::silhouettes::{Place, silhouettes};
+use super::silhouettes::{Location, silhouettes};
 use super::{Compared, Comparison, Verdict};
 use crate::output::{Compression, encode};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ const MOST_FAILED: usize = 40;
 const MOST_PASSED: usize = 8;
 
 impl Comparison {
-    /// What a page shows of it. Of long sequences it shows the pictures of some frames.
+    /// The contents of its page. Of long sequences the page has the pictures of some frames.
     pub(crate) fn report(&self) -> Report {
         let [expected, actual] = &self.sides;
         let shown = self.shown();
@@ -26,13 +26,8 @@ impl Comparison {
         if expected.kind == Kind::Absent {
             findings.push("There is no golden yet.".to_owned());
         }
-        let failed = self.pictures.iter().filter(|picture| !picture.verdict.passes()).count();
-        match (failed, self.pictures.len()) {
-            (_, 0) => {}
-            (0, _) => findings.push(format!("{}.", self.pass())),
-            (1, 1) => findings.push("The picture is not as expected.".to_owned()),
-            (1, all) => findings.push(format!("1 of {all} pictures is not as expected.")),
-            (failed, all) => findings.push(format!("{failed} of {all} pictures are not as expected.")),
+        if !self.pictures.is_empty() {
+            findings.push(format!("{}.", self.failures().unwrap_or_else(|| self.pass())));
         }
         if self.same_scene == Some(false) {
             findings.push("The scene files are not the same.".to_owned());
@@ -58,12 +53,12 @@ impl Comparison {
             findings,
             accept: self.command_to_accept(),
             drawn_by: adapters,
-            courses: self.courses.clone(),
+            runs: self.differences.clone(),
             pictures: pairs.into_iter().map(|(pair, _)| pair).collect(),
         }
     }
 
-    /// The pictures that are put into a page: those that failed, or evenly chosen ones of many, and a few that did not.
+    /// The pictures on the page: failures and a few others, evenly spaced if there are too many.
     fn shown(&self) -> BTreeSet<usize> {
         let chosen = |passes: bool, most: usize| -> Vec<usize> {
             let all = self.pictures.iter().enumerate().filter(|(_, picture)| picture.verdict.passes() == passes);
@@ -76,7 +71,7 @@ impl Comparison {
         chosen(false, MOST_FAILED).into_iter().chain(chosen(true, MOST_PASSED)).collect()
     }
 
-    /// A picture on the page, and who drew both sides of it.
+    /// A picture on the page, and the adapters that drew both sides.
     fn pair(&self, picture: &Compared, is_shown: bool) -> (PicturePair, [Option<String>; 2]) {
         let source = |at: usize| self.sides[at].source(&picture.name);
         // Files that are not pictures are not shown.
@@ -85,7 +80,7 @@ impl Comparison {
         let label = |at: usize| pixels[at].as_ref().and_then(|pixels| pixels.label.as_ref());
         let frame = picture.frame.or_else(|| [1, 0].into_iter().find_map(|at| label(at)?.frame()));
         let time = frame.and_then(|frame| {
-            let moments = self.courses.iter().flat_map(|course| &course.moments);
+            let moments = self.differences.iter().flat_map(|run| &run.moments);
             moments.filter(|moment| moment.frame == frame).find_map(|moment| moment.time)
         });
         let difference = match &pixels {
@@ -115,7 +110,8 @@ impl Comparison {
     }
 }
 
-/// Where two pictures differ, over a faint shadow of what was expected, as a PNG file; `None` if they are not of one size.
+/// The differences of two pictures over a faint copy of the expected one, as a PNG file; `None` if their sizes or channels
+/// differ.
 fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     if expected.size != actual.size || expected.channels != actual.channels {
         return None;
@@ -131,11 +127,11 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     let mut bytes: Vec<u8> = expected.bytes.chunks_exact(expected.channels).flat_map(faint).collect();
     if expected.bytes != actual.bytes {
         let mask = silhouettes([expected, actual]);
-        differences(&expected.bytes, &actual.bytes, expected.channels, |at, difference| {
-            let colour = match (difference > CHANNEL, mask[at]) {
-                (false, _) => FAINT,
-                (true, Place::Silhouette) => SILHOUETTE,
-                (true, _) => INTERIOR,
+        differences(expected, actual, |at, difference| {
+            let colour = match mask[at] {
+                _ if difference <= CHANNEL => FAINT,
+                Location::Silhouette | Location::Beside => SILHOUETTE,
+                Location::OneSided | Location::Interior => INTERIOR,
             };
             bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
         });

@@ -5,56 +5,56 @@ use std::fs::File;
 use std::io::{self, BufRead, Cursor, Read, Seek};
 use std::path::Path;
 
-/// The longest side of a picture (px), and its most pixels: for a report both sides of a pair are held in memory.
+/// The longest side of a picture (px) and its largest number of pixels: both pictures of a pair are held in memory.
 const LONGEST_SIDE: u32 = 16_384;
 const MOST_PIXELS: u64 = 100_000_000;
-/// The largest file (bytes): more than those pixels take. Both files of a pair are held in memory.
+/// The largest file (bytes), which is more than such pictures need.
 const MOST_BYTES: u64 = 1 << 29;
-/// The most data beside the pixels (bytes); the text chunks are far smaller.
+/// The largest size of data besides pixels (bytes); the text chunks are far smaller.
 const MOST_BESIDE: usize = 4 << 20;
 
 /// The signature of PNG files.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Why a file is no picture that can be compared.
+/// Why a file cannot be compared as a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// It cannot be opened.
     #[error("cannot be read")]
     Read(#[from] io::Error),
-    /// It is no PNG file.
+    /// It is not a PNG file.
     #[error("this is not a PNG picture")]
     Foreign,
-    /// It is larger than any picture that is compared.
+    /// The file is too large.
     #[error("this file has {0} bytes; a picture that can be compared has at most {MOST_BYTES}")]
     Large(u64),
-    /// It is a PNG file, but not a whole one.
+    /// It is damaged or incomplete.
     #[error("this PNG picture is damaged or cut short ({0})")]
     Broken(String),
-    /// It is a PNG file of another kind than those that are written here.
+    /// It has another pixel format than the pictures of this crate.
     #[error("the picture {0}; expected 8 bits of red, green and blue, not interlaced")]
     Kind(String),
-    /// It is larger than any that is compared, width and height (px).
+    /// Its width and height (px) are too large.
     #[error(
         "the picture says that it has {0}×{1} pixels; expected at most {LONGEST_SIDE} a side and {million} million in all",
         million = MOST_PIXELS / 1_000_000
     )]
     Size(u32, u32),
-    /// It carries more beside its pixels than any picture needs.
+    /// It has too much data besides its pixels.
     #[error("the picture carries more than {} MiB beside its pixels; save it without that", MOST_BESIDE >> 20)]
     Laden,
-    /// It says of itself what cannot be.
+    /// Its metadata is invalid.
     #[error(
         "the picture was drawn by this program, but its text `localshape:{0}` is missing, damaged or there twice; \
          its pixels alone prove nothing"
     )]
     Label(&'static str),
-    /// It says behind its pixels what belongs before them.
+    /// Its metadata is after the pixels.
     #[error("the picture has its text chunks after its pixels; expected them before, as this program writes them")]
     Late,
 }
 
-/// A picture with what it says about itself.
+/// A picture with its metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pixels {
     /// Width and height (px).
@@ -63,7 +63,7 @@ pub struct Pixels {
     pub channels: usize,
     /// Row after row from the top left.
     pub bytes: Vec<u8>,
-    /// What it shows, if it says so.
+    /// Its metadata, if it has any.
     pub label: Option<Tags>,
 }
 
@@ -71,35 +71,51 @@ impl Pixels {
     /// Reads a PNG file.
     ///
     /// # Errors
-    /// A file that cannot be read, is no PNG file or only a part of one, or is of another kind than frames are.
+    /// A file that cannot be read, is not a complete PNG file, or has another pixel format than frames.
     pub fn read(path: &Path) -> Result<Self, PictureError> {
         Self::from_bytes(&file(path)?)
     }
 
-    /// Reads a PNG file from memory.
+    /// Reads a PNG file from memory, with all its checksums.
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PictureError> {
-        let mut rows = Rows::open(bytes)?;
-        let mut bytes = vec![0; rows.header.row() * rows.header.rows()];
-        rows.read(&mut bytes)?;
-        rows.finish()?;
-        let Header { size, channels, label } = rows.header;
-        Ok(Self { size, channels, bytes, label })
+    pub fn from_bytes(file: &[u8]) -> Result<Self, PictureError> {
+        if !file.starts_with(SIGNATURE) {
+            return Err(PictureError::Foreign);
+        }
+        let mut decoder = decoder(Cursor::new(file));
+        let [width, height] = decoder.read_header_info().map(|info| [info.width, info.height]).map_err(broken)?;
+        if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
+            return Err(PictureError::Size(width, height));
+        }
+        let mut reader = decoder.read_info().map_err(broken)?;
+        let channels = channels(reader.info()).map_err(PictureError::Kind)?;
+        let label = Tags::of(reader.info()).map_err(PictureError::Label)?;
+        let row = width as usize * channels;
+        let mut bytes = vec![0; row * height as usize];
+        for row in bytes.chunks_exact_mut(row) {
+            let read = reader.read_row(row).map_err(broken)?;
+            read.ok_or_else(|| PictureError::Broken("rows are missing".to_owned()))?;
+        }
+        reader.finish().map_err(broken)?;
+        if Tags::of(reader.info()).map_err(PictureError::Label)? != label {
+            return Err(PictureError::Late);
+        }
+        Ok(Self { size: [width, height], channels, bytes, label })
     }
 
-    /// What the header of a PNG file says about itself, without its pixels.
+    /// The metadata in the header of a PNG file, without its pixels.
     ///
     /// # Errors
-    /// As [`Self::read`], as far as that can be told from the header.
+    /// As [`Self::read`], as far as the header shows.
     pub(super) fn read_label(path: &Path) -> Result<Option<Tags>, PictureError> {
         let reader = decoder(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
         Tags::of(reader.info()).map_err(PictureError::Label)
     }
 }
 
-/// The bytes of what is to be read as a picture.
+/// The bytes of a PNG file.
 pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
     let mut file = open(path)?;
     let length = file.metadata()?.len();
@@ -108,7 +124,7 @@ pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
     }
     // One byte more than the file should have, so that the end is detected at once.
     let mut bytes = Vec::with_capacity(length as usize + 1);
-    // Whatever else lies there under such a name may be large.
+    // Other files of such a name may be large, so the signature is checked first.
     file.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut bytes)?;
     if bytes != SIGNATURE {
         return Err(PictureError::Foreign);
@@ -151,82 +167,19 @@ fn broken(error: png::DecodingError) -> PictureError {
     }
 }
 
-/// What a picture is, without its pixels.
-#[derive(Clone, Debug)]
-pub(super) struct Header {
-    /// Width and height (px).
-    pub(super) size: [u32; 2],
-    /// Bytes of each pixel.
-    pub(super) channels: usize,
-    /// What it shows, if it says so.
-    pub(super) label: Option<Tags>,
-}
-
-impl Header {
-    /// Bytes of a row.
-    pub(super) fn row(&self) -> usize {
-        self.size[0] as usize * self.channels
+/// Bytes of each pixel; a message for pixel formats that are not compared.
+fn channels(info: &png::Info<'_>) -> Result<usize, String> {
+    if info.bit_depth != png::BitDepth::Eight {
+        return Err(format!("has {} bits a channel", info.bit_depth as u8));
     }
-
-    /// How many rows there are.
-    pub(super) fn rows(&self) -> usize {
-        self.size[1] as usize
-    }
-}
-
-/// A picture whose rows are read one after another.
-pub(super) struct Rows<'a> {
-    reader: png::Reader<Cursor<&'a [u8]>>,
-    pub(super) header: Header,
-}
-
-impl<'a> Rows<'a> {
-    /// Reads the header of a PNG file, and refuses what no frame is.
-    pub(super) fn open(file: &'a [u8]) -> Result<Self, PictureError> {
-        if !file.starts_with(SIGNATURE) {
-            return Err(PictureError::Foreign);
-        }
-        let mut decoder = decoder(Cursor::new(file));
-        let kind = |what: String| Err(PictureError::Kind(what));
-        let [width, height] = decoder.read_header_info().map(|info| [info.width, info.height]).map_err(broken)?;
-        if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
-            return Err(PictureError::Size(width, height));
-        }
-        let reader = decoder.read_info().map_err(broken)?;
-        let info = reader.info();
-        if info.bit_depth != png::BitDepth::Eight {
-            return kind(format!("has {} bits a channel", info.bit_depth as u8));
-        }
-        if info.interlaced {
-            return kind("is interlaced".to_owned());
-        }
-        if info.animation_control.is_some() {
-            return kind("is an animation".to_owned());
-        }
-        let channels = match info.color_type {
-            png::ColorType::Rgb if info.trns.is_some() => return kind("calls one colour transparent".to_owned()),
-            png::ColorType::Rgb => 3,
-            png::ColorType::Rgba => 4,
-            png::ColorType::Indexed => return kind("has a palette".to_owned()),
-            png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => return kind("is grey".to_owned()),
-        };
-        let label = Tags::of(info).map_err(PictureError::Label)?;
-        Ok(Self { header: Header { size: [width, height], channels, label }, reader })
-    }
-
-    /// Reads as many rows as there is room for; there must be so many.
-    pub(super) fn read(&mut self, rows: &mut [u8]) -> Result<(), PictureError> {
-        for row in rows.chunks_exact_mut(self.header.row()) {
-            let read = self.reader.read_row(row).map_err(broken)?;
-            read.ok_or_else(|| PictureError::Broken("rows are missing".to_owned()))?;
-        }
-        Ok(())
-    }
-
-    /// Reads what follows the pixels up to the end of the picture, with its checksums.
-    pub(super) fn finish(&mut self) -> Result<(), PictureError> {
-        self.reader.finish().map_err(broken)?;
-        let label = Tags::of(self.reader.info()).map_err(PictureError::Label)?;
-        if label == self.header.label { Ok(()) } else { Err(PictureError::Late) }
-    }
+    let kind = match info.color_type {
+        _ if info.interlaced => "is interlaced",
+        _ if info.animation_control.is_some() => "is an animation",
+        png::ColorType::Rgb if info.trns.is_some() => "calls one colour transparent",
+        png::ColorType::Rgb => return Ok(3),
+        png::ColorType::Rgba => return Ok(4),
+        png::ColorType::Indexed => "has a palette",
+        png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => "is grey",
+    };
+    Err(kind.to_owned())
 }

@@ -4,7 +4,7 @@
 //! rounded positions, from which the distance is known when digests differ. The file has some tens of kilobytes for any
 //! scene: for long scenes at most every second frame is recorded, for large bodies at most every second node.
 
-use super::states::{Places, Run, State, States, Step};
+use super::states::{Positions, Run, State, States, Step};
 use crate::output::Tags;
 use crate::sim::diagnostics::{Chosen, Reach, Value};
 use glam::DVec3;
@@ -28,13 +28,13 @@ pub(super) const DIGITS: usize = 12;
 
 /// Approximate maximum size of the digests and of the positions of a golden (bytes).
 pub(super) const ROOM_FOR_DIGESTS: usize = 24 * 1024;
-pub(super) const ROOM_FOR_PLACES: usize = 8 * 1024;
+pub(super) const ROOM_FOR_POSITIONS: usize = 8 * 1024;
 /// Approximate size of a coordinate (bytes).
 pub(super) const COORDINATE: usize = 5;
 /// Positions are rounded to about this part of the extent of all nodes.
 const FINENESS: f64 = 1e-5;
 
-/// What a golden knows.
+/// The contents of a record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Record {
     /// Name of the scene or figure file.
@@ -49,7 +49,7 @@ pub(super) struct Record {
     pub(super) states: States,
 }
 
-/// A picture of a golden, and who drew it.
+/// A picture of a golden and the adapter that drew it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Drawn {
@@ -64,7 +64,7 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    /// A picture and who drew it, as it says itself.
+    /// A picture of a file name with this metadata.
     pub(super) fn new(file: &str, label: &Tags) -> Self {
         let (adapter, version) = (label.adapter.clone(), label.version.clone());
         Self { file: file.to_owned(), frame: label.frame().unwrap_or(0), adapter, version }
@@ -94,9 +94,9 @@ struct File {
 struct FileRun {
     name: String,
     nodes: usize,
-    /// Every so many nodes have positions.
+    /// The stride of nodes with positions.
     every: usize,
-    /// In which positions are counted (m).
+    /// The unit of the integers in `positions` (m).
     quantum: f64,
     /// Time step and the scene's cycle T (s). Earlier versions of this program did not record them.
     step: Option<f64>,
@@ -153,7 +153,7 @@ impl Record {
     /// Reads the text of a record.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// What is wrong with it.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let file: File = toml::from_str(text).map_err(|error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
@@ -210,7 +210,8 @@ impl Record {
             let coordinates = 3 * nodes.div_ceil(every);
             let counts = counts.filter(|counts| counts.len() == coordinates).ok_or_else(wrong)?;
             let vector = |at: &[i64]| DVec3::new(at[0] as f64, at[1] as f64, at[2] as f64) * quantum;
-            state.places = Some(Places { quantum, every, nodes, at: counts.chunks_exact(3).map(vector).collect() });
+            state.positions =
+                Some(Positions { quantum, every, nodes, at: counts.chunks_exact(3).map(vector).collect() });
         }
         let File { subject, scenes, size, samples, pictures, .. } = file;
         Ok(Self { subject, scenes, size, samples, pictures, states: States { runs } })
@@ -219,7 +220,7 @@ impl Record {
     /// Reads the record of a golden's folder.
     ///
     /// # Errors
-    /// If the file cannot be read; inside, what is wrong with it, in words.
+    /// If the file cannot be read; the inner error says what is wrong with its contents.
     pub(super) fn read(folder: &Path) -> io::Result<Result<Self, String>> {
         let path = folder.join(RECORD_FILE);
         let found = path.metadata()?;
@@ -247,23 +248,23 @@ impl Record {
             }
         }
         let bytes = |run: &Run| {
-            let nodes = |state: &State| state.places.as_ref().map_or(0, |places| places.at.len());
+            let nodes = |state: &State| state.positions.as_ref().map_or(0, |positions| positions.at.len());
             3 * COORDINATE * run.states.values().map(nodes).sum::<usize>()
         };
         let all: usize = self.states.runs.iter().map(bytes).sum();
-        let every = all.div_ceil(ROOM_FOR_PLACES).max(1);
+        let every = all.div_ceil(ROOM_FOR_POSITIONS).max(1);
         for (number, run) in self.states.runs.iter().enumerate() {
-            let known = || run.states.values().filter_map(|state| state.places.as_ref());
-            let quantum = known().map(|places| places.quantum).fold(quantum(known()), f64::max);
-            let nodes = known().map(|places| places.nodes).max().unwrap_or(0);
+            let known = || run.states.values().filter_map(|state| state.positions.as_ref());
+            let quantum = known().map(|positions| positions.quantum).fold(quantum(known()), f64::max);
+            let nodes = known().map(|positions| positions.nodes).max().unwrap_or(0);
             // Values read from a record are rounded already.
-            let every = if known().any(|places| places.every > 1) { 1 } else { every };
-            let kept = known().map(|places| places.every).max().unwrap_or(1) * every;
+            let every = if known().any(|positions| positions.every > 1) { 1 } else { every };
+            let kept = known().map(|positions| positions.every).max().unwrap_or(1) * every;
             let [step, cycle] = [run.step.map(|step| step.step), run.step.map(|step| step.cycle)];
             runs.push(FileRun { name: run.name.clone(), nodes, every: kept, quantum, step, cycle });
             for (frame, state) in &run.states {
                 let is_everywhere = self.states.runs.iter().all(|run| run.states.contains_key(frame));
-                let Some(places) = state.places.as_ref().filter(|_| is_everywhere) else { continue };
+                let Some(known) = state.positions.as_ref().filter(|_| is_everywhere) else { continue };
                 if let Some(all) = &state.numbers {
                     write!(numbers, "\n{frame} {number}").expect("writing to a string");
                     for (_, value) in all.iter() {
@@ -275,7 +276,7 @@ impl Record {
                     }
                 }
                 write!(positions, "\n{frame} {number}").expect("writing to a string");
-                for coordinate in places.at.iter().step_by(every).flat_map(DVec3::to_array) {
+                for coordinate in known.at.iter().step_by(every).flat_map(DVec3::to_array) {
                     write!(positions, " {}", (coordinate / quantum).round() as i64).expect("writing to a string");
                 }
             }
@@ -341,10 +342,10 @@ fn state_of<'a>(runs: &'a mut [Run], words: &[&str]) -> Option<(usize, &'a mut S
     Some((run, runs.get_mut(run)?.states.get_mut(&frame)?))
 }
 
-/// To what positions are rounded: a power of ten, about a hundred-thousandth of the room that they take at any time (m).
-fn quantum<'a>(places: impl Iterator<Item = &'a Places>) -> f64 {
+/// The step to which positions are rounded: a power of ten, about a hundred-thousandth of their extent over all frames (m).
+fn quantum<'a>(positions: impl Iterator<Item = &'a Positions>) -> f64 {
     let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    for at in places.flat_map(|places| &places.at) {
+    for at in positions.flat_map(|positions| &positions.at) {
         bounds = [bounds[0].min(*at), bounds[1].max(*at)];
     }
     let extent = (bounds[1] - bounds[0]).max_element();
@@ -366,14 +367,14 @@ mod tests {
         for frame in 0..=20_u64 {
             for run in ["Local shape", "½ \"quoted\" '''"] {
                 let at: Vec<_> = (0..5).map(|node| DVec3::new(node as f64 * 0.1, frame as f64 * 0.01, -0.2)).collect();
-                let places = (frame % 10 == 0).then_some(Places { quantum: 0.0, every: 1, nodes: 5, at });
+                let positions = (frame % 10 == 0).then_some(Positions { quantum: 0.0, every: 1, nodes: 5, at });
                 let all = Diagnostics { kinetic: 1.5, elastic: f64::NAN, turned_over: 3, ..Diagnostics::default() };
                 let numbers = Chosen::within(Reach::Goldens, &all);
                 let digest = format!("{:064x}", frame * 1_000_003);
                 states.add(
                     run,
                     frame,
-                    State { time: None, digest: digest.chars().rev().collect(), places, numbers: Some(numbers) },
+                    State { time: None, digest: digest.chars().rev().collect(), positions, numbers: Some(numbers) },
                 );
             }
         }
@@ -406,8 +407,8 @@ mod tests {
             for (frame, state) in &run.states {
                 let other = &coarse.states[frame];
                 assert!(state.digest.starts_with(&other.digest) && other.digest.len() == DIGITS);
-                assert_eq!(state.places.is_some(), other.places.is_some());
-                if let Some((one, other)) = state.places.as_ref().zip(other.places.as_ref()) {
+                assert_eq!(state.positions.is_some(), other.positions.is_some());
+                if let Some((one, other)) = state.positions.as_ref().zip(other.positions.as_ref()) {
                     assert_eq!((other.quantum, other.nodes), (1e-6, 5));
                     assert!(one.at.iter().zip(&other.at).all(|(a, b)| a.distance(*b) < 1e-6));
                     assert_eq!(coarse.states[frame].numbers.as_ref().unwrap().get(Diagnostic::TurnedOver), 3.0);
@@ -448,8 +449,8 @@ mod tests {
     fn however_large_the_scene_is_the_record_is_not() {
         let mut large = Record::default();
         let at: Vec<_> = (0..100_000).map(|node| DVec3::splat(node as f64)).collect();
-        let places = Some(Places { quantum: 0.0, every: 1, nodes: at.len(), at });
-        large.states.add("run", 0, State { digest: "0123456789abcdef".into(), places, ..State::default() });
+        let positions = Some(Positions { quantum: 0.0, every: 1, nodes: at.len(), at });
+        large.states.add("run", 0, State { digest: "0123456789abcdef".into(), positions, ..State::default() });
         large.pictures = record().pictures;
         (large.size, large.samples) = ([320, 180], 4);
         let text = large.text();

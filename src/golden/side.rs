@@ -1,11 +1,11 @@
-//! One side of a comparison: pictures by name, and what is known about their states.
+//! One side of a comparison: pictures by name, and their known states.
 
 use super::ComparisonError;
 use super::archive;
 use super::picture::{self, PictureError, Pixels};
 use super::record::{RECORD_FILE, Record};
 use super::states::{State, States, Step};
-use crate::output::{SUMMARY_FILE, Shown, Tags};
+use crate::output::{SUMMARY_FILE, Shown, Tags, folder_of};
 use crate::shell;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,16 +14,16 @@ use std::path::{Path, PathBuf};
 /// The largest summary that is read (bytes).
 const LARGEST_SUMMARY: u64 = 16 << 20;
 
-/// What a side is.
+/// The kind of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// One picture.
     Picture,
     /// A folder of pictures.
     Folder,
-    /// A folder with a record of what its scene did.
+    /// A folder with pictures and a record of states.
     Golden,
-    /// A golden that is not there yet.
+    /// A golden that does not exist yet.
     Absent,
     /// A scene or figure, drawn for this comparison.
     Drawn,
@@ -61,9 +61,9 @@ pub(crate) struct Side {
     pub(super) record: Option<Record>,
     /// Whether nothing could be drawn, so that states alone are compared.
     pub(super) is_undrawn: bool,
-    /// How it was drawn otherwise than usually, as options of the command line.
+    /// The options of the command line by which it was drawn.
     pub(crate) options: String,
-    /// What is worth knowing of it, in words.
+    /// Remarks on it.
     pub(super) notes: Vec<String>,
 }
 
@@ -85,18 +85,10 @@ impl Side {
             }),
         };
         let kind = if record.is_some() { Kind::Golden } else { Kind::Folder };
-        Ok(Self {
-            origin: path.into(),
-            kind,
-            pictures,
-            record,
-            is_undrawn: false,
-            options: String::new(),
-            notes: Vec::new(),
-        })
+        Ok(Self { kind, pictures, record, ..Self::picture(path) })
     }
 
-    /// As [`Self::read`]; what is not there is a golden that is to be made.
+    /// As [`Self::read`]; if nothing exists, a golden to be made.
     pub(crate) fn read_or_absent(path: &Path) -> Result<Self, ComparisonError> {
         let absent = || Self { kind: Kind::Absent, pictures: BTreeMap::new(), ..Self::picture(path) };
         if path.symlink_metadata().is_err() {
@@ -128,18 +120,15 @@ impl Side {
         }
     }
 
-    /// The folder that pictures stand in, and perhaps an archive of their states.
+    /// The folder with the pictures, and perhaps with an archive of their states.
     fn folder(&self) -> &Path {
         match self.kind {
-            Kind::Picture => match self.origin.parent() {
-                Some(parent) if parent != Path::new("") => parent,
-                _ => Path::new("."),
-            },
+            Kind::Picture => folder_of(&self.origin),
             _ => &self.origin,
         }
     }
 
-    /// The exact states in the folder's archive, if there is one of these pictures.
+    /// The exact states in the folder's archive, if it belongs to these pictures.
     pub(super) fn archive(&self, labels: &[&Tags]) -> Result<Option<States>, String> {
         if !matches!(self.kind, Kind::Picture | Kind::Folder) {
             return Ok(None);
@@ -165,7 +154,7 @@ impl Side {
         Ok(Some(states))
     }
 
-    /// How the time of each run was stepped, from the folder's summary, if there is one of these pictures.
+    /// The time step of each run, from the folder's summary, if it belongs to these pictures.
     pub(super) fn steps(&self, labels: &[&Tags]) -> Vec<(String, Step)> {
         let read = || -> Option<Vec<(String, Step)>> {
             let path = self.folder().join(SUMMARY_FILE);
@@ -185,16 +174,16 @@ impl Side {
             };
             summary["runs"].as_array()?.iter().map(step).collect()
         };
-        // Folders of earlier versions of this program do not have it.
+        // Earlier versions of this program did not write it.
         read().unwrap_or_default()
     }
 
-    /// Whether it is a golden, or nothing yet.
+    /// Whether it is a golden, or does not exist yet.
     pub(crate) fn is_golden(&self) -> bool {
         matches!(self.kind, Kind::Golden | Kind::Absent)
     }
 
-    /// The command line's word for it.
+    /// Its path, quoted for the command line.
     pub(super) fn typed(&self) -> String {
         let path = self.origin.to_string_lossy();
         // Prefixed so that a name which begins with - is not taken for an option.
@@ -203,8 +192,8 @@ impl Side {
     }
 }
 
-/// The states recorded in pictures. Unless they are `beside_golden`, none if they are not of one scene, for which frames of the
-/// same number are unrelated.
+/// The states recorded in pictures. None if the pictures are of several scenes, whose frames are unrelated, unless they are
+/// compared with a golden.
 pub(super) fn states_of(labels: &[&Tags], beside_golden: bool) -> States {
     let mut states = States::default();
     let scenes: BTreeSet<_> = labels.iter().flat_map(|label| &label.scenes).collect();

@@ -1,4 +1,4 @@
-//! What is known about states, exactly or rounded, and what moved between two sides.
+//! Known states, exact or rounded, and their differences between two sides.
 
 use crate::output::state_digest;
 use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
@@ -20,13 +20,13 @@ pub(super) struct States {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Run {
     pub(super) name: String,
-    /// How its time is stepped, if that is known.
+    /// Its time step, if known.
     pub(super) step: Option<Step>,
     /// By the number of the frame.
     pub(super) states: BTreeMap<u64, State>,
 }
 
-/// How the time of a run is stepped.
+/// The time step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Step {
     /// ΔT (s).
@@ -42,31 +42,31 @@ pub(super) struct State {
     pub(super) time: Option<f64>,
     /// Digest of all positions and velocities in hexadecimal digits, or as many of them as were kept.
     pub(super) digest: String,
-    pub(super) places: Option<Places>,
-    /// What describes it, coarsely.
+    pub(super) positions: Option<Positions>,
+    /// Some diagnostics.
     pub(super) numbers: Option<Chosen>,
 }
 
-/// Where nodes were.
+/// Positions of nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Places {
-    /// To what positions are rounded (m); 0: not at all.
+pub(super) struct Positions {
+    /// The step to which positions are rounded (m); 0 if they are exact.
     pub(super) quantum: f64,
-    /// Every so many nodes are known, from the first one.
+    /// The stride of known nodes, from the first one.
     pub(super) every: usize,
-    /// How many nodes there are in all.
+    /// The number of all nodes.
     pub(super) nodes: usize,
     /// Positions (m).
     pub(super) at: Vec<DVec3>,
 }
 
 impl State {
-    /// All that a snapshot tells; its places only if they are asked for.
-    pub(super) fn of(snapshot: &Snapshot, with_places: bool) -> Self {
+    /// The state in a snapshot; its positions only on request.
+    pub(super) fn of(snapshot: &Snapshot, with_positions: bool) -> Self {
         let at = &snapshot.position;
-        let places = with_places.then(|| Places { quantum: 0.0, every: 1, nodes: at.len(), at: at.clone() });
+        let positions = with_positions.then(|| Positions { quantum: 0.0, every: 1, nodes: at.len(), at: at.clone() });
         let numbers = Some(Chosen::within(Reach::Goldens, &snapshot.diagnostics));
-        Self { time: Some(snapshot.time), digest: state_digest(snapshot), places, numbers }
+        Self { time: Some(snapshot.time), digest: state_digest(snapshot), positions, numbers }
     }
 
     /// Whether two states are the same, as far as both digests go.
@@ -81,12 +81,12 @@ impl States {
         self.runs.iter().find(|run| run.name == name)
     }
 
-    /// Whether nothing is known at all.
+    /// Whether no state is known.
     fn is_empty(&self) -> bool {
         self.runs.iter().all(|run| run.states.is_empty())
     }
 
-    /// Adds all that others know, which counts where both know something.
+    /// Adds other states, which replace those of the same run and frame.
     pub(super) fn extend(&mut self, others: Self) {
         for run in others.runs {
             for (frame, state) in run.states {
@@ -95,7 +95,7 @@ impl States {
         }
     }
 
-    /// Notes how the time of runs is stepped, of those that are known.
+    /// Sets the time steps of known runs.
     pub(super) fn set_steps<'a>(&mut self, steps: impl IntoIterator<Item = (&'a str, Step)>) {
         for (name, step) in steps {
             if let Some(run) = self.runs.iter_mut().find(|run| run.name == name) {
@@ -104,7 +104,7 @@ impl States {
         }
     }
 
-    /// Adds what is known of a run at a frame.
+    /// Adds the state of a run at a frame.
     pub(super) fn add(&mut self, run: &str, frame: u64, state: State) {
         let at = self.runs.iter().position(|known| known.name == run).unwrap_or_else(|| {
             self.runs.push(Run { name: run.to_owned(), ..Run::default() });
@@ -114,39 +114,40 @@ impl States {
     }
 }
 
-/// How far a node is from where it was expected.
+/// The distance of a node from its expected position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Displacement {
     /// The frame.
     pub frame: u64,
-    /// The node that is farthest away, counted from 0.
+    /// The node with the largest distance, counted from 0.
     pub node: usize,
-    /// How far (m).
+    /// The distance (m).
     pub distance: f64,
-    /// To what the distance is known (m); 0: exactly.
+    /// The precision of the distance (m); 0 if it is exact.
     pub precision: f64,
 }
 
-/// What became of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// How a run changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Change {
-    /// Its states are other ones.
+    /// Its states differ.
+    #[default]
     Moved,
-    /// It is not there any more.
+    /// It no longer exists.
     Gone,
-    /// It was not there.
+    /// It is new.
     New,
 }
 
-/// Another time step than was expected.
+/// A change of the time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct StepChange {
-    /// As it was expected (s).
+    /// The expected step (s).
     pub before: f64,
-    /// As it is (s).
+    /// The actual step (s).
     pub after: f64,
-    /// Into how many parts both divide the cycle T of the stiffest run, which is another one then; `None` if they do not.
+    /// The divisor, if both are the same fraction of the cycle T of the stiffest run, which has changed then.
     pub parts: Option<f64>,
 }
 
@@ -168,26 +169,26 @@ impl fmt::Display for StepChange {
     }
 }
 
-/// A run whose states are not those that were expected.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A run whose states are not as expected.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Moved {
     /// Name of the run.
     pub run: String,
-    /// What became of it.
+    /// How it changed.
     pub change: Change,
-    /// The first frame, of those that were compared, with another state.
+    /// The first compared frame with another state.
     pub first: Option<u64>,
-    /// The last frame before that with the state that was expected.
+    /// The last compared frame before that, whose state is as expected.
     pub last_equal: Option<u64>,
-    /// Its time step, if that is another one, and both are known.
+    /// The change of its time step, if both are known.
     pub step: Option<StepChange>,
-    /// How many nodes were expected, and how many there are, if these are not as many.
+    /// The expected and the actual number of nodes, if they differ.
     pub nodes: Option<[usize; 2]>,
-    /// The node that is farthest away at the first frame with another state at which places are known.
+    /// The largest displacement at the first frame with another state and known positions.
     pub displacement: Option<Displacement>,
-    /// And where it is farthest away of all frames.
+    /// The largest displacement of all frames.
     pub largest: Option<Displacement>,
-    /// What describes the state at the first frame of another state that has such numbers, as expected and as it is.
+    /// Expected and actual diagnostics at the first frame with another state that has them.
     pub numbers: Option<[Chosen; 2]>,
 }
 
@@ -196,7 +197,7 @@ pub(crate) struct Moved {
 pub struct RunDifference {
     /// Name of the run.
     pub run: String,
-    /// To what displacements are known (m); 0: exactly.
+    /// The precision of displacements (m); 0 if they are exact.
     pub precision: f64,
     /// Frames that are known on both sides, rising.
     pub moments: Vec<FrameDifference>,
@@ -216,8 +217,8 @@ pub struct FrameDifference {
 }
 
 /// All runs that are known on both sides.
-pub(super) fn courses(expected: &States, actual: &States) -> Vec<RunDifference> {
-    let course = |run: &Run| {
+pub(super) fn run_differences(expected: &States, actual: &States) -> Vec<RunDifference> {
+    let difference = |run: &Run| {
         let other = actual.run(&run.name)?;
         let both = run.states.iter().filter_map(|(frame, state)| Some((*frame, state, other.states.get(frame)?)));
         let moments: Vec<FrameDifference> = both
@@ -230,48 +231,38 @@ pub(super) fn courses(expected: &States, actual: &States) -> Vec<RunDifference> 
         let precision = moments.iter().filter_map(|moment| Some(moment.displacement?.precision)).fold(0.0, f64::max);
         (!moments.is_empty()).then(|| RunDifference { run: run.name.clone(), precision, moments })
     };
-    expected.runs.iter().filter_map(course).collect()
+    expected.runs.iter().filter_map(difference).collect()
 }
 
-/// The runs that moved, by their courses; and those on one side only.
-pub(super) fn moved(expected: &States, actual: &States, courses: &[RunDifference]) -> Vec<Moved> {
+/// The runs that moved, and those on one side only.
+pub(super) fn moved(expected: &States, actual: &States, differences: &[RunDifference]) -> Vec<Moved> {
     if expected.is_empty() || actual.is_empty() {
         // Without recorded states no runs are gone or new.
         return Vec::new();
     }
-    let lone = |run: &Run, change| Moved {
-        run: run.name.clone(),
-        change,
-        first: None,
-        last_equal: None,
-        step: None,
-        nodes: None,
-        displacement: None,
-        largest: None,
-        numbers: None,
-    };
+    let lone = |run: &Run, change| Moved { run: run.name.clone(), change, ..Moved::default() };
     let absent = |run: &&Run, from: &States| !run.states.is_empty() && from.run(&run.name).is_none();
     let gone = expected.runs.iter().filter(|run| absent(run, actual)).map(|run| lone(run, Change::Gone));
     let new = actual.runs.iter().filter(|run| absent(run, expected)).map(|run| lone(run, Change::New));
-    let moved = courses.iter().filter_map(|course| {
-        let first = course.moments.iter().find(|moment| moment.moved)?.frame;
-        let equal = course.moments.iter().take_while(|moment| !moment.moved).last();
-        let displaced = || course.moments.iter().filter_map(|moment| moment.displacement);
-        let runs = [expected, actual].map(|side| side.run(&course.run).expect("on both sides"));
+    let moved = differences.iter().filter_map(|difference| {
+        let first = difference.moments.iter().find(|moment| moment.moved)?.frame;
+        let equal = difference.moments.iter().take_while(|moment| !moment.moved).last();
+        let displaced = || difference.moments.iter().filter_map(|moment| moment.displacement);
+        let runs = [expected, actual].map(|side| side.run(&difference.run).expect("on both sides"));
         let [before, after] = runs.map(|run| &run.states);
         let both = |frame: &u64| Some([before.get(frame)?, after.get(frame)?]);
-        let later = || course.moments.iter().filter(|moment| moment.moved).map(|moment| moment.frame);
+        let later = || difference.moments.iter().filter(|moment| moment.moved).map(|moment| moment.frame);
         let numbers = later().find_map(|frame| {
             let [before, after] = both(&frame)?;
             Some([before.numbers.clone()?, after.numbers.clone()?])
         });
         let nodes = later().find_map(|frame| {
             let [before, after] = both(&frame)?;
-            let nodes = [before.places.as_ref()?.nodes, after.places.as_ref()?.nodes];
+            let nodes = [before.positions.as_ref()?.nodes, after.positions.as_ref()?.nodes];
             (nodes[0] != nodes[1]).then_some(nodes)
         });
         Some(Moved {
-            run: course.run.clone(),
+            run: difference.run.clone(),
             change: Change::Moved,
             first: Some(first),
             last_equal: equal.map(|moment| moment.frame),
@@ -286,9 +277,9 @@ pub(super) fn moved(expected: &States, actual: &States, courses: &[RunDifference
     moved.chain(gone).chain(new).collect()
 }
 
-/// The node that is farthest away, of those known on both sides.
+/// The largest displacement of the nodes known on both sides.
 fn displacement(frame: u64, before: &State, after: &State) -> Option<Displacement> {
-    let (before, after) = before.places.as_ref().zip(after.places.as_ref())?;
+    let (before, after) = before.positions.as_ref().zip(after.positions.as_ref())?;
     if before.nodes != after.nodes {
         return None;
     }
@@ -302,7 +293,7 @@ fn displacement(frame: u64, before: &State, after: &State) -> Option<Displacemen
 }
 
 impl Displacement {
-    /// How far in words; `place` says where, if that is not plain.
+    /// The displacement in words, with ` at frame …` as `place` where the frame is not clear.
     pub(super) fn words(&self, place: &str) -> String {
         let Self { node, distance, precision, .. } = self;
         if *precision == 0.0 && *distance == 0.0 {
@@ -363,8 +354,9 @@ mod tests {
     use super::*;
 
     fn state(digest: &str, quantum: f64, at: &[f64]) -> State {
-        let places = Places { quantum, every: 1, nodes: at.len(), at: at.iter().map(|&x| DVec3::X * x).collect() };
-        State { time: None, digest: digest.into(), places: Some(places), numbers: None }
+        let positions =
+            Positions { quantum, every: 1, nodes: at.len(), at: at.iter().map(|&x| DVec3::X * x).collect() };
+        State { time: None, digest: digest.into(), positions: Some(positions), numbers: None }
     }
 
     fn states(of: impl Fn(u64) -> State) -> States {
@@ -377,13 +369,13 @@ mod tests {
     fn first_frame_node_and_distance_are_told() {
         let golden = states(|frame| state(&format!("a{frame}"), 1e-3, &[0.0, 1.0]));
         let same = states(|frame| state(&format!("a{frame}ffff"), 0.0, &[0.0, 1.0]));
-        let all = courses(&golden, &same);
+        let all = run_differences(&golden, &same);
         assert!(moved(&golden, &same, &all).is_empty());
         let later = states(|frame| match frame {
             0 | 1 => state(&format!("a{frame}"), 0.0, &[0.0, 1.0]),
             _ => state("bb", 0.0, &[0.0, 1.0 + 0.1 * (frame - 1) as f64]),
         });
-        let [found] = &moved(&golden, &later, &courses(&golden, &later))[..] else { panic!("one run") };
+        let [found] = &moved(&golden, &later, &run_differences(&golden, &later))[..] else { panic!("one run") };
         assert_eq!((found.first, found.last_equal), (Some(2), Some(1)));
         assert_eq!(
             found.to_string(),
@@ -391,7 +383,7 @@ mod tests {
         );
         // Below what the record knows, nothing is made up.
         let hardly = states(|_| state("bb", 0.0, &[1e-5, 1.0]));
-        let [found] = &moved(&golden, &hardly, &courses(&golden, &hardly))[..] else { panic!("one run") };
+        let [found] = &moved(&golden, &hardly, &run_differences(&golden, &hardly))[..] else { panic!("one run") };
         assert!(
             found.to_string().starts_with("run, first at frame 0: no node by more than 2e-3 m at frame 0 (positions"),
             "{found}"
@@ -403,7 +395,7 @@ mod tests {
         let golden = states(|_| state("aa", 0.0, &[0.0]));
         let mut other = states(|_| state("bb", 0.0, &[0.0, 1.0]));
         let words = |actual: &States| {
-            moved(&golden, actual, &courses(&golden, actual)).iter().map(Moved::to_string).collect::<Vec<_>>()
+            moved(&golden, actual, &run_differences(&golden, actual)).iter().map(Moved::to_string).collect::<Vec<_>>()
         };
         assert_eq!(words(&other), ["run, first at frame 0: 2 nodes instead of 1"]);
         other.runs[0].name = "walk".into();
@@ -420,7 +412,7 @@ mod tests {
             states
         };
         let told = |before: &States, after: &States| {
-            let [found] = &moved(before, after, &courses(before, after))[..] else { panic!("one run") };
+            let [found] = &moved(before, after, &run_differences(before, after))[..] else { panic!("one run") };
             found.to_string().split_once("velocities differ").expect("no other place").1.to_owned()
         };
         let before = with("aa", 0.0444 / 50.0, 0.0444);
@@ -435,8 +427,8 @@ mod tests {
     #[test]
     fn some_nodes_tell_of_themselves_alone() {
         let mut golden = state("aa", 0.0, &[0.0, 2.0]);
-        let places = golden.places.as_mut().expect("known");
-        (places.every, places.nodes) = (2, 4);
+        let positions = golden.positions.as_mut().expect("known");
+        (positions.every, positions.nodes) = (2, 4);
         let after = state("bb", 0.0, &[0.0, 9.0, 2.5, 9.0]);
         assert_eq!(displacement(7, &golden, &after).map(|found| (found.node, found.distance)), Some((2, 0.5)));
     }

@@ -1,6 +1,6 @@
 //! Goldens in `cargo test`.
 
-use super::draw::{DrawError, Subject, Wish, draw, usual_gpu};
+use super::draw::{DrawError, DrawOptions, Subject, draw, usual_gpu};
 use super::{BlessError, Comparison, RECORD_FILE, Side};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::Limits;
@@ -8,10 +8,10 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// What the environment asks for.
+/// The environment variable that asks to accept changes.
 const UPDATE: &str = "UPDATE_GOLDENS";
 
-/// A folder of goldens, and the scenes that they are of.
+/// A folder of goldens and the scenes to compare with them.
 ///
 /// ```no_run
 /// use localshape::golden::Suite;
@@ -24,24 +24,22 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 /// }
 /// ```
 ///
-/// Each scene has the golden of its name, `tests/golden/my-scene/`: a few small pictures and `golden.toml`, which records
-/// what all states were. [`Self::finish`] panics with all that is wrong: a state that moved, a picture that is drawn
-/// differently, a golden that is missing, one that no scene stands for.
+/// Each scene has the golden of its name, `tests/golden/my-scene/`: a few small pictures and `golden.toml`, a record of all
+/// states. [`Self::finish`] panics with all failures: states that moved, pictures that are drawn differently, missing
+/// goldens, and goldens without a scene.
 ///
 /// With `UPDATE_GOLDENS=1` in the environment, missing goldens are made and failed pictures renewed, but states that moved
-/// are accepted with `UPDATE_GOLDENS=state` only. Of every failure there is a report to be opened in a browser, in
-/// `target/golden/`.
+/// are accepted with `UPDATE_GOLDENS=state` only. Each failure has a report for a browser in `target/golden/`.
 ///
-/// Pictures are drawn by the kind of adapter that drew the goldens if there is one, else on the processor, else with what
-/// there is. Without any graphics adapter the
-/// states alone are compared, unless `LOCALSHAPE_REQUIRE_GPU=1` asks to fail then.
+/// Pictures are drawn by the kind of adapter that drew the goldens if the machine has it, else by a software driver, else by
+/// any adapter. Without a graphics adapter only states are compared; with `LOCALSHAPE_REQUIRE_GPU=1` this is a failure.
 #[derive(Debug)]
 #[must_use = "`finish` tells what is wrong"]
 pub struct Suite {
     goldens: PathBuf,
     reports: PathBuf,
-    wish: Wish,
-    /// What was asked for instead of the usual one.
+    options: DrawOptions,
+    /// A requested adapter instead of the usual one.
     adapter: Option<AdapterChoice>,
     gpu: Option<Option<Gpu>>,
     used: BTreeSet<String>,
@@ -50,13 +48,13 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// The goldens in a folder, which need not exist as long as there are none.
+    /// The goldens in a folder, which need not exist if there are none.
     pub fn new(goldens: impl Into<PathBuf>) -> Self {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
         Self {
             goldens: goldens.into(),
             reports: target.join("golden"),
-            wish: Wish::default(),
+            options: DrawOptions::default(),
             adapter: None,
             gpu: None,
             used: BTreeSet::new(),
@@ -65,27 +63,26 @@ impl Suite {
         }
     }
 
-    /// So many pictures are drawn of each scene that has no golden yet, from the first part of its time to its end (by
-    /// default 3).
+    /// The number of pictures of new goldens, evenly spaced up to the end of the scene (default 3).
     pub fn pictures(mut self, count: u64) -> Self {
-        self.wish.pictures = Some(count);
+        self.options.pictures = Some(count);
         self
     }
 
-    /// So wide are the pictures of scenes that have no golden yet (px; by default 320, or as the scene says if that is
-    /// less).
+    /// The width of the pictures of new goldens (px; default 320, or that of the scene if it is smaller).
     pub fn width(mut self, width: u32) -> Self {
-        self.wish.width = Some(width);
+        self.options.width = Some(width);
         self
     }
 
-    /// Draws on a certain adapter instead of the kind that drew the goldens. Nothing is ever accepted then: goldens come from one kind of machine.
+    /// Draws on a given adapter instead of the kind that drew the goldens. Nothing is accepted then: goldens come from one
+    /// kind of adapter.
     pub fn on(mut self, adapter: AdapterChoice) -> Self {
         self.adapter = Some(adapter);
         self
     }
 
-    /// Where reports of failures go, instead of `target/golden/`.
+    /// The folder for reports of failures, instead of `target/golden/`.
     pub fn reports(mut self, folder: impl Into<PathBuf>) -> Self {
         self.reports = folder.into();
         self
@@ -114,12 +111,12 @@ impl Suite {
         }
         let gpu = self.device(&expected)?.cloned();
         let told = |error: DrawError| error.to_string();
-        let actual = draw(path, &subject, &self.wish, &expected, gpu.as_ref(), &mut || true).map_err(told)?;
-        let actual = actual.expect("nobody stops it");
+        let actual = draw(path, &subject, &self.options, &expected, gpu.as_ref(), &mut || true).map_err(told)?;
+        let actual = actual.expect("it is not interrupted");
         let comparison = Comparison::between(expected, actual).map_err(|error| error.to_string())?;
         let report = self.reports.join(format!("{name}.html"));
         if comparison.passes() {
-            // What is told there is over.
+            // A report of an earlier failure is out of date.
             let _ = std::fs::remove_file(&report);
             return Ok(());
         }
@@ -145,10 +142,10 @@ impl Suite {
         let written =
             std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.report().page()));
         let seen = match written {
-            Ok(()) => format!("look at it in {}", report.display()),
+            Ok(()) => format!("see the report {}", report.display()),
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
         };
-        Err(format!("{}\n{seen}{refused}", comparison.told(false).trim_end()))
+        Err(format!("{}\n{seen}{refused}", comparison.text(false).trim_end()))
     }
 
     /// The device to draw with, opened once; `None` without any adapter.
@@ -175,7 +172,7 @@ impl Suite {
     /// Ends the comparison.
     ///
     /// # Panics
-    /// If anything is not as expected, with all of it in words; also if there is a golden that no scene stands for.
+    /// If anything is not as expected, with all failures; also if a golden has no scene.
     pub fn finish(mut self) {
         self.is_finished = true;
         let mut complaints = self.complaints.clone();
@@ -190,7 +187,7 @@ impl Suite {
         panic!("{} of the goldens in {} are not as they were:{text}\n", complaints.len(), self.goldens.display());
     }
 
-    /// What is said of goldens that no scene stands for.
+    /// Messages about goldens without a scene.
     fn unused(&self) -> Vec<String> {
         let entries = match std::fs::read_dir(&self.goldens) {
             Ok(entries) => entries,
@@ -216,14 +213,11 @@ impl Suite {
     }
 }
 
-/// A suite that is forgotten would pass.
+/// A suite without a call of `finish` would pass.
 impl Drop for Suite {
     fn drop(&mut self) {
         let is_forgotten = !self.is_finished && !std::thread::panicking();
         let goldens = self.goldens.display();
-        assert!(
-            !is_forgotten,
-            "the goldens in {goldens} were compared, but nobody asked what came of it: call `finish`"
-        );
+        assert!(!is_forgotten, "the goldens in {goldens} were compared, but the result was not checked: call `finish`");
     }
 }

@@ -6,19 +6,19 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Number of pictures that are listed one by one.
-const MOST_TOLD: usize = 12;
+const MOST_LISTED: usize = 12;
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(true))
+        f.write_str(&self.text(true))
     }
 }
 
 impl Comparison {
-    /// All of it in words, with the command that accepts what is there if that is asked for.
-    pub(crate) fn told(&self, with_command: bool) -> String {
+    /// The result as text; with the command that accepts what is there, on request.
+    pub(crate) fn text(&self, with_command: bool) -> String {
         let mut text = String::new();
-        self.tell(&mut text).expect("writing to a string");
+        self.write(&mut text).expect("writing to a string");
         if let Some(command) = self.command_to_accept().filter(|_| with_command) {
             let what = if self.sides[0].kind == Kind::Absent { "make it with" } else { "accept with" };
             text += &format!("{what}: {command}\n");
@@ -28,7 +28,7 @@ impl Comparison {
         text
     }
 
-    fn tell(&self, f: &mut impl fmt::Write) -> fmt::Result {
+    fn write(&self, f: &mut impl fmt::Write) -> fmt::Result {
         if self.sides[0].kind == Kind::Absent {
             let what = match self.sides[1].kind {
                 Kind::Picture => "picture",
@@ -36,7 +36,7 @@ impl Comparison {
                 Kind::Golden | Kind::Absent | Kind::Drawn => "golden",
             };
             writeln!(f, "the {what} {} is missing", self.sides[0].origin.display())?;
-            return self.tell_end(f);
+            return self.write_notes(f);
         }
         // For two single pictures the first frame is unknown.
         let are_pictures = self.sides.iter().all(|side| side.kind == Kind::Picture);
@@ -44,11 +44,11 @@ impl Comparison {
             writeln!(f, "state moved: {moved}")?;
         }
         let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
-        for Compared { name, verdict, .. } in wrong.iter().take(MOST_TOLD) {
+        for Compared { name, verdict, .. } in wrong.iter().take(MOST_LISTED) {
             writeln!(f, "{name}: {verdict}")?;
         }
-        if wrong.len() > MOST_TOLD {
-            writeln!(f, "and {} more", wrong.len() - MOST_TOLD)?;
+        if wrong.len() > MOST_LISTED {
+            writeln!(f, "and {} more", wrong.len() - MOST_LISTED)?;
         }
         for (run, step) in
             self.moved.iter().filter_map(|moved| Some((&moved.run, moved.step?))).filter(|_| are_pictures)
@@ -60,12 +60,9 @@ impl Comparison {
             writeln!(f, "{}: {}", only.name, only.verdict)?;
         }
         if self.pictures.len() > 1 {
-            match wrong.len() {
-                0 => writeln!(f, "{}", self.pass())?,
-                1 => writeln!(f, "{}: 1 of {} pictures is not as expected", self.verdict(), self.pictures.len())?,
-                count => {
-                    writeln!(f, "{}: {count} of {} pictures are not as expected", self.verdict(), self.pictures.len())?;
-                }
+            match self.failures() {
+                None => writeln!(f, "{}", self.pass())?,
+                Some(failures) => writeln!(f, "{}: {failures}", self.verdict())?,
             }
         }
         if let Some(moved) = self.first_moved().filter(|_| self.pictures.len() > 1) {
@@ -75,10 +72,21 @@ impl Comparison {
         {
             writeln!(f, "{states} states are the same")?;
         }
-        self.tell_end(f)
+        self.write_notes(f)
     }
 
-    /// What is said of pictures that all pass.
+    /// How many pictures failed, in words; `None` if all passed.
+    pub(super) fn failures(&self) -> Option<String> {
+        let failed = self.pictures.iter().filter(|picture| !picture.verdict.passes()).count();
+        match (failed, self.pictures.len()) {
+            (0, _) => None,
+            (1, 1) => Some("The picture is not as expected".to_owned()),
+            (1, all) => Some(format!("1 of {all} pictures is not as expected")),
+            (failed, all) => Some(format!("{failed} of {all} pictures are not as expected")),
+        }
+    }
+
+    /// The verdicts on pictures that all pass, counted, in words.
     pub(super) fn pass(&self) -> String {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for picture in &self.pictures {
@@ -96,7 +104,7 @@ impl Comparison {
         }
     }
 
-    fn tell_end(&self, f: &mut impl fmt::Write) -> fmt::Result {
+    fn write_notes(&self, f: &mut impl fmt::Write) -> fmt::Result {
         if self.same_scene == Some(false) {
             writeln!(f, "the scene files are not the same")?;
         }

@@ -1,24 +1,23 @@
-//! What is said of two pictures: whether physics or drawing moved.
+//! Verdicts on two pictures: whether the simulation or the drawing changed.
 
 use super::distance::Distance;
-#[cfg(test)]
 use super::picture::Pixels;
 use super::states::Displacement;
 use crate::output::Tags;
 use serde::Serialize;
 use std::fmt;
 
-/// Whether two pictures show the same.
+/// The verdict on two pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "verdict")]
 pub(crate) enum Verdict {
-    /// Every pixel is equal, and so are the states.
+    /// All pixels and states are equal.
     #[serde(rename = "identical")]
     Identical,
-    /// The simulation gave the same; pixels differ no more than machines do.
+    /// The states are equal; pixels differ within the tolerance for different machines.
     #[serde(rename = "same state, pixels within tolerance")]
     WithinTolerance(Distance),
-    /// The simulation gave the same, but the picture is another one.
+    /// The states are equal; pixels differ by more than the tolerance.
     #[serde(rename = "same state, drawn differently")]
     DrawnDifferently {
         /// How far apart they are; `None` if their sizes or channels are not alike.
@@ -26,7 +25,7 @@ pub(crate) enum Verdict {
         /// Width and height of both (px).
         sizes: [[u32; 2]; 2],
     },
-    /// The simulation gave other positions or velocities.
+    /// Positions or velocities differ.
     #[serde(rename = "state moved")]
     StateMoved {
         /// The runs whose states differ.
@@ -34,13 +33,13 @@ pub(crate) enum Verdict {
         /// How far apart the pictures are; `None` if their sizes or channels are not alike.
         distance: Option<Distance>,
     },
-    /// There is nothing to compare with what was expected.
+    /// The actual picture does not exist.
     #[serde(rename = "missing")]
     Missing,
-    /// Nothing like it was expected.
+    /// The expected picture does not exist.
     #[serde(rename = "extra")]
     Extra,
-    /// At least one of the pictures does not say what it shows, so that only pixels could be compared.
+    /// One of the pictures records no state, so only pixels could be compared.
     #[serde(rename = "no state recorded")]
     NoState {
         /// How far apart they are; `None` if their sizes or channels are not alike.
@@ -48,34 +47,28 @@ pub(crate) enum Verdict {
         /// Width and height of both (px).
         sizes: [[u32; 2]; 2],
     },
-    /// One of the files is no picture that can be compared.
+    /// One of the files cannot be compared as a picture.
     #[serde(rename = "unreadable")]
     Unreadable {
-        /// Which one, and why.
+        /// The file and the reason.
         message: String,
     },
 }
 
-/// A run whose state in one picture is not the one that was expected.
+/// A run whose state in a picture is not as expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct MovedHere {
     /// Name of the run.
     pub run: String,
-    /// The node that is farthest away, where that is known.
+    /// The largest displacement of a node, if known.
     pub displacement: Option<Displacement>,
 }
 
 impl Verdict {
     /// The verdict on an actual picture beside the expected one.
-    #[cfg(test)]
-    pub(crate) fn new(expected: &Pixels, actual: &Pixels) -> Self {
-        let distance = Distance::new(expected, actual);
-        Self::of([expected.label.as_ref(), actual.label.as_ref()], [expected.size, actual.size], distance)
-    }
-
-    /// The verdict on two pictures by what they say of themselves, their widths and heights (px), and how far apart they are.
-    pub(super) fn of(labels: [Option<&Tags>; 2], sizes: [[u32; 2]; 2], distance: Option<Distance>) -> Self {
-        let [Some(before), Some(after)] = labels else {
+    pub(super) fn new(expected: &Pixels, actual: &Pixels) -> Self {
+        let (distance, sizes) = (Distance::new(expected, actual), [expected.size, actual.size]);
+        let (Some(before), Some(after)) = (&expected.label, &actual.label) else {
             return Self::NoState { distance, sizes };
         };
         let runs = moved(before, after);
@@ -87,20 +80,16 @@ impl Verdict {
         }
     }
 
-    /// Whether nothing is wrong.
+    /// Whether the picture passes.
     pub(crate) fn passes(&self) -> bool {
         match self {
             Self::Identical | Self::WithinTolerance(_) => true,
             Self::NoState { distance, .. } => distance.is_some_and(|distance| distance.is_allowed()),
-            Self::DrawnDifferently { .. }
-            | Self::StateMoved { .. }
-            | Self::Missing
-            | Self::Extra
-            | Self::Unreadable { .. } => false,
+            _ => false,
         }
     }
 
-    /// The verdict in the words that all of its kind share.
+    /// The verdict without details.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Identical => "identical",
@@ -114,7 +103,7 @@ impl Verdict {
         }
     }
 
-    /// How far the pictures are apart, if they could be compared.
+    /// The distance of the pictures, if they could be compared.
     pub(crate) fn distance(&self) -> Option<&Distance> {
         match self {
             Self::WithinTolerance(distance) => Some(distance),
@@ -158,8 +147,9 @@ impl fmt::Display for Verdict {
         };
         match self {
             Self::Identical | Self::Missing | Self::Extra => Ok(()),
-            Self::WithinTolerance(distance) => write!(f, ": {distance}"),
-            Self::DrawnDifferently { distance: Some(distance), .. } => write!(f, ": {distance}"),
+            Self::WithinTolerance(distance) | Self::DrawnDifferently { distance: Some(distance), .. } => {
+                write!(f, ": {distance}")
+            }
             Self::DrawnDifferently { distance: None, sizes } => write!(f, ": {}", unlike(sizes)),
             Self::StateMoved { runs, .. } => {
                 let runs: Vec<_> = runs.iter().map(MovedHere::to_string).collect();

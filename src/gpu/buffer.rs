@@ -10,7 +10,6 @@ pub(crate) struct GrowingBuffer<T> {
     usage: wgpu::BufferUsages,
     buffer: wgpu::Buffer,
     length: usize,
-    generation: u64,
     element: PhantomData<T>,
 }
 
@@ -19,18 +18,19 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
     pub(crate) fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages, room: usize) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = create(gpu, label, usage, bytes::<T>(room.max(1)));
-        Self { label, usage, buffer, length: 0, generation: 0, element: PhantomData }
+        Self { label, usage, buffer, length: 0, element: PhantomData }
     }
 
-    /// Replaces the contents. The device buffer is made anew only when it is too small, then with room to spare.
-    pub(crate) fn write(&mut self, gpu: &Gpu, elements: &[T]) {
+    /// Replaces the contents. Returns whether the device buffer was too small and was replaced by a larger one, so that
+    /// bindings to it must be made anew.
+    pub(crate) fn write(&mut self, gpu: &Gpu, elements: &[T]) -> bool {
         self.length = elements.len();
-        if self.buffer.size() < bytes::<T>(elements.len()) {
+        let is_replaced = self.buffer.size() < bytes::<T>(elements.len());
+        if is_replaced {
             self.buffer = create(gpu, self.label, self.usage, bytes::<T>(elements.len().next_power_of_two()));
-            self.generation += 1;
         }
         if elements.is_empty() {
-            return;
+            return is_replaced;
         }
         let contents: &[u8] = bytemuck::cast_slice(elements);
         let whole = contents.len() & !(wgpu::COPY_BUFFER_ALIGNMENT as usize - 1);
@@ -41,6 +41,7 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
             rest[..contents.len() - whole].copy_from_slice(&contents[whole..]);
             gpu.queue().write_buffer(&self.buffer, whole as u64, &rest);
         }
+        is_replaced
     }
 
     /// The device buffer behind it.
@@ -51,11 +52,6 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
     /// How many elements were written last.
     pub(crate) fn len(&self) -> usize {
         self.length
-    }
-
-    /// A number that changes whenever the device buffer is replaced and bindings to it must be made anew.
-    pub(crate) fn generation(&self) -> u64 {
-        self.generation
     }
 }
 

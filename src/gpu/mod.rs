@@ -105,15 +105,15 @@ pub enum InitError {
          `apt install mesa-vulkan-drivers` (Debian, Ubuntu) or `dnf install mesa-vulkan-drivers` (Fedora)"
     )]
     NoAdapter,
-    /// There are adapters, but none is what was asked for.
+    /// No adapter fits the choice.
     #[error("no graphics adapter fits `{wanted}`; there {}", listed(.found))]
     NoSuchAdapter {
-        /// What was asked for.
+        /// The choice.
         wanted: String,
-        /// What there is.
+        /// The adapters of this machine.
         found: Vec<AdapterDescription>,
     },
-    /// The adapter is there, but gives no device.
+    /// The adapter provides no device.
     #[error("the graphics adapter {adapter} cannot be used")]
     Device {
         /// Which adapter.
@@ -136,7 +136,7 @@ fn listed(adapters: &[AdapterDescription]) -> String {
 /// Why the device stopped working or refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
-    /// The device has too little memory for what was asked.
+    /// The device has too little memory.
     #[error("the graphics device is out of memory; a smaller picture needs less")]
     OutOfMemory,
     /// The device is gone, for instance after a reset of the driver.

@@ -67,7 +67,7 @@ fn hint(source: &io::Error) -> &'static str {
     }
 }
 
-/// The kind of what is at a path, for messages.
+/// The kind of a file, for messages.
 pub(super) fn kind_of(found: &Metadata) -> &'static str {
     #[cfg(unix)]
     {

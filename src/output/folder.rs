@@ -37,7 +37,7 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
     Ok(frames)
 }
 
-/// What all frames of a sequence must have in common.
+/// The properties that all frames of a sequence share.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Look {
     /// Width and height (px).
@@ -64,7 +64,7 @@ pub(crate) struct Folder {
     scene: Whose,
     look: Option<Look>,
     replace: Replace,
-    /// What is replaced of an earlier version of the scene file, in words.
+    /// The results of an earlier version of the scene file that are replaced, in words.
     earlier: Option<String>,
 }
 
@@ -96,7 +96,7 @@ impl Folder {
         let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
         let mut folder = Self { path: path.to_owned(), scene, look, replace, earlier: None };
         if is_folder(path)? {
-            FolderLock::look(path)?;
+            FolderLock::check(path)?;
             folder.earlier = folder.find()?.earlier();
         }
         Ok(folder)
@@ -116,7 +116,7 @@ impl Folder {
         &self.path
     }
 
-    /// What is replaced of an earlier version of the scene file, in words: `31 frames made by an earlier version of
+    /// The replaced results of an earlier version of the scene file, in words: `31 frames made by an earlier version of
     /// sag.toml`.
     pub(crate) fn earlier(&self) -> Option<&str> {
         self.earlier.as_deref()
@@ -260,7 +260,7 @@ impl Found {
         Ok(found)
     }
 
-    /// What was made with an earlier version of the scene's file, in words.
+    /// The results of an earlier version of the scene's file, in words.
     fn earlier(&self) -> Option<String> {
         let what = match (self.earlier_frames.len(), self.earlier_records.is_empty()) {
             (0, true) => return None,
@@ -271,8 +271,7 @@ impl Found {
         Some(format!("{what} made by an earlier version of {}", self.file))
     }
 
-    /// What prevents the use of the folder, in words; `None` if nothing does, or only what an earlier version made and
-    /// may be replaced.
+    /// Why the folder cannot be used, in words; `None` if it can, also if results of an earlier version may be replaced.
     fn describe(&self, may_replace_earlier: bool) -> Option<String> {
         let another = match &self.other {
             None => "another scene".to_owned(),

@@ -4,7 +4,7 @@
 
 use super::OutputError;
 use super::atomic::remove_leftovers;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -50,37 +50,19 @@ impl FolderLock {
     ///
     /// # Errors
     /// If one has.
-    pub(crate) fn look(path: &Path) -> Result<(), OutputError> {
+    pub(crate) fn check(path: &Path) -> Result<(), OutputError> {
         if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
     }
 
-    #[cfg(unix)]
     fn open(path: &Path) -> Self {
-        use rustix::fs::{Mode, OFlags, open};
-        // Opening a pipe would block.
-        let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-        Self { folder: open(path, flags, Mode::empty()).ok().map(File::from) }
-    }
-
-    #[cfg(not(unix))]
-    fn open(_: &Path) -> Self {
-        Self { folder: None }
+        // Opening a pipe would block. Some systems cannot open folders.
+        Self { folder: if path.is_dir() { File::open(path).ok() } else { None } }
     }
 
     /// Takes the lock, exclusive or shared; `false` if another process holds it.
-    #[cfg(unix)]
     fn take(&self, alone: bool) -> bool {
-        use rustix::fs::{FlockOperation, flock};
-        use rustix::io::Errno;
-        let how = if alone { FlockOperation::NonBlockingLockExclusive } else { FlockOperation::NonBlockingLockShared };
-        self.folder.as_ref().is_none_or(|folder| flock(folder, how) != Err(Errno::WOULDBLOCK))
-    }
-
-    /// Folders cannot be locked on these systems.
-    #[cfg(not(unix))]
-    fn take(&self, alone: bool) -> bool {
-        let _ = (&self.folder, alone);
-        true
+        let lock = if alone { File::try_lock } else { File::try_lock_shared };
+        self.folder.as_ref().is_none_or(|folder| !matches!(lock(folder), Err(TryLockError::WouldBlock)))
     }
 }
 
@@ -126,14 +108,14 @@ mod tests {
         let path = folder.path();
         let alone = FolderLock::alone(path).unwrap();
         assert!(matches!(FolderLock::alone(path), Err(OutputError::InUse { .. })));
-        assert!(FolderLock::look(path).is_err());
+        assert!(FolderLock::check(path).is_err());
         drop(alone);
         let several = [FolderLock::beside_others(path), FolderLock::beside_others(path)];
         assert!(FolderLock::alone(path).is_err());
-        FolderLock::look(path).unwrap();
+        FolderLock::check(path).unwrap();
         drop(several);
         FolderLock::alone(path).unwrap();
-        FolderLock::look(&path.join("absent")).unwrap();
+        FolderLock::check(&path.join("absent")).unwrap();
     }
 
     #[test]

@@ -17,12 +17,10 @@ mod states;
 mod summary;
 mod timing;
 
-pub(crate) use atomic::folder_of;
-pub(crate) use atomic::{AtomicFile, write_whole};
+pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
-pub(crate) use error::OutputError;
-pub(crate) use error::{is_folder, read_file};
+pub(crate) use error::{OutputError, is_folder, read_file};
 pub(crate) use folder::{FRAME_FILES, Folder, Look, Replace, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
@@ -32,8 +30,7 @@ pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary};
-pub(crate) use timing::Clock;
-pub(crate) use timing::thread_time;
+pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 
 /// A number with 17 significant digits, which identify a double precision number uniquely.

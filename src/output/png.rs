@@ -127,7 +127,6 @@ const MOST_STATES: usize = 4096;
 /// those of [`Tags::texts`].
 ///
 /// `pixels` has three bytes for each pixel, or four, in rows from the top left. Alpha is not premultiplied.
-/// the colours.
 ///
 /// # Panics
 /// If the length of `pixels` does not match `size`, the width and height (px), or the size is zero.
@@ -217,46 +216,27 @@ mod tests {
     }
 
     #[test]
-    fn figures_say_what_they_show() {
+    fn pixels_and_tags_survive_the_file() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("figure.png");
+        let path = folder.path().join("frame.png");
         let scenes = vec!["01".to_owned(), "23".to_owned()];
         let figure = Tags { shows: Shown::Figure("fig1".to_owned()), scenes, ..tags() };
-        std::fs::write(&path, file([1, 1], &[0; 3], &figure)).unwrap();
-        assert_eq!(read_tags(&path).unwrap(), Some(([1, 1], figure)));
-    }
+        for (channels, kind, tags) in
+            [(3, png::ColorType::Rgb, tags()), (4, png::ColorType::Rgba, tags()), (3, png::ColorType::Rgb, figure)]
+        {
+            let pixels: Vec<u8> = (0..5 * 3 * channels).map(|byte| byte * 4).collect();
+            let bytes = file([5, 3], &pixels, &tags);
+            assert_eq!(bytes, file([5, 3], &pixels, &tags), "equal input, equal bytes");
+            std::fs::write(&path, &bytes).unwrap();
+            assert_eq!(read_tags(&path).unwrap(), Some(([5, 3], tags)));
 
-    #[test]
-    fn tags_survive_the_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frame.png");
-        let pixels: Vec<u8> = (0..5 * 3 * 3).map(|byte| byte * 5).collect();
-        let bytes = file([5, 3], &pixels, &tags());
-        assert_eq!(bytes, file([5, 3], &pixels, &tags()), "equal input, equal bytes");
-        std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(read_tags(&path).unwrap(), Some(([5, 3], tags())));
-
-        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-        assert_eq!(reader.info().srgb, Some(png::SrgbRenderingIntent::Perceptual));
-        let mut back = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut back).unwrap();
-        assert_eq!(back, pixels);
-    }
-
-    #[test]
-    fn opacities_survive_the_file() {
-        let pixels: Vec<u8> = (0..5 * 3 * 4).map(|byte| byte * 4).collect();
-        let bytes = file([5, 3], &pixels, &tags());
-        assert_eq!(bytes, file([5, 3], &pixels, &tags()), "equal input, equal bytes");
-        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-        assert_eq!(reader.info().color_type, png::ColorType::Rgba);
-        let mut back = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut back).unwrap();
-        assert_eq!(back, pixels);
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frame.png");
-        std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(read_tags(&path).unwrap(), Some(([5, 3], tags())));
+            let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+            let found = (reader.info().color_type, reader.info().srgb);
+            assert_eq!(found, (kind, Some(png::SrgbRenderingIntent::Perceptual)));
+            let mut back = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut back).unwrap();
+            assert_eq!(back, pixels);
+        }
     }
 
     #[test]

@@ -27,11 +27,11 @@ impl SheetFiles {
         if !is_folder(folder)? {
             return Ok(());
         }
-        FolderLock::look(folder)?;
-        Self::look(folder, names, mark, overwrite)
+        FolderLock::check(folder)?;
+        Self::check(folder, names, mark, overwrite)
     }
 
-    fn look(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
+    fn check(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<(), OutputError> {
         let there: Vec<_> = names.iter().filter(|name| folder.join(name).symlink_metadata().is_ok()).collect();
         let (Some(first), false) = (there.first(), overwrite) else { return Ok(()) };
         let text = read_file(&folder.join(names[0]))?.unwrap_or_default();
@@ -54,7 +54,7 @@ impl SheetFiles {
     pub(crate) fn begin(folder: &Path, names: &[&str], mark: &str, overwrite: bool) -> Result<Self, OutputError> {
         fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let lock = FolderLock::alone(folder)?;
-        Self::look(folder, names, mark, overwrite)?;
+        Self::check(folder, names, mark, overwrite)?;
         let files = names.iter().map(|name| AtomicFile::create(&folder.join(name))).collect::<Result<_, _>>()?;
         Ok(Self { files, _lock: lock })
     }

@@ -7,7 +7,7 @@ use image::{Rgb, RgbImage, Rgba, RgbaImage};
 /// The ground's light below this is ignored where obstacles are, whose opacity is 254/255 as a mark for shaders.
 const UNSEEN: f64 = 1.6 / 255.0;
 
-/// What two drawings of one picture, on white and on black ground, have in common: the colour and opacity of each pixel.
+/// The colour and opacity of each pixel, recovered from two drawings of a picture on white and on black ground.
 ///
 /// Where nothing was drawn the drawings are white and black, and the opacity is 0; where the ground is covered they are
 /// equal, and it is exactly 255. Between, a pixel of opacity α shows `drawn + (1 − α) ground`. Blending as sRGB
@@ -16,7 +16,7 @@ const UNSEEN: f64 = 1.6 / 255.0;
 /// middle one, and the colour is the one that looks exactly as drawn on the ground that the picture is made for,
 /// `on_light` or black; on the other one coloured borders are a little off.
 ///
-/// Within `solid` parts of the picture, what lets next to no light through counts as opaque.
+/// In `solid` parts of the picture, pixels with an opacity of almost 1 count as opaque.
 ///
 /// # Panics
 /// If the drawings have different sizes.

@@ -1,6 +1,6 @@
 //! Blending bodies and their lines over the ground.
 
-use super::panel::{Panels, is_visible, limit};
+use super::panel::Panels;
 use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::Gpu;
@@ -18,7 +18,7 @@ pub(super) struct Composite {
 
 impl Composite {
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::reading_shader(samples), SHADER]);
+        let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::sampled(samples)[1], SHADER]);
         let layout = group_layout(gpu, "bodies", &[texture_entry(0, false, samples), texture_entry(2, false, 1)]);
         let recipe = Recipe {
             groups: &[&panels.layout, &layout],
@@ -38,12 +38,6 @@ impl Composite {
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
-        for (at, panel) in picture.panels.iter().enumerate() {
-            if is_visible(panel.region) {
-                limit(pass, panel.region);
-                panels.bind_region(pass, at);
-                pass.draw(0..4, 0..1);
-            }
-        }
+        panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, _| pass.draw(0..4, 0..1));
     }
 }

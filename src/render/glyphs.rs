@@ -10,7 +10,7 @@ const WIDTH: u32 = 2048;
 /// Glyphs are rasterised at this many places between two pixels.
 const PLACES: f32 = 4.0;
 
-/// What a raster depends on.
+/// The key of a rasterised glyph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
     /// Which font, of any scene.

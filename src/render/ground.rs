@@ -40,7 +40,6 @@ pub(super) struct Grounds {
     uniforms: GrowingBuffer<u8>,
     shades: wgpu::Texture,
     bind_group: Option<wgpu::BindGroup>,
-    generation: u64,
 }
 
 impl Grounds {
@@ -78,7 +77,6 @@ impl Grounds {
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
             shades: create_shades(gpu, 2),
             bind_group: None,
-            generation: 0,
         }
     }
 
@@ -100,9 +98,7 @@ impl Grounds {
             let uniform = uniform(picture, panel, floor, at);
             bytes[at * STRIDE..at * STRIDE + size_of::<GroundUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        self.uniforms.write(gpu, &bytes);
-        if self.bind_group.is_none() || self.generation != self.uniforms.generation() {
-            self.generation = self.uniforms.generation();
+        if self.uniforms.write(gpu, &bytes) || self.bind_group.is_none() {
             self.bind_group = Some(self.bind(gpu));
         }
     }

@@ -1,6 +1,6 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
-use super::panel::{Panels, is_visible, limit};
+use super::panel::Panels;
 use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -31,7 +31,7 @@ pub(super) fn has_alarm(panel: &Panel) -> bool {
     panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
 }
 
-/// Pipelines and what they read.
+/// Pipelines and their bindings.
 #[derive(Debug)]
 struct Variant {
     among: bool,
@@ -113,13 +113,9 @@ impl Lines {
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
         for (at, pipeline) in variant.pipelines.iter().enumerate() {
             pass.set_pipeline(pipeline);
-            for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {
-                if is_visible(place) && !ranges[at].is_empty() {
-                    limit(pass, place);
-                    panels.bind_region(pass, panel);
-                    pass.draw(0..4, ranges[at].clone());
-                }
-            }
+            panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
+                pass.draw(0..4, self.ranges[panel][at].clone());
+            });
         }
     }
 }
@@ -127,10 +123,8 @@ impl Lines {
 impl Variant {
     fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
         let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
-        let reading = super::reading_shader(samples);
-        let places = super::samples_shader(samples);
-        let alarm = super::alarm_shader(samples);
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, places, reading, obstacles, alarm, SHADER];
+        let [positions, reading, alarm] = super::sampled(samples);
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, obstacles, alarm, SHADER];
         let module = shader(gpu, "line", &parts);
         let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, samples)];
         if among {

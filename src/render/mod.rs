@@ -41,26 +41,23 @@ use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
-const ONE_SAMPLE_SHADER: &str = include_str!("../../shaders/one_sample.wgsl");
-const FOUR_SAMPLES_SHADER: &str = include_str!("../../shaders/four_samples.wgsl");
-const SINGLE_SHADER: &str = include_str!("../../shaders/single.wgsl");
-const MULTISAMPLED_SHADER: &str = include_str!("../../shaders/multisampled.wgsl");
-const ALARM_SINGLE_SHADER: &str = include_str!("../../shaders/alarm_single.wgsl");
-const ALARM_MULTISAMPLED_SHADER: &str = include_str!("../../shaders/alarm_multisampled.wgsl");
 
-/// The part of shaders that reads the turned-over set by itself, drawn with a number of samples.
-fn alarm_shader(samples: u32) -> &'static str {
-    if samples > 1 { ALARM_MULTISAMPLED_SHADER } else { ALARM_SINGLE_SHADER }
-}
-
-/// The part of shaders with the positions of samples.
-fn samples_shader(samples: u32) -> &'static str {
-    if samples > 1 { FOUR_SAMPLES_SHADER } else { ONE_SAMPLE_SHADER }
-}
-
-/// The part of shaders that reads what was drawn with a number of samples.
-fn reading_shader(samples: u32) -> &'static str {
-    if samples > 1 { MULTISAMPLED_SHADER } else { SINGLE_SHADER }
+/// The parts of shaders that depend on the number of samples: the positions of samples, reading what was drawn with them, and
+/// reading the turned-over set, drawn by itself.
+fn sampled(samples: u32) -> [&'static str; 3] {
+    if samples > 1 {
+        [
+            include_str!("../../shaders/four_samples.wgsl"),
+            include_str!("../../shaders/multisampled.wgsl"),
+            include_str!("../../shaders/alarm_multisampled.wgsl"),
+        ]
+    } else {
+        [
+            include_str!("../../shaders/one_sample.wgsl"),
+            include_str!("../../shaders/single.wgsl"),
+            include_str!("../../shaders/alarm_single.wgsl"),
+        ]
+    }
 }
 
 /// Why a picture cannot be drawn.
@@ -69,9 +66,9 @@ pub enum RenderError {
     /// The picture is larger than the device can draw, or empty.
     #[error("pictures of {width}×{height} pixels cannot be drawn: each side may have 1 to {longest} pixels here")]
     Size {
-        /// Width asked for (px).
+        /// Requested width (px).
         width: u32,
-        /// Height asked for (px).
+        /// Requested height (px).
         height: u32,
         /// The longest side that the device can draw (px).
         longest: u32,

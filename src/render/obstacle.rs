@@ -107,7 +107,7 @@ impl Solids {
         recipe.build(gpu)
     }
 
-    /// Prepares to draw what is seen through clear surfaces.
+    /// Prepares to draw solids seen through clear surfaces.
     pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels, samples: u32) {
         self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind", samples));
     }
@@ -157,13 +157,9 @@ impl Solids {
         pass.set_pipeline(pipeline);
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
-        for (panel, (range, &place)) in self.ranges.iter().zip(places).enumerate() {
-            if is_visible(place) && !range.is_empty() {
-                limit(pass, place);
-                panels.bind_region(pass, panel);
-                pass.draw_indexed(range.clone(), 0, 0..1);
-            }
-        }
+        panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
+            pass.draw_indexed(self.ranges[panel].clone(), 0, 0..1);
+        });
     }
 }
 
@@ -188,8 +184,8 @@ impl Slabs {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let reading = [super::samples_shader(samples), super::reading_shader(samples)];
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, reading[0], reading[1], PANE_SHADER];
+        let [positions, reading, _] = super::sampled(samples);
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, PANE_SHADER];
         let module = shader(gpu, "pane", &parts);
         let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
         let group = group_layout(gpu, "pane", &entries);

@@ -47,7 +47,7 @@ pub(super) struct CanvasUniform {
     pub(super) unused: [f32; 2],
 }
 
-/// The pipeline of the overlay, and what lies over one picture.
+/// The pipeline of the overlay, and the marks and glyphs of one picture.
 #[derive(Debug)]
 pub(super) struct Overlay {
     pipeline: wgpu::RenderPipeline,
@@ -83,7 +83,7 @@ impl Overlay {
         }
     }
 
-    /// Uploads what lies over a picture.
+    /// Uploads the marks and glyphs of a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let mut marks: Vec<_> = picture.under.iter().chain(&picture.marks).map(plain).collect();
         self.under = picture.under.len() as u32;
@@ -127,7 +127,7 @@ impl Overlay {
         bind(gpu, "overlay", &self.layout, &[(0, canvas), (1, wgpu::BindingResource::TextureView(&glyphs))])
     }
 
-    /// Draws what lies below the bodies.
+    /// Draws the marks below the bodies.
     pub(super) fn draw_under(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.draw_range(pass, 0..self.under);
     }

@@ -67,10 +67,9 @@ pub(super) fn linear(colour: Colour) -> Vec3 {
     Vec3::new(one(colour[0]), one(colour[1]), one(colour[2]))
 }
 
-/// Where each panel's region stands in the textures that hold bodies, and the size that these need (px).
+/// The place of each panel's region in the textures of bodies, and the size that these need (px).
 ///
-/// Regions stand beside each other as long as there is room, then begin a new row, so that the textures hold hardly
-/// more than bodies: every pixel of them costs time.
+/// Regions are packed in rows, so that the textures contain hardly more than bodies: every pixel costs time.
 pub(super) fn place(picture: &Picture) -> (Vec<Rectangle>, [u32; 2]) {
     let widest = picture.panels.iter().map(|panel| panel.region[2]).max().unwrap_or(0).max(picture.size[0]);
     let (mut left, mut top, mut row) = (0, 0, 0);
@@ -155,7 +154,6 @@ const STRIDE: usize = 512;
 pub(super) struct Panels {
     buffer: GrowingBuffer<u8>,
     bind_group: wgpu::BindGroup,
-    generation: u64,
     pub(super) layout: wgpu::BindGroupLayout,
 }
 
@@ -164,10 +162,10 @@ impl Panels {
         let layout = group_layout(gpu, "panel", &[uniform_entry(0, size_of::<PanelUniform>(), true)]);
         let buffer = GrowingBuffer::new(gpu, "panels", wgpu::BufferUsages::UNIFORM, 4 * STRIDE);
         let bind_group = bind(gpu, "panel", &layout, &[(0, element::<PanelUniform>(buffer.buffer()))]);
-        Self { generation: buffer.generation(), buffer, bind_group, layout }
+        Self { buffer, bind_group, layout }
     }
 
-    /// Uploads what the passes of one picture need.
+    /// Uploads the data of all panels of a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, places: &[Rectangle]) {
         let mut bytes = vec![0; 2 * STRIDE * picture.panels.len()];
         for (at, (panel, &place)) in picture.panels.iter().zip(places).enumerate() {
@@ -178,17 +176,24 @@ impl Panels {
                 bytes[start..start + size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
             }
         }
-        self.buffer.write(gpu, &bytes);
-        if self.buffer.generation() != self.generation {
+        if self.buffer.write(gpu, &bytes) {
             let uniform = element::<PanelUniform>(self.buffer.buffer());
             self.bind_group = bind(gpu, "panel", &self.layout, &[(0, uniform)]);
-            self.generation = self.buffer.generation();
         }
     }
 
-    /// Binds a panel for drawing into its body's region.
-    pub(super) fn bind_region(&self, pass: &mut wgpu::RenderPass<'_>, panel: usize) {
-        pass.set_bind_group(0, &self.bind_group, &[(2 * panel * STRIDE) as u32]);
+    /// Draws each panel that has anything in its rectangle, limited to that rectangle and bound for its body's region.
+    pub(super) fn draw_regions(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        rectangles: impl IntoIterator<Item = Rectangle>,
+        draw: impl Fn(&mut wgpu::RenderPass<'_>, usize),
+    ) {
+        for (panel, rectangle) in rectangles.into_iter().enumerate().filter(|(_, rectangle)| is_visible(*rectangle)) {
+            limit(pass, rectangle);
+            pass.set_bind_group(0, &self.bind_group, &[(2 * panel * STRIDE) as u32]);
+            draw(pass, panel);
+        }
     }
 
     /// Binds a panel for drawing into the whole of it.

@@ -102,13 +102,13 @@ impl<'a> Recipe<'a> {
     }
 }
 
-/// How elements of a type lie in a buffer that holds one for each vertex.
+/// The layout of a buffer with one element for each vertex.
 pub(super) fn for_vertices<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
     let step_mode = wgpu::VertexStepMode::Vertex;
     wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
 }
 
-/// How elements of a type lie in a buffer that holds one for each instance of a few vertices.
+/// The layout of a buffer with one element for each instance.
 pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
     wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
 }

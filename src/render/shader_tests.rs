@@ -4,9 +4,7 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::{
-    ALARM_MULTISAMPLED_SHADER, ALARM_SINGLE_SHADER, FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ONE_SAMPLE_SHADER,
-    PANEL_SHADER, SEGMENT_SHADER, SINGLE_SHADER, composite, curve, ground, line, obstacle, overlay, stroke, surface,
-    tint,
+    PANEL_SHADER, SEGMENT_SHADER, composite, curve, ground, line, obstacle, overlay, sampled, stroke, surface, tint,
 };
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
@@ -32,17 +30,13 @@ fn shaders_are_valid() {
             parse(&[&surface::parts(samples, occluders)[..], &[tint::SHADER]].concat());
         }
         parse(&[&surface::parts(samples, 0)[..], &[obstacle::SHADER]].concat());
-    }
-    for [places, reading, alarm] in [
-        [ONE_SAMPLE_SHADER, SINGLE_SHADER, ALARM_SINGLE_SHADER],
-        [FOUR_SAMPLES_SHADER, MULTISAMPLED_SHADER, ALARM_MULTISAMPLED_SHADER],
-    ] {
+        let [positions, reading, alarm] = sampled(samples);
         for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacles, alarm, line::SHADER]);
+            parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, obstacles, alarm, line::SHADER]);
         }
-        parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, obstacle::PANE_SHADER]);
+        parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, obstacle::PANE_SHADER]);
         parse(&[PANEL_SHADER, reading, composite::SHADER]);
-        parse(&[PANEL_SHADER, SEGMENT_SHADER, places, reading, stroke::SHADER]);
+        parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, stroke::SHADER]);
     }
 }
 
@@ -57,7 +51,7 @@ fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
 }
 
 macro_rules! same_layout {
-    ($module:expr, $shader:literal, $rust:ty, [$($field:ident),* $(,)?]) => {
+    ($module:expr, $shader:literal, $rust:ty, $($field:ident)*) => {
         let ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
         assert_eq!(layout(&$module, $shader), (ours, size_of::<$rust>()));
     };
@@ -66,47 +60,14 @@ macro_rules! same_layout {
 #[test]
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
-    same_layout!(
-        module,
-        "Panel",
-        PanelUniform,
-        [
-            clip,
-            eye,
-            near,
-            key,
-            flatness,
-            up,
-            floor,
-            sound,
-            element,
-            alarm,
-            line_scale,
-            alarm_line,
-            outline_alpha,
-            edge,
-            focal,
-            outline,
-            soft,
-            region,
-            place,
-            opacity,
-            hatch,
-            behind,
-            line_share,
-            contour_share,
-            occluders
-        ]
-    );
-    same_layout!(module, "Occluder", OccluderUniform, [first, second, rotation]);
-    same_layout!(
-        module,
-        "Ground",
-        GroundUniform,
-        [first, second, middle, fade, key, sky, background, floor, grid, shadow, viewport]
-    );
-    same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, [size, unused]);
-    same_layout!(parse(&[curve::SHADER]), "Canvas", CanvasUniform, [size, unused]);
+    same_layout!(module, "Panel", PanelUniform,
+        clip eye near key flatness up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
+        region place opacity hatch behind line_share contour_share occluders);
+    same_layout!(module, "Occluder", OccluderUniform, first second rotation);
+    same_layout!(module, "Ground", GroundUniform,
+        first second middle fade key sky background floor grid shadow viewport);
+    same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, size unused);
+    same_layout!(parse(&[curve::SHADER]), "Canvas", CanvasUniform, size unused);
 }
 
 #[test]

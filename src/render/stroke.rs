@@ -1,6 +1,6 @@
 //! Lines with colours of their own, and nodes in space.
 
-use super::panel::{Panels, is_visible, limit};
+use super::panel::Panels;
 use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -44,8 +44,8 @@ impl Strokes {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
-        let reading = [super::samples_shader(samples), super::reading_shader(samples)];
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, reading[0], reading[1], SHADER];
+        let [positions, reading, _] = super::sampled(samples);
+        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, SHADER];
         let module = shader(gpu, "stroke", &parts);
         let layout = group_layout(gpu, "depth of bodies", &[texture_entry(1, true, samples)]);
         let recipe = Recipe {
@@ -85,13 +85,9 @@ impl Strokes {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &self.depth, &[]);
         pass.set_vertex_buffer(0, self.instances.buffer().slice(..));
-        for (at, (panel, range)) in picture.panels.iter().zip(&self.ranges).enumerate() {
-            if is_visible(panel.region) && !range.is_empty() {
-                limit(pass, panel.region);
-                panels.bind_region(pass, at);
-                pass.draw(0..4, range.clone());
-            }
-        }
+        panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, panel| {
+            pass.draw(0..4, self.ranges[panel].clone());
+        });
     }
 }
 

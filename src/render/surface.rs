@@ -1,6 +1,6 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
 
-use super::panel::{Panels, is_visible, limit};
+use super::panel::Panels;
 use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -33,8 +33,8 @@ const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
 /// The parts of the shader, for a number of samples and of obstacles near a body.
 pub(super) fn parts(samples: u32, occluders: usize) -> [&'static str; 6] {
     let obstacles = if occluders > 0 { AMONG_SHADER } else { ALONE_SHADER };
-    let [samples, alarm] = [super::samples_shader(samples), super::alarm_shader(samples)];
-    [super::PANEL_SHADER, samples, alarm, COUNTS[occluders], obstacles, SHADER]
+    let [positions, _, alarm] = super::sampled(samples);
+    [super::PANEL_SHADER, positions, alarm, COUNTS[occluders], obstacles, SHADER]
 }
 
 /// The largest number of obstacles near one of the bodies of a picture.
@@ -58,17 +58,17 @@ pub(super) struct Pipelines {
 const SOUND: usize = 0;
 const TURNED_OVER: usize = 1;
 
-/// What draws the surfaces of one picture, plain or coloured by a field.
+/// The pipelines and bindings for the surfaces of a picture, plain or coloured by a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Colouring<'a> {
     pub(super) pipelines: &'a Pipelines,
-    /// What the pipelines of each set read besides the panel.
+    /// The bindings of each set besides the panel.
     pub(super) groups: [Option<&'a wgpu::BindGroup>; 2],
     /// The places of corners on the scale of a field, as a second buffer of vertices.
     pub(super) shades: Option<&'a wgpu::Buffer>,
 }
 
-/// The textures with what lies behind surfaces that are not turned over.
+/// The textures of the turned-over set, which is seen through the other surfaces.
 pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
     [texture_entry(2, true, samples), texture_entry(3, false, samples)]
 }
@@ -189,12 +189,8 @@ impl Surfaces {
         }
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
-        for (panel, (ranges, &place)) in self.ranges.iter().zip(places).enumerate() {
-            if is_visible(place) && !ranges[set].is_empty() {
-                limit(pass, place);
-                panels.bind_region(pass, panel);
-                pass.draw_indexed(ranges[set].clone(), 0, 0..1);
-            }
-        }
+        panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
+            pass.draw_indexed(self.ranges[panel][set].clone(), 0, 0..1);
+        });
     }
 }

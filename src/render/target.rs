@@ -51,7 +51,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Textures of a size, also for what lies behind surfaces or not.
+    /// Textures of a size, with or without those of the turned-over set alone.
     pub(super) fn new(gpu: &Gpu, size: [u32; 2], samples: u32, has_behind: bool) -> Self {
         let texture = |label, size, format, sample_count| {
             let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {

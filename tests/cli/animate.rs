@@ -1,6 +1,6 @@
 //! `animate`: the files as read by other decoders, and messages about frames that do not fit.
 
-use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, has_ffmpeg, lasting, python, run};
+use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, frame_tags, has_ffmpeg, lasting, python, run};
 use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
 use localshape::internals::{Shown, Tags};
 use std::path::Path;
@@ -19,14 +19,8 @@ fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
 }
 
 fn tags(number: u64) -> Tags {
-    Tags {
-        // At the end of a step, like those of scenes.
-        shows: Shown::Frame { frame: number, time: number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 } },
-        scenes: vec!["5c".repeat(32)],
-        states: vec![("ab".repeat(32), "Local shape".to_owned())],
-        version: "0.1.0".to_owned(),
-        adapter: "none".to_owned(),
-    }
+    // At the end of a step, like those of scenes.
+    frame_tags(number, number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 })
 }
 
 fn put(place: &Place, folder: &str, number: u64, bytes: &[u8]) {
@@ -215,10 +209,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
 /// The animation is the same whether its frames are kept or not.
 #[test]
 fn rendering_makes_animations_meanwhile() {
-    if !crate::render::can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = crate::render::place_to_draw() else { return };
     let ran = place.run("render small.toml --samples 1 --animate a.gif --animate a.apng").good();
     for line in ["a.gif  96×64, 4 pictures of 7 frames in 0.13 s", "a.apng  96×64, 7 pictures in 0.12 s"] {
         assert!(ran.out.contains(line), "{line}: {}", ran.out);
@@ -243,10 +234,7 @@ fn rendering_makes_animations_meanwhile() {
 
 #[test]
 fn rendering_makes_sheets_meanwhile() {
-    if !crate::render::can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = crate::render::place_to_draw() else { return };
     place.write("long.toml", &lasting("0.3"));
     let ran = place.run("render long.toml --samples 1 --animate a.png").good();
     assert!(ran.out.contains("a.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
@@ -263,10 +251,7 @@ fn rendering_makes_sheets_meanwhile() {
 #[test]
 fn an_interrupted_rendering_makes_no_animation() {
     use crate::interrupt::{signal, start};
-    if !crate::render::can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = crate::render::place_to_draw() else { return };
     place.write("long.toml", &lasting("100"));
     let arguments = "render long.toml --samples 1 --animate a.gif --animate b.apng";
     let running = start(&place, arguments, "output/long/frame_00001.png");

@@ -1,18 +1,13 @@
 //! `compare`: results for pictures and folders of them.
 
-use crate::support::{Place, SMALL, frame_file, run};
-use localshape::internals::{Shown, Tags};
+use crate::support::{Place, SMALL, frame_file, frame_tags, run};
+use localshape::internals::Tags;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {
-    let tags = Tags {
-        shows: Shown::Frame { frame, time: frame as f64 / 60.0 },
-        scenes: vec!["s".into()],
-        states: vec![(digest(state), "Local shape".into())],
-        version: "0".into(),
-        adapter: adapter.into(),
-    };
+    let states = vec![(digest(state), "Local shape".into())];
+    let tags = Tags { states, adapter: adapter.into(), ..frame_tags(frame, frame as f64 / 60.0) };
     frame_file([16, 8], bytes, &tags)
 }
 
@@ -97,13 +92,7 @@ fn two_folders() {
 #[test]
 fn another_scene_file_is_mentioned_and_no_difference() {
     let place = Place::new();
-    let tags = |scene: &str| Tags {
-        shows: Shown::Frame { frame: 0, time: 0.0 },
-        scenes: vec![scene.into()],
-        states: vec![(digest("1"), "run".into())],
-        version: "0".into(),
-        adapter: "one".into(),
-    };
+    let tags = |scene: &str| Tags { scenes: vec![scene.into()], ..frame_tags(0, 0.0) };
     put(&place, "a.png", &frame_file([16, 8], &GREY, &tags("5")));
     put(&place, "b.png", &frame_file([16, 8], &GREY, &tags("6")));
     let ran = place.run("compare a.png b.png").good();
@@ -318,9 +307,7 @@ fn a_run_that_only_the_new_side_has_is_no_pass() {
     let place = Place::new();
     let with = |runs: &[&str]| {
         let states = runs.iter().map(|run| (digest("1"), (*run).to_owned())).collect();
-        let [scene, version, adapter] = ["s", "0", "one"].map(str::to_owned);
-        let shows = Shown::Frame { frame: 0, time: 0.0 };
-        frame_file([16, 8], &GREY, &Tags { shows, scenes: vec![scene], states, version, adapter })
+        frame_file([16, 8], &GREY, &Tags { states, ..frame_tags(0, 0.0) })
     };
     put(&place, "was/a.png", &with(&["one"]));
     put(&place, "is/a.png", &with(&["one", "other"]));

@@ -71,7 +71,7 @@ fn frames_on_a_full_disk() {
 #[cfg(feature = "render")]
 #[test]
 fn animations_on_a_full_disk() {
-    use localshape::internals::{Shown, Tags};
+    use crate::support::{frame_file, frame_tags};
     let place = Place::new();
     for number in 0..4 {
         // Noise, which does not compress.
@@ -79,19 +79,10 @@ fn animations_on_a_full_disk() {
             let mixed = (at + number * 1_000_003).wrapping_mul(0x9e37_79b9);
             ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8
         });
-        let tags = Tags {
-            shows: Shown::Frame { frame: number.into(), time: f64::from(number) / 30.0 },
-            scenes: vec!["5c".repeat(32)],
-            states: vec![("ab".repeat(32), "Shape".to_owned())],
-            version: String::new(),
-            adapter: String::new(),
-        };
-        place.write(&format!("in/frame_{number:05}.png"), "");
-        std::fs::write(
-            place.path(format!("in/frame_{number:05}.png")),
-            crate::support::frame_file([320, 240], &noise.collect::<Vec<_>>(), &tags),
-        )
-        .unwrap();
+        let tags = frame_tags(number.into(), f64::from(number) / 30.0);
+        let name = format!("in/frame_{number:05}.png");
+        place.write(&name, "");
+        std::fs::write(place.path(name), frame_file([320, 240], &noise.collect::<Vec<_>>(), &tags)).unwrap();
     }
     for name in ["a.gif", "a.apng", "a.y4m"] {
         let arguments = format!("animate in -o out/{name}");

@@ -17,6 +17,10 @@ fn place() -> Place {
     place
 }
 
+fn place_to_draw() -> Option<Place> {
+    can_draw().then(place)
+}
+
 /// Warnings of a scene are also reported for figures and goldens with it.
 #[test]
 fn scenes_are_warned_of() {
@@ -41,10 +45,7 @@ fn names_are_told() {
 
 #[test]
 fn figures_are_made_told_and_made_again() {
-    if !can_draw() {
-        return;
-    }
-    let place = place();
+    let Some(place) = place_to_draw() else { return };
     let ran = place.run("figure fig2 mine.toml fig2 --scale 0.5").good();
     assert_eq!(ran.out, "output/figures/fig2.png  1280×576\noutput/figures/mine.png  160×100\n");
     place.run("figure all fig4 --scale 0.1 -o all").good();
@@ -54,10 +55,7 @@ fn figures_are_made_told_and_made_again() {
 
 #[test]
 fn the_numbers_behind_a_figure_are_told() {
-    if !can_draw() {
-        return;
-    }
-    let place = place();
+    let Some(place) = place_to_draw() else { return };
     let ran = place.run("figure fig1 mine.toml fig1 -o all --json --size 320x200 --threads 1").good();
     let told: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
     let [fig1, mine] = &told["figures"].as_array().expect("a list")[..] else { panic!("two figures: {}", ran.out) };
@@ -103,10 +101,7 @@ fn wrong_names_and_files_are_told() {
 
 #[test]
 fn files_of_others_are_kept() {
-    if !can_draw() {
-        return;
-    }
-    let place = place();
+    let Some(place) = place_to_draw() else { return };
     place.write("out/mine.png", "mine");
     place.run("figure mine.toml -o out").bad(2, &["out", "mine.png, which is not a figure of this program"]);
     assert_eq!(place.read("out/mine.png"), "mine");
@@ -119,10 +114,7 @@ fn files_of_others_are_kept() {
 /// A diagram that is too small for its contents is an error, not an empty picture.
 #[test]
 fn what_has_no_room_is_told() {
-    if !can_draw() {
-        return;
-    }
-    let place = place();
+    let Some(place) = place_to_draw() else { return };
     let names: Vec<_> = (0..12).map(|at| format!("'{at}.toml'")).collect();
     names.iter().for_each(|name| place.write(name.trim_matches('\''), SMALL));
     place.write("tall.toml", &format!("[forces]\nscenes = [{}]", names.join(", ")));

@@ -134,8 +134,8 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
 fn a_file_in_the_way() {
     let place = Place::with_small();
     place.write("taken", "a file");
-    let commands = ["simulate small.toml", "table table1", "render small.toml", "figure fig1"];
-    for command in commands.iter().take(if cfg!(feature = "render") { 4 } else { 2 }) {
+    let commands = ["simulate small.toml", "table table1", "table all", "render small.toml", "figure fig1"];
+    for command in commands.iter().take(if cfg!(feature = "render") { 5 } else { 3 }) {
         for folder in ["taken", "taken/below"] {
             let ran = place.run(&format!("{command} -o {folder}"));
             ran.bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
@@ -270,7 +270,9 @@ fn a_folder_that_may_not_be_written() {
     if std::fs::write(place.path("locked/probe"), "").is_ok() {
         return crate::support::skip("this user may write anywhere; the test needs one who may not");
     }
-    place.run("simulate small.toml -o locked").bad(4, &["cannot write locked", "ermission denied"]);
+    for command in ["simulate small.toml", "table ratio"] {
+        place.run(&format!("{command} -o locked")).bad(4, &["cannot write locked", "ermission denied"]);
+    }
     assert_eq!(place.names("locked"), ["notes.txt"]);
     std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o755)).unwrap();
 }

@@ -3,16 +3,25 @@
 use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
 use localshape::internals::{Shown, Tags, read_tags};
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// Whether there is a graphics adapter; prints a message if not, and fails with `LOCALSHAPE_REQUIRE_GPU=1`.
 pub(crate) fn can_draw() -> bool {
-    let found = Place::new().run("info --json").good().json();
-    let any = !found["adapters"].as_array().unwrap().is_empty();
-    assert!(any || std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no graphics adapter");
-    if !any {
+    static FOUND: LazyLock<bool> = LazyLock::new(|| {
+        let found = Place::new().run("info --json").good().json();
+        !found["adapters"].as_array().unwrap().is_empty()
+    });
+    let is_required = std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some_and(|value| value == "1");
+    assert!(*FOUND || !is_required, "no graphics adapter");
+    if !*FOUND {
         skip("no graphics adapter");
     }
-    any
+    *FOUND
+}
+
+/// A place with `small.toml`, if there is a graphics adapter.
+pub(crate) fn place_to_draw() -> Option<Place> {
+    can_draw().then(Place::with_small)
 }
 
 fn tags(path: &Path) -> Tags {
@@ -32,10 +41,7 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
 /// Frames without a background have alpha; everything else is as usual.
 #[test]
 fn a_scene_without_a_background_makes_frames_with_opacities() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = place_to_draw() else { return };
     place.write("clear.toml", &format!("{SMALL}background = \"transparent\"\n"));
     place.run("render clear.toml --samples 1 --frames 0-2").good();
     let path = place.path("output/clear/frame_00002.png");
@@ -55,10 +61,7 @@ fn a_scene_without_a_background_makes_frames_with_opacities() {
 /// A folder whose frames differ in size or runs would not be a sequence.
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     place.run("render small.toml --samples 1 --frames 0-2").good();
     place.run("render small.toml --samples 1 --frames 3").good();
     for command in ["--size 80x60", "--only Mass-spring"] {
@@ -74,10 +77,7 @@ fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
 
 #[test]
 fn frames_diagnostics_and_summary() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     let ran = place.run("render small.toml --samples 1").good();
     assert!(ran.out.contains("7 frames of 96×64 in output/small"), "{}", ran.out);
     assert!(ran.out.contains("drawing") && ran.out.contains("encoding"), "{}", ran.out);
@@ -114,10 +114,7 @@ fn frames_diagnostics_and_summary() {
 /// Drawing never changes the simulation, and equal runs give equal files.
 #[test]
 fn again_and_without_pictures() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     place.run("render small.toml -o one --threads 1 --samples 1").good();
     place.run("render small.toml -o two --threads 3 --samples 1").good();
     place.run("simulate small.toml -o numbers").good();
@@ -130,10 +127,7 @@ fn again_and_without_pictures() {
 
 #[test]
 fn some_frames_of_one_run_in_another_size() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     let ran = place.run("render small.toml --frames 2,4-6x2 --only Mass-spring --size 63x41 --timings --states").good();
     for word in ["3 frames of 63×41", "wall ms", "encode and write"] {
         assert!(ran.out.contains(word), "{word}: {}", ran.out);
@@ -157,10 +151,7 @@ fn with_strip(text: &str) -> String {
 
 #[test]
 fn strips_are_the_same_whichever_frames_are_drawn() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     place.write("strip.toml", &with_strip(SMALL));
     place.run("render strip.toml --samples 1").good();
     place.run("render strip.toml --samples 1 --frames 3 -o alone --threads 1").good();
@@ -181,10 +172,7 @@ fn strips_are_the_same_whichever_frames_are_drawn() {
 #[cfg(unix)]
 #[test]
 fn interrupted_while_simulating_ahead() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &with_strip(&lasting("100000")));
     let running = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
     crate::interrupt::signal(&running, &["INT"]);
@@ -196,10 +184,7 @@ fn interrupted_while_simulating_ahead() {
 
 #[test]
 fn samples_and_adapters() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     for (folder, more) in [("smooth", ""), ("hard", " --samples 1"), ("auto", " --adapter auto")] {
         place.run(&format!("render small.toml --frames 3 -o {folder}{more}")).good();
     }
@@ -215,10 +200,8 @@ fn samples_and_adapters() {
 
 #[test]
 fn json_with_pictures() {
-    if !can_draw() {
-        return;
-    }
-    let document = Place::with_small().run("render small.toml --frames 0 --json").good().json();
+    let Some(place) = place_to_draw() else { return };
+    let document = place.run("render small.toml --frames 0 --json").good().json();
     assert_eq!(document["scenes"][0]["frames"]["written"], 1);
     assert_eq!(document["scenes"][0]["outcome"], "done");
     assert_eq!(document["scenes"][0]["files"], serde_json::json!(["diagnostics.csv", "frame_*.png"]));
@@ -236,10 +219,7 @@ fn wrong_options() {
 /// Frames of another scene are not mixed with those of this one, even if the summary is missing.
 #[test]
 fn frames_of_another_scene() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::with_small();
+    let Some(place) = place_to_draw() else { return };
     place.write("other.toml", &lasting("0.05"));
     place.run("render small.toml -o out --samples 1").good();
     std::fs::remove_file(place.path("out/run.json")).unwrap();
@@ -271,10 +251,7 @@ fn without_a_driver() {
 
 #[test]
 fn a_diverged_run_is_drawn_to_the_end() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = place_to_draw() else { return };
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
     place.run("render wild.toml --frames 0-300x100 --samples 1").good();
     let tags = |frame: &str| tags(&place.path("output/wild").join(frame));
@@ -284,10 +261,7 @@ fn a_diverged_run_is_drawn_to_the_end() {
 #[cfg(unix)]
 #[test]
 fn interrupted_while_drawing() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("1000"));
     let running = crate::interrupt::start(&place, "render long.toml --samples 1", "output/long/frame_00003.png");
     crate::interrupt::signal(&running, &["INT"]);
@@ -306,10 +280,7 @@ fn interrupted_while_drawing() {
 #[cfg(unix)]
 #[test]
 fn a_frame_that_cannot_be_written() {
-    if !can_draw() {
-        return;
-    }
-    let place = Place::new();
+    let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("10"));
     let running = crate::interrupt::start(&place, "render long.toml -o out", "out/run.json");
     // A folder cannot be replaced by a file; this fails early.

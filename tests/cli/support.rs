@@ -1,6 +1,6 @@
 //! A folder to run the program in, and its output.
 
-use localshape::internals::{Compression, Tags, encode};
+use localshape::internals::{Compression, Shown, Tags, encode};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -36,6 +36,17 @@ friction = 0.3
 [view]
 size = [96, 64]
 "#;
+
+/// The metadata of a frame of a scene with one run, drawn by no adapter that there is.
+pub(crate) fn frame_tags(frame: u64, time: f64) -> Tags {
+    Tags {
+        shows: Shown::Frame { frame, time },
+        scenes: vec!["5c".repeat(32)],
+        states: vec![("ab".repeat(32), "Local shape".to_owned())],
+        version: "0.1.0".to_owned(),
+        adapter: "none".to_owned(),
+    }
+}
 
 /// A picture as `render` writes it.
 pub(crate) fn frame_file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {

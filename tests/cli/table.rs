@@ -78,31 +78,6 @@ fn wrong_words() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_used() {
-    let place = Place::new();
-    place.write("taken", "a file");
-    place.run("table table1 -o taken").bad(4, &["taken"]);
-    place.run("table table1 -o taken/below").bad(4, &["taken"]);
-    place.run("table all -o taken").bad(4, &["taken"]);
-    assert_eq!(place.read("taken"), "a file");
-}
-
-#[cfg(unix)]
-#[test]
-fn a_folder_that_may_not_be_written() {
-    use std::os::unix::fs::PermissionsExt;
-    let place = Place::new();
-    place.write("locked/notes.txt", "mine");
-    std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o555)).unwrap();
-    if std::fs::write(place.path("locked/probe"), "").is_ok() {
-        return crate::support::skip("this user may write anywhere; the test needs one who may not");
-    }
-    place.run("table ratio -o locked").bad(4, &["cannot write locked", "ermission denied"]);
-    assert_eq!(place.names("locked"), ["notes.txt"]);
-    std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o755)).unwrap();
-}
-
-#[test]
 fn files_of_others_and_of_another_choice_are_refused_unless_told() {
     let place = Place::new();
     place.write("out/table1.csv", "mine");

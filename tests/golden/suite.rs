@@ -59,7 +59,7 @@ fn can_draw() -> bool {
 }
 
 #[test]
-#[should_panic(expected = "nobody asked what came of it")]
+#[should_panic(expected = "the result was not checked")]
 fn a_suite_that_is_forgotten_fails() {
     let _ = Suite::new("nowhere");
 }
@@ -84,7 +84,7 @@ fn a_golden_is_missed_made_kept_renewed_and_guarded() {
     write(&place, "drop.toml", &SCENE.replace("view.size", "view.theme = 'dark'\nview.size"));
     let (passed, text) = run(&place, "drop.toml", "");
     assert!(
-        !passed && text.contains("same state, drawn differently") && text.contains("look at it in reports/drop.html"),
+        !passed && text.contains("same state, drawn differently") && text.contains("see the report reports/drop.html"),
         "{text}"
     );
     assert!(place.path().join("reports/drop.html").exists());

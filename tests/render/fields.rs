@@ -1,13 +1,12 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
-use super::{fig4b, gpu};
+use super::{fig4b, gpu, parse, renderer};
 use localshape::look::{ColourMap, ColourScale, Look, Theme, Visible};
 use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
-use localshape::render::Renderer;
+use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
-use localshape::{runner::Runner, scene::Limits};
 
 const NOTHING: Visible = Visible { surfaces: false, nodes: false, springs: false, displacements: false };
 const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true };
@@ -35,7 +34,7 @@ fn plane(view: &str) -> (Scene, Frame) {
         [view]
         {view}"
     );
-    let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let scene = parse(&text);
     let frame = Runner::new(&scene, &[0]).frame(0);
     (scene, frame)
 }
@@ -211,7 +210,7 @@ fn many_nodes_are_drawn_when_asked_for() {
         )
     };
     for (view, expected) in [("", 0), ("show = ['surfaces', 'nodes']", 21 * 21)] {
-        let scene = Scene::parse(&text(view), "many.toml", &Limits::default()).expect("sound");
+        let scene = parse(&text(view));
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         let discs = marks(&picture, MarkShape::Node);
         assert_eq!(discs.len(), expected);
@@ -238,8 +237,8 @@ fn arrows_end_at_their_nodes() {
                     (0..scene.body.len()).any(|node| {
                         let start = snapshot.placement.place(scene.body.rest[node]);
                         let at = if of_start { start } else { snapshot.position[node] };
-                        // The camera's base is the origin, which any corner of a surface gives.
-                        let relative = (at - base(scene, frame, &picture, panel)) / scene.view.side;
+                        // The camera looks at the origin of the panel's coordinates.
+                        let relative = (at - scene.view.camera.target) / scene.view.side;
                         pixel(&picture, panel, relative.as_vec3()).distance(point) < 0.05
                     })
                 })
@@ -248,12 +247,6 @@ fn arrows_end_at_their_nodes() {
             assert!(near(tip, false) && near(start, true), "{arrow:?}");
         }
     }
-}
-
-/// The origin of a panel's coordinates (m).
-fn base(scene: &Scene, _: &Frame, _: &Picture, _: usize) -> glam::DVec3 {
-    // Fig. 4(b) stands on a floor and the plane's body in mid-air, where the camera looks at its middle.
-    scene.view.camera.target
 }
 
 #[test]
@@ -370,7 +363,7 @@ fn every_combination_is_drawn_the_same_twice() {
     let mut plain = plain;
     plain.view.size = [320, 180];
     for samples in [1, 4] {
-        let mut renderer = Renderer::new(gpu, scene.view.size, samples).expect("a size that can be drawn");
+        let mut renderer = renderer(gpu, scene.view.size, samples);
         let before = renderer.draw(&compose(&plain, &plain_frame)).expect("the device works");
         let mut last = before.clone();
         for bits in 1..16_u32 {
@@ -396,7 +389,7 @@ fn the_plane_shows_the_colours_of_the_bar() {
         for at in [0, 20, SHADES - 1] {
             frame.runs[0].snapshot.field = vec![at as f64 / (SHADES - 1) as f64; 2];
             let picture = compose(&scene, &frame);
-            let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+            let mut renderer = renderer(gpu, scene.view.size, 4);
             let image = renderer.draw(&picture).expect("the device works");
             let near = |pixel: &image::Rgb<u8>| pixel.0.iter().zip(picture.ramp[at]).all(|(&a, b)| a.abs_diff(b) <= 2);
             let [x, y, width, height] = picture.panels[0].region;

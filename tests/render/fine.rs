@@ -1,11 +1,8 @@
 //! Antialiasing of everything, text included: pictures compared with themselves, drawn four times larger and averaged.
 
-use super::{fig4b, gpu, linear};
+use super::{draw, fig4b, frame, gpu, linear};
 use image::RgbImage;
-use localshape::gpu::Gpu;
 use localshape::picture::{MarkShape, Picture, compose};
-use localshape::render::Renderer;
-use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
 /// The scale of the reference pictures.
@@ -62,11 +59,6 @@ fn larger(picture: &Picture) -> Picture {
         words.glyphs.iter_mut().for_each(|glyph| glyph.x = (glyph.x * 4.0).round() / 4.0 * times);
     }
     large
-}
-
-fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
-    let mut renderer = Renderer::new(gpu, picture.size, 4).expect("a size that can be drawn");
-    renderer.draw(picture).expect("the device works")
 }
 
 fn encoded(light: f64) -> f64 {
@@ -131,11 +123,9 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
         let path =
             std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/primitives/{name}.toml"));
         let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let frame = Runner::new(&scene, &runs).frame(scene.last_frame());
-        let picture = compose(&scene, &frame);
-        let small = draw(gpu, &picture);
-        let large = draw(gpu, &larger(&picture));
+        let picture = compose(&scene, &frame(&scene, scene.last_frame()));
+        let small = draw(gpu, &picture, 4);
+        let large = draw(gpu, &larger(&picture), 4);
         let truth = means(&large, &light);
         let ours = summary(small.as_raw().iter().zip(&truth).map(|(&byte, &truth)| off(byte, truth)));
         assert!(ours.0 <= MEAN && ours.1 as f64 <= PART * small.as_raw().len() as f64, "{name}: {ours:?}");
@@ -156,7 +146,7 @@ fn borders_of_what_is_seen_through_a_body_are_as_smooth_as_in_larger_pictures() 
             frame.runs[0].snapshot.turned_over[13] = turned_over;
             let mut picture = compose(&scene, &frame);
             picture.panels[0].lines.clear();
-            (draw(gpu, &picture), draw(gpu, &larger(&picture)))
+            (draw(gpu, &picture, 4), draw(gpu, &larger(&picture), 4))
         };
         let [(without, _), (small, large)] = [false, true].map(&mut draw_both);
         let truth = means(&large, &light);

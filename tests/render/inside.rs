@@ -1,19 +1,12 @@
 //! The inside of a body and what is behind it: transparent and exploded views.
 
-use super::{fig4b, gpu};
+use super::{draw, fig4b, gpu, parse, renderer};
 use glam::Vec3;
 use image::RgbImage;
-use localshape::gpu::Gpu;
 use localshape::picture::{LineKind, Picture, compose};
-use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
-
-fn draw(gpu: &Gpu, scene: &Scene, frame: &Frame) -> RgbImage {
-    let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
-    renderer.draw(&compose(scene, frame)).expect("the device works")
-}
 
 /// The cubes of Fig. 4(b) at their start, with the one in the middle turned over.
 fn middle_turned_over() -> (Scene, Frame) {
@@ -39,16 +32,16 @@ fn an_element_turned_over_inside_is_seen_and_the_better_the_clearer_the_others_a
     sound.runs[0].snapshot.turned_over[13] = false;
     let seen = [1.0, 0.7, 0.4, 0.1].map(|opacity| {
         scene.view.opacity = opacity;
-        assert_eq!(orange(&draw(gpu, &scene, &sound)), 0, "nothing has turned over");
-        orange(&draw(gpu, &scene, &frame))
+        assert_eq!(orange(&draw(gpu, &compose(&scene, &sound), 4)), 0, "nothing has turned over");
+        orange(&draw(gpu, &compose(&scene, &frame), 4))
     });
     assert!(seen[0] > 100_000, "{seen:?}");
     assert!(seen.windows(2).all(|two| two[1] > two[0]), "{seen:?}");
     assert!(seen[2] as f64 > 1.3 * seen[0] as f64, "{seen:?}");
     scene.view.opacity = 1.0;
     scene.view.explode = 1.0;
-    assert!(orange(&draw(gpu, &scene, &frame)) > 100_000);
-    assert_eq!(orange(&draw(gpu, &scene, &sound)), 0, "nothing has turned over");
+    assert!(orange(&draw(gpu, &compose(&scene, &frame), 4)) > 100_000);
+    assert_eq!(orange(&draw(gpu, &compose(&scene, &sound), 4)), 0, "nothing has turned over");
 }
 
 #[test]
@@ -57,10 +50,10 @@ fn an_opaque_body_is_the_same_whatever_was_seen_through_before() {
     let (scene, frame) = middle_turned_over();
     let mut clear = compose(&scene, &frame);
     clear.panels[0].opacity = 0.4;
-    let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+    let mut renderer = renderer(gpu, scene.view.size, 4);
     let through = renderer.draw(&clear).expect("the device works");
     let opaque = renderer.draw(&compose(&scene, &frame)).expect("the device works");
-    assert_eq!(opaque, draw(gpu, &scene, &frame));
+    assert_eq!(opaque, draw(gpu, &compose(&scene, &frame), 4));
     assert_ne!(opaque, through);
 }
 
@@ -78,13 +71,13 @@ fn solids_are_seen_through_clear_surfaces_only() {
             opacity = {opacity}
             camera = {{ azimuth = 0, elevation = 0.1, target = [0, 0.2, 0], distance = 3 }}"
         );
-        Scene::parse(&text, "ball.toml", &Limits::default()).expect("the scene is sound")
+        parse(&text)
     };
     let middle = |ball: &str, opacity: f64| {
         let scene = scene(ball, opacity);
         let frame = Runner::new(&scene, &[0]).frame(0);
         let (at, side) = ([640 - 12, 365 - 12], 24);
-        let image = draw(gpu, &scene, &frame);
+        let image = draw(gpu, &compose(&scene, &frame), 4);
         let inner = image::imageops::crop_imm(&image, at[0], at[1], side, side).to_image();
         inner.into_raw().into_iter().map(f64::from).sum::<f64>() / f64::from(3 * side * side)
     };
@@ -120,7 +113,7 @@ fn many_apart() -> (Scene, Frame) {
         nodes.join(", "),
         elements.join(", ")
     );
-    let scene = Scene::parse(&text, "many.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let scene = parse(&text);
     let mut frame = Runner::new(&scene, &[0]).frame(0);
     frame.runs[0].snapshot.turned_over[0] = true;
     (scene, frame)

@@ -1,15 +1,14 @@
 //! Pictures without a background, and with their own fonts, colours and sizes.
 
-use super::{fig4b, gpu};
+use super::{all, fig4b, frame, gpu, parse, renderer};
 use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
 use localshape::look::{Follow, FontFiles, Look, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
-use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
 
 const SIZE: [u32; 2] = [640, 360];
@@ -19,7 +18,7 @@ const PLAIN: u8 = 12;
 
 /// A picture on white, on black and without a background.
 fn three(gpu: &Gpu, scene: &Scene, frame: &Frame) -> (RgbImage, RgbImage, RgbaImage) {
-    let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+    let mut renderer = renderer(gpu, scene.view.size, 4);
     let [white, black] = [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground).compose(frame));
     let transparent = renderer.draw_transparent(&white, &black).expect("the device works");
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
@@ -52,10 +51,9 @@ fn scenes() -> Vec<(String, Scene, Frame)> {
         ("stretch", include_str!("../../scenes/stretch.toml"), 20),
     ];
     let mut scenes = Vec::new();
-    for (name, text, frame) in texts {
-        let mut scene = Scene::parse(text, name, &Limits::default()).expect("a scene that ships");
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let frame = Runner::new(&scene, &runs).frame(frame);
+    for (name, text, index) in texts {
+        let mut scene = parse(text);
+        let frame = frame(&scene, index);
         scene.view.size = SIZE;
         scenes.push((name.to_owned(), scene, frame));
     }
@@ -120,7 +118,7 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
     let Some(gpu) = gpu("fonts_that_a_scene_brings_are_the_ones_it_is_written_with") else { return };
     let (mut scene, frame) = fig4b(0);
     scene.view.size = SIZE;
-    let mut renderer = Renderer::new(gpu, SIZE, 1).expect("a size that can be drawn");
+    let mut renderer = renderer(gpu, SIZE, 1);
     let [regular, semi_bold] = built_in().map(|bytes| Some(bytes.into()));
     let mut draw = |font: FontFiles| {
         scene.view.look.font = font;
@@ -137,12 +135,11 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
 }
 
 /// A scene that ships, and one of its frames, as pictures are made of them with lines of two thicknesses.
-fn thin_and_thick(text: &str, frame: u64, thickness: f64) -> [Picture; 2] {
-    let mut scene = Scene::parse(text, "thick.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+fn thin_and_thick(text: &str, index: u64, thickness: f64) -> [Picture; 2] {
+    let mut scene = parse(text);
     scene.view.size = [1280, 720];
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Runner::new(&scene, &runs).frame(frame);
-    let history = History::new(&scene, &runs);
+    let frame = frame(&scene, index);
+    let history = History::new(&scene, &all(&scene));
     [1.0, thickness].map(|line_scale| {
         scene.view.look.line_scale = line_scale;
         let mut composer = Composer::new(&scene);
@@ -242,7 +239,7 @@ fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
     assert!(usual.iter().all(|&count| count > 0), "{usual:?}");
     assert_eq!(kinds(&compose(&scene, &frame)), [0, usual[1], usual[2], usual[3]]);
     for text in [include_str!("../../scenes/obstacles.toml"), include_str!("../../scenes/wheel.toml")] {
-        let mut scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("a scene that ships");
+        let mut scene = parse(text);
         scene.view.outline = false;
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         assert!(picture.panels[0].lines.iter().all(|line| line.kind != LineKind::ObstacleContour));
@@ -292,11 +289,10 @@ fn without_a_hatch_turned_over_elements_have_one_colour() {
     for theme in ["light", "dark"] {
         for colour in ["", "colour.by = 'strain'\nlegend = false"] {
             let text = text(&format!("theme = '{theme}'\n{colour}"));
-            let mut scene =
-                Scene::parse(&text, "hatch.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            let mut scene = parse(&text);
             let frame = Runner::new(&scene, &[1]).frame(scene.last_frame());
             assert!(frame.runs[0].snapshot.turned_over.contains(&true));
-            let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+            let mut renderer = renderer(gpu, scene.view.size, 4);
             let alarm = scene.view.look.palette.alarm;
             let [hatched, plain] = [true, false].map(|hatch| {
                 scene.view.hatch = hatch;
@@ -323,14 +319,14 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
     };
     let picture = |colour: &str| {
         let text = format!("{}\nhatch = false\n{colour}", super::plain());
-        let scene = Scene::parse(&text, "hatch.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let scene = parse(&text);
         let mut frame = Runner::new(&scene, &[0]).frame(0);
         // The one in the middle.
         frame.runs[0].snapshot.turned_over[13] = true;
         compose(&scene, &frame)
     };
     let field = "colour.by = 'speed'\nlegend = false";
-    let mut renderer = Renderer::new(gpu, [1280, 720], 4).expect("a size that can be drawn");
+    let mut renderer = renderer(gpu, [1280, 720], 4);
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
     let [plain, coloured] = ["", field].map(|colour| draw(&turned_over_alone(&picture(colour))));
     assert!(apart(&plain, &coloured).0 <= 1, "{:?}", apart(&plain, &coloured));

@@ -16,7 +16,10 @@ mod steady;
 mod strips;
 mod words;
 
+use image::RgbImage;
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::picture::{Picture, TextRun};
+use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::Frame;
@@ -48,10 +51,51 @@ fn plain() -> String {
 }
 
 /// The scene of Fig. 4(b) with default drawing, and one of its frames.
-fn fig4b(frame: u64) -> (Scene, Frame) {
-    let scene = Scene::parse(&plain(), "fig4b.toml", &Limits::default()).expect("the shipped scene is sound");
-    let frame = Runner::new(&scene, &[0, 1]).frame(frame);
+fn fig4b(index: u64) -> (Scene, Frame) {
+    let scene = parse(&plain());
+    let frame = frame(&scene, index);
     (scene, frame)
+}
+
+/// A scene from its text.
+fn parse(text: &str) -> Scene {
+    Scene::parse(text, "test.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A frame of all runs of a scene.
+fn frame(scene: &Scene, index: u64) -> Frame {
+    Runner::new(scene, &all(scene)).frame(index)
+}
+
+/// All runs of a scene.
+fn all(scene: &Scene) -> Vec<usize> {
+    (0..scene.runs.len()).collect()
+}
+
+fn renderer(gpu: &Gpu, size: [u32; 2], samples: u32) -> Renderer {
+    Renderer::new(gpu, size, samples).expect("a size that can be drawn")
+}
+
+/// A picture drawn by a renderer of its own.
+fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {
+    renderer(gpu, picture.size, samples).draw(picture).expect("the device works")
+}
+
+/// Checks that the boxes of no two lines of text overlap, and that none leaves the picture.
+#[track_caller]
+fn assert_words_are_clear(picture: &Picture, case: &str) {
+    let [width, height] = picture.size.map(|length| length as f32);
+    for (at, word) in picture.words.iter().enumerate() {
+        let [left, top, right, bottom] = word.bounds();
+        let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
+        assert!(inside, "“{}” leaves the picture, {case}: {:?}", word.text, word.bounds());
+        let overlaps = |other: &&TextRun| {
+            let [left2, top2, right2, bottom2] = other.bounds();
+            left < right2 && left2 < right && top < bottom2 && top2 < bottom
+        };
+        let other = picture.words[..at].iter().find(overlaps);
+        assert!(other.is_none(), "“{}” lies over “{}”, {case}", word.text, other.map_or("", |other| &other.text));
+    }
 }
 
 /// A byte of sRGB as linear light, from 0 to 1.

@@ -1,15 +1,14 @@
 //! Obstacles and grips in the composed picture; only one test needs a device.
 
-use super::{fig4b, gpu};
+use super::{fig4b, frame, gpu, parse, renderer};
 use glam::{DVec3, Vec3};
 use localshape::look::Follow;
 use localshape::picture::{
     Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
 };
 use localshape::render::Renderer;
-use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
-use localshape::sim::snapshot::{Divergence, Frame, Status};
+use localshape::scene::Scene;
+use localshape::sim::snapshot::{Divergence, Status};
 use std::collections::HashMap;
 
 const WORLD: &str = "
@@ -25,12 +24,7 @@ const PLATE: &str = "[[obstacle]]\nkind = 'plate'\npoint = [0, 0.8, 0]\nnormal =
 
 fn scene(parts: &[&str]) -> Scene {
     let text = parts.concat();
-    Scene::parse(&text, "obstacles.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn frame(scene: &Scene, index: u64) -> Frame {
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    Runner::new(scene, &runs).frame(index)
+    parse(&text)
 }
 
 fn picture(scene: &Scene, index: u64) -> Picture {
@@ -221,7 +215,7 @@ fn what_blew_up_stays_among_finite_numbers() {
         let picture = compose(&scene, &frame);
         assert!(numbers(&picture.panels[0]).iter().all(|number| number.is_finite()), "{far}");
         if let Some(gpu) = gpu("what_blew_up_stays_among_finite_numbers") {
-            let mut renderer = Renderer::new(gpu, picture.size, 1).expect("a size that can be drawn");
+            let mut renderer = renderer(gpu, picture.size, 1);
             renderer.draw(&picture).expect("the device works");
         }
     }

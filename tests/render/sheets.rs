@@ -1,7 +1,7 @@
 //! Contact sheets: nothing overlaps or is cut off, and the text agrees with the simulation.
 
+use super::assert_words_are_clear;
 use super::strips::alike;
-use super::words::overlapping;
 use glam::Vec3;
 use localshape::moments::Moments;
 use localshape::picture::{MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
@@ -100,14 +100,8 @@ fn no_words_overlap_and_all_can_be_read() {
             figure.look.text_scale = times;
             let picture = compose_figure(&figure, moments).expect("room");
             let figure = format!("{size:?} of {} with type {times} times as large", figure.title);
-            if let Some([one, other]) = overlapping(&picture) {
-                panic!("“{}” lies over “{}” in {figure}", one.text, other.text);
-            }
-            let [width, height] = size.map(|length| length as f32);
+            assert_words_are_clear(&picture, &figure);
             for word in &picture.words {
-                let [left, top, right, bottom] = word.bounds();
-                let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
-                assert!(inside, "“{}” leaves the picture of {figure}: {:?}", word.text, word.bounds());
                 assert!(word.size >= SMALLEST_TYPE, "“{}” in {figure} is {} px high", word.text, word.size);
             }
         }
@@ -315,11 +309,11 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
         for size in [[1200, 675], [1200, 360], [400, 300]] {
             figure.size = size;
             let picture = compose_figure(&figure, &moments).expect("room");
-            assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None, "{runs} in {size:?}");
+            assert_words_are_clear(&picture, &format!("{runs} in {size:?}"));
         }
         figure.size = [2400, 1350];
         let picture = compose_figure(&figure, &moments).expect("room");
-        assert_eq!(overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None);
+        assert_words_are_clear(&picture, "");
         let curves: Vec<_> = picture.curves.iter().filter(|curve| curve.points.len() > 3).collect();
         assert_eq!(curves.len(), 2 * runs);
         let looks: Vec<_> = curves[..runs].iter().map(|curve| (curve.colour, curve.dash.clone())).collect();

@@ -1,18 +1,17 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
-use super::fig4b;
+use super::{fig4b, frame, parse};
 use localshape::picture::{Composer, LineKind, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 
 /// A scene with other cells, runs and view.
 fn scene(change: impl Fn(String) -> String) -> (Scene, Frame) {
     let text = change(super::plain());
-    let scene = Scene::parse(&text, "changed.toml", &Limits::default()).expect("the change keeps the scene sound");
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Runner::new(&scene, &runs).frame(0);
+    let scene = parse(&text);
+    let frame = frame(&scene, 0);
     (scene, frame)
 }
 
@@ -247,7 +246,7 @@ fn lines_of_large_bodies_in_the_plane_are_before_the_near_plane() {
         [[run]]
         name = 'a'
         model = { kind = 'shape-based', stiffness = 1e3 }";
-    let scene = Scene::parse(text, "plane.toml", &Limits::default()).expect("sound");
+    let scene = parse(text);
     let sight = compose(&scene, &Runner::new(&scene, &[0]).frame(0)).panels[0].sight;
     assert!(sight.near < sight.clip.w_axis.w, "{sight:?}");
 }
@@ -307,7 +306,7 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
             distance = 4",
             floor(normal)
         );
-        let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let scene = parse(&text);
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         for shape in [MarkShape::Smooth, MarkShape::Fading] {
             assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
@@ -350,7 +349,7 @@ fn one_element(nodes: &str, count: usize) -> (Scene, Picture) {
         name = 'a'
         model = {{ kind = 'shape-based', stiffness = 1e3 }}"
     );
-    let scene = Scene::parse(&text, "one.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let scene = parse(&text);
     let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
     (scene, picture)
 }

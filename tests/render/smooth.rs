@@ -1,12 +1,10 @@
 //! Antialiased borders without flicker: a slight motion changes pixels slightly.
 
-use super::{gpu, linear};
+use super::{all, draw, gpu, linear, parse, renderer};
 use image::RgbImage;
-use localshape::gpu::Gpu;
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
-use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
 
 const WORLD: &str = "
@@ -28,18 +26,12 @@ const PLANE: &str = "
 
 fn scene(parts: &[&str]) -> Scene {
     let text = parts.concat();
-    Scene::parse(&text, "smooth.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+    parse(&text)
 }
 
 fn frames(scene: &Scene, indices: std::ops::Range<u64>) -> Vec<Frame> {
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let mut runner = Runner::new(scene, &runs);
+    let mut runner = Runner::new(scene, &all(scene));
     indices.map(|index| runner.frame(index)).collect()
-}
-
-fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {
-    let mut renderer = Renderer::new(gpu, picture.size, samples).expect("a size that can be drawn");
-    renderer.draw(picture).expect("the device works")
 }
 
 /// A picture of the plane without marks and text.
@@ -164,7 +156,7 @@ fn what_turns_slowly_changes_slowly() {
         for show in shows {
             let scene = scene(&[WORLD, SPRINGS, body, TURNING, show, camera]);
             let composer = Composer::new(&scene);
-            let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+            let mut renderer = renderer(gpu, scene.view.size, 4);
             let images: Vec<_> = frames(&scene, 0..12)
                 .iter()
                 .map(|frame| {
@@ -184,7 +176,7 @@ fn what_turns_slowly_changes_slowly() {
 fn obstacles_are_drawn_alike_every_time() {
     let Some(gpu) = gpu("obstacles_are_drawn_alike_every_time") else { return };
     let text = include_str!("../golden/primitives/obstacles.toml");
-    let scene = Scene::parse(text, "obstacles.toml", &Limits::default()).expect("the scene is sound");
+    let scene = parse(text);
     let frame = &frames(&scene, 6..7)[0];
     for samples in [1, 4] {
         let [one, other] = [(), ()].map(|()| draw(gpu, &compose(&scene, frame), samples));

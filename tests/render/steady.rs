@@ -1,6 +1,6 @@
 //! No flicker: if everything moves by a twentieth of a pixel per frame, no pixel jumps, and none oscillates.
 
-use super::{gpu, linear};
+use super::{all, gpu, linear, parse, renderer};
 use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::picture::Composer;
@@ -55,10 +55,6 @@ fn unrest(film: &[RgbImage]) -> Unrest {
     worst
 }
 
-fn parse(text: &str) -> Scene {
-    Scene::parse(text, "film.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// Frames between two others, a small fraction of the motion apart. Turned-over elements stay so.
 fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
     (0..FRAMES)
@@ -85,7 +81,7 @@ struct Camera(Renderer);
 
 impl Camera {
     fn new(gpu: &Gpu, scene: &Scene) -> Self {
-        Self(Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn"))
+        Self(renderer(gpu, scene.view.size, 4))
     }
 
     fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
@@ -149,8 +145,7 @@ fn nothing_flickers_in_slow_motion() {
             scene.view.size = [320, 180];
         }
         scene.view.strip = None;
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let mut runner = Runner::new(&scene, &runs);
+        let mut runner = Runner::new(&scene, &all(&scene));
         let [from, to] = [index, index + 1].map(|index| runner.frame(index));
         // Obstacles move at most two pixels from one frame of these scenes to the next.
         let part = SLOW / way(&scene, &from, &to).max(2.0);

@@ -1,12 +1,11 @@
 //! Diagnostics over time below the panels.
 
-use super::{fig4b, gpu};
+use super::{assert_words_are_clear, fig4b, gpu, parse, renderer};
 use localshape::history::History;
 use localshape::look::{Look, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun};
-use localshape::render::Renderer;
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
@@ -109,7 +108,7 @@ fn the_present_moment_is_at_its_pixel() {
         let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
         scene.view.look = Look::of(theme);
         let [picture] = pictures(&scene, &frames);
-        let mut renderer = Renderer::new(gpu, scene.view.size, 4).expect("a size that can be drawn");
+        let mut renderer = renderer(gpu, scene.view.size, 4);
         let image = renderer.draw(&picture).expect("the device works");
         let ground = picture.palette.background;
         let off = |x: u32, y: u32| -> u32 {
@@ -200,7 +199,7 @@ fn what_a_model_does_not_have_is_said() {
 #[test]
 fn a_run_that_blows_up_ends_with_a_cross() {
     let text = include_str!("../../scenes/explicit-euler.toml").replace("[view]", "[view]\nstrip = 'energy'");
-    let scene = Scene::parse(&text, "explicit-euler.toml", &Limits::default()).expect("sound");
+    let scene = parse(&text);
     let mut runner = Runner::new(&scene, &[1, 2]);
     let frame = runner.frame(scene.last_frame());
     let Status::Diverged(divergence) = frame.runs[1].snapshot.status else { panic!("this one blows up") };
@@ -235,7 +234,7 @@ fn joints_do_not_show() {
     let Some(gpu) = gpu("joints_do_not_show") else { return };
     let (mut scene, frame) = fig4b(0);
     scene.view.size = [200, 100];
-    let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
+    let mut renderer = renderer(gpu, scene.view.size, 1);
     let mut draw = |points: Vec<[f32; 2]>, dash: &[f32]| {
         let mut picture = compose(&scene, &frame);
         picture.panels.clear();
@@ -290,7 +289,7 @@ fn each_differs<T: PartialEq + std::fmt::Debug>(all: &[T]) {
 #[test]
 fn eight_runs_of_one_model_are_told_apart() {
     for theme in ["light", "dark"] {
-        let scene = Scene::parse(&alike(8, theme), "alike.toml", &Limits::default()).expect("sound");
+        let scene = parse(&alike(8, theme));
         let all: Vec<_> = (0..8).collect();
         let frame = Runner::new(&scene, &all).frame(scene.last_frame());
         let picture = compose(&scene, &frame);
@@ -319,7 +318,7 @@ fn eight_runs_of_one_model_are_told_apart() {
             let names: Vec<_> = picture.words.iter().filter(|word| word.text == run.name).collect();
             assert_eq!(names.len(), 1 + 8, "{}", run.name);
         }
-        assert_eq!(super::words::overlapping(&picture).map(|two| two.map(|word| word.text.clone())), None);
+        assert_words_are_clear(&picture, theme);
         // And clear of the present moment, which is now at the end.
         for dot in dots(&picture) {
             let [x, y] = dot.points[0];
@@ -344,7 +343,7 @@ fn strips_of_many_runs_name_their_curves() {
     for size in [[1280, 720], [1600, 1000]] {
         for runs in 2..=12 {
             let text = alike(runs, "light").replace("[1600, 900]", &format!("{size:?}")).replace("panels = 'grid'", "");
-            let scene = Scene::parse(&text, "alike.toml", &Limits::default()).expect("sound");
+            let scene = parse(&text);
             let all: Vec<_> = (0..runs).collect();
             let picture = compose(&scene, &Runner::new(&scene, &all).frame(scene.last_frame()));
             let case = format!("{runs} runs in {size:?}");
@@ -363,14 +362,13 @@ fn strips_of_many_runs_name_their_curves() {
                 let named = scene.runs.iter().filter(|run| is_here(&run.name)).count();
                 assert!(named >= if runs < 10 { runs } else { 6 }, "{named} of {case}");
             }
-            let overlapping = super::words::overlapping(&picture);
-            assert_eq!(overlapping.map(|two| two.map(|word| word.text.clone())), None, "{case}");
+            assert_words_are_clear(&picture, &case);
         }
     }
 }
 
 #[test]
 fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
-    let scene = Scene::parse(&alike(64, "light"), "alike.toml", &Limits::default()).expect("sound");
+    let scene = parse(&alike(64, "light"));
     each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette)).collect::<Vec<_>>());
 }

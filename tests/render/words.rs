@@ -1,10 +1,10 @@
 //! Positions of texts: nowhere overlapping, and the same in every frame.
 
-use super::fig4b;
+use super::{all, assert_words_are_clear, fig4b, frame, parse};
 use localshape::look::Labels;
-use localshape::picture::{Composer, Mark, MarkShape, Picture, TextRun, compose};
+use localshape::picture::{Composer, Mark, MarkShape, Picture, compose};
 use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 
 /// All texts, in a scene that diverges, beside one that does not.
 const ALL: &str = r#"
@@ -39,10 +39,6 @@ colour = { by = 'strain' }
 spring_colour = {}
 "#;
 
-fn load(text: &str) -> Scene {
-    Scene::parse(text, "words.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// Scenes with all kinds of texts, at many sizes and in several layouts.
 fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
@@ -55,40 +51,17 @@ fn scenes() -> Vec<Scene> {
             let more = arrangements[(number + at) % 3];
             let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
             let text = ALL.replace("spring_colour = {}", colours);
-            scenes.push(load(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
+            scenes.push(parse(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
         }
     }
     scenes
 }
 
-/// Two lines of text whose boxes overlap.
-pub(crate) fn overlapping(picture: &Picture) -> Option<[&TextRun; 2]> {
-    let words = &picture.words;
-    for (at, one) in words.iter().enumerate() {
-        for other in &words[at + 1..] {
-            let [[a, b, c, d], [e, f, g, h]] = [one, other].map(TextRun::bounds);
-            if a < g && e < c && b < h && f < d {
-                return Some([one, other]);
-            }
-        }
-    }
-    None
-}
-
 #[test]
 fn no_words_overlap_and_none_leaves_the_picture() {
     for scene in scenes() {
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let picture = compose(&scene, &Runner::new(&scene, &runs).frame(scene.last_frame()));
-        if let Some([one, other]) = overlapping(&picture) {
-            panic!("“{}” lies over “{}” in {:?}", one.text, other.text, picture.size);
-        }
-        let [width, height] = picture.size.map(|length| length as f32);
-        for word in &picture.words {
-            let [left, top, right, bottom] = word.bounds();
-            let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
-            assert!(inside, "“{}” leaves the picture of {:?}", word.text, picture.size);
-        }
+        let picture = compose(&scene, &frame(&scene, scene.last_frame()));
+        assert_words_are_clear(&picture, &format!("{:?}", picture.size));
     }
 }
 
@@ -141,21 +114,13 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
                 let scales = format!("margin = {margin}\ntext_scale = {text_scale}\nline_scale = {line_scale}");
-                let mut scene = load(&format!("{}\n{strip}\n{shown}{scales}\n{view}\n", text.join("\n")));
+                let mut scene = parse(&format!("{}\n{strip}\n{shown}{scales}\n{view}\n", text.join("\n")));
                 // Any two of margin, view and size once at least.
                 for size in [sizes[(number + at) % 5], sizes[(number + at + 2) % 5]] {
                     scene.view.size = size;
                     let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
                     let place = format!("{size:?} with {scales} {strip} {view}");
-                    if let Some([one, other]) = overlapping(&picture) {
-                        panic!(
-                            "“{}” lies over “{}” in {place}: {:?} {:?}",
-                            one.text,
-                            other.text,
-                            one.bounds(),
-                            other.bounds()
-                        );
-                    }
+                    assert_words_are_clear(&picture, &place);
                     let arrow = key_arrow(&picture);
                     arrows += usize::from(arrow.is_some());
                     for word in &picture.words {
@@ -169,9 +134,6 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
                                 word.bounds()
                             );
                         }
-                        let [width, height] = size.map(|length| length as f32);
-                        let inside = left >= 0.0 && top >= 0.0 && right <= width && bottom <= height;
-                        assert!(inside, "“{}” leaves the picture of {place}: {:?}", word.text, word.bounds());
                     }
                 }
             }
@@ -182,7 +144,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_margin() {
 
 #[test]
 fn margins_move_everything_that_stands_on_them() {
-    let mut scene = load(&format!("{ALL}\nshow = ['springs', 'displacements']\nsize = [1920, 1080]\n"));
+    let mut scene = parse(&format!("{ALL}\nshow = ['springs', 'displacements']\nsize = [1920, 1080]\n"));
     let mut bounds = |margin: f64, word: &str| {
         scene.view.look.margin = margin;
         let picture = compose(&scene, &Runner::new(&scene, &[0, 1]).frame(3));
@@ -230,7 +192,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
         let text =
             ALL.replace("It is set in lines", &format!("{long}\\n{long} It is set in lines")).replace('\'', "\"");
         let text = format!("{text}\nsize = {size:?}\ntext_scale = {text_scale}\nshow = [\"springs\"]\n");
-        let mut scene = load(&text.replace(&long, &long[..900]));
+        let mut scene = parse(&text.replace(&long, &long[..900]));
         scene.view.spring_strain = None;
         let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
         let [top, bottom] = [0, 1].map(|end| {
@@ -239,11 +201,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
         });
         // Strips are within them, at most a third of their height.
         assert!(bottom - top >= 0.66 * 0.5 * picture.size[1] as f32 - 2.0, "{size:?} {text_scale}: {top} to {bottom}");
-        if let Some([one, other]) = overlapping(&picture) {
-            panic!("“{}” lies over “{}” in {size:?} at {text_scale}", one.text, other.text);
-        }
-        let lowest = picture.words.iter().map(|word| word.bounds()[3]).fold(0.0, f32::max);
-        assert!(lowest <= picture.size[1] as f32, "{lowest} in {size:?} at {text_scale}");
+        assert_words_are_clear(&picture, &format!("{size:?} at {text_scale}"));
     }
 }
 
@@ -251,7 +209,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
 fn the_scale_bar_stays_when_its_run_blows_up() {
     let text = ALL.replace("spring_colour = {}", "").replace("name = 'Local shape'", "name = 'Local'");
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
-    let scene = load(&text.replace("step = 0.005", "step = 0.02"));
+    let scene = parse(&text.replace("step = 0.005", "step = 0.02"));
     let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
     let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with(" m")).map(|word| word.span);
     let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
@@ -262,7 +220,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
 
 #[test]
 fn everything_is_written_where_there_is_room() {
-    let scene = load(&format!("{ALL}\nsize = [1920, 1080]\nshow = ['springs', 'displacements']\n"));
+    let scene = parse(&format!("{ALL}\nsize = [1920, 1080]\nshow = ['springs', 'displacements']\n"));
     let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(scene.last_frame()));
     let said: Vec<_> = picture.words.iter().map(|word| word.text.as_str()).collect();
     let expected = [
@@ -297,9 +255,8 @@ fn words_stay_where_they_are() {
             .replace("spring_colour = {}", ""),
         { super::plain().replace("camera = { follow = true }", "camera = { follow = 'body' }") },
     ] {
-        let scene = load(&text);
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &runs));
+        let scene = parse(&text);
+        let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &all(&scene)));
         let first = composer.compose(&runner.frame(0));
         for frame in 1..=scene.last_frame().min(60) {
             let picture = composer.compose(&runner.frame(frame));

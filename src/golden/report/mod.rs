@@ -1,6 +1,6 @@
 //! A comparison as one HTML file, which works offline.
 //!
-//! The page is made from `page.html`, `page.css`, `strip.js` and `page.js`. Its data and pictures are embedded as JSON; the
+//! The page is made from `page.html`, `page.css`, `strip.js` (charts) and `page.js` (viewer and list). Its data and pictures are embedded as JSON; the
 //! overall verdict is plain HTML, so that it can be read without scripts.
 
 use super::states::RunDifference;
@@ -14,70 +14,70 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = concat!(include_str!("strip.js"), include_str!("page.js"));
 
-/// The colours of a picture of differences: along silhouettes, elsewhere, and what differs too little to be seen.
+/// The colours of a picture of differences: along silhouettes, elsewhere, and for differences that are not visible.
 pub(super) const SILHOUETTE: [u8; 3] = [230, 159, 0];
 pub(super) const INTERIOR: [u8; 3] = [213, 60, 0];
 pub(super) const FAINT: [u8; 3] = [150, 196, 232];
 
-/// Everything that a page shows.
+/// The contents of a page.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What was compared, in a word or two: the name of a scene or folder.
+    /// The name of the scene or folder.
     pub title: String,
-    /// Where the expected pictures lie, as it was typed.
+    /// The path of the expected pictures, as typed.
     pub expected: String,
-    /// Where the actual pictures lie, as it was typed.
+    /// The path of the actual pictures, as typed.
     pub actual: String,
-    /// Whether nothing is wrong.
+    /// Whether everything is as expected.
     pub passes: bool,
-    /// What is said of the whole, in a few words: "state moved".
+    /// The overall verdict: "state moved".
     pub verdict: String,
-    /// Further sentences: what moved first, where and how far.
+    /// Further sentences: which run moved first, at which node and how far.
     pub findings: Vec<String>,
-    /// The command that would take what there is for what is expected; `None` if there is nothing to accept.
+    /// The command that accepts the actual pictures; `None` if there is nothing to accept.
     pub accept: Option<String>,
-    /// The graphics adapters that drew the expected and the actual pictures; `None` if the pictures do not say.
+    /// The graphics adapters that drew the expected and the actual pictures, if recorded.
     pub drawn_by: [Option<String>; 2],
     /// The runs whose states were compared; there may be none.
-    pub courses: Vec<RunDifference>,
+    pub runs: Vec<RunDifference>,
     /// The pictures in the order of the sequence.
     pub pictures: Vec<PicturePair>,
 }
 
-/// One picture beside the expected one.
+/// An actual picture and the expected one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PicturePair {
     /// Its file's name, or its path in the folder.
     pub name: String,
-    /// The frame that it shows; `None` if it does not say.
+    /// The frame that it shows, if recorded.
     pub frame: Option<u64>,
     /// That frame's time (s).
     pub time: Option<f64>,
     /// One of: `identical`; `same state, pixels within tolerance`; `same state, drawn differently`; `state moved`;
     /// `missing`; `extra`; `no state recorded`; `unreadable`.
     pub verdict: String,
-    /// What is said of it in a whole sentence, with the distance to the limit.
+    /// The verdict as a sentence, with the distance to the limit.
     pub words: String,
     /// Whether nothing is wrong with it.
     pub passes: bool,
-    /// How many of its pixels differ, of those of which most of what is allowed is used; `None` if they could not be compared.
+    /// The number of differing pixels, by the count nearest to its limit; `None` if they could not be compared.
     pub visible: Option<u64>,
-    /// How many may.
+    /// How many may differ.
     pub allowed: Option<u64>,
     /// Width and height (px).
     pub size: Option<[u32; 2]>,
-    /// The expected picture as a PNG file; `None` if it is not there or not to be shown.
+    /// The expected picture as a PNG file; `None` if it does not exist or is not embedded.
     #[serde(serialize_with = "address")]
     pub expected: Option<Vec<u8>>,
-    /// The actual picture as a PNG file; `None` if it is not there or not to be shown.
+    /// The actual picture as a PNG file; `None` if it does not exist or is not embedded.
     #[serde(serialize_with = "address")]
     pub actual: Option<Vec<u8>>,
-    /// A picture of where they differ as a PNG file; `None` if there is none or it is not to be shown.
+    /// A picture of their differences as a PNG file; `None` if there is none or it is not embedded.
     #[serde(serialize_with = "address")]
     pub difference: Option<Vec<u8>>,
 }
 
-/// A PNG file as an address that holds all of it.
+/// A PNG file as a data URL.
 fn address<S: Serializer>(file: &Option<Vec<u8>>, serializer: S) -> Result<S::Ok, S::Error> {
     let address = file.as_ref().map(|bytes| {
         let mut address = String::from("data:image/png;base64,");
@@ -112,12 +112,7 @@ impl Report {
                 ("verdict", &escaped(&self.verdict)),
                 (
                     "findings",
-                    // A number and its sign stay on one line.
-                    &self
-                        .findings
-                        .iter()
-                        .map(|text| format!("<p>{}</p>\n", escaped(text).replace(" %", "\u{a0}%")))
-                        .collect::<String>(),
+                    &self.findings.iter().map(|text| format!("<p>{}</p>\n", with_numbers(text))).collect::<String>(),
                 ),
                 ("sides", &self.sides()),
                 ("accept", &self.accept_box()),
@@ -129,7 +124,7 @@ impl Report {
         )
     }
 
-    /// Where the two sides lie, and what drew them.
+    /// The paths of both sides, and the adapters that drew them.
     fn sides(&self) -> String {
         let mut html = String::new();
         let paths = [("Expected", &self.expected), ("Actual", &self.actual)];
@@ -141,7 +136,7 @@ impl Report {
         html
     }
 
-    /// The command that accepts what there is, if there is one.
+    /// The command that accepts the actual side, if there is one.
     fn accept_box(&self) -> String {
         self.accept.as_ref().map_or_else(String::new, |command| {
             format!(
@@ -164,7 +159,7 @@ impl Report {
     }
 }
 
-/// What the colours of a picture of differences mean.
+/// The legend of a picture of differences.
 fn difference_key() -> String {
     let all = [
         (SILHOUETTE, "along silhouettes, lines and letters"),
@@ -194,6 +189,22 @@ fn filled(template: &str, parts: &[(&str, &str)]) -> String {
         left = after;
     }
     page + left
+}
+
+/// Text as HTML with an element around each number and its unit: browsers break lines before units, and even in `3.1e-4`.
+fn with_numbers(text: &str) -> String {
+    let is_unit = |word: &&str| ["%", "m", "s"].contains(&word.trim_end_matches([',', ';', ':', '.', ')']));
+    let mut words = text.split(' ').peekable();
+    let mut parts = Vec::new();
+    while let Some(word) = words.next() {
+        let is_number = word.trim_start_matches(['(', '−']).starts_with(|first: char| first.is_ascii_digit());
+        parts.push(match words.next_if(|next| is_number && is_unit(next)) {
+            Some(unit) => format!("<span class=\"number\">{} {}</span>", escaped(word), escaped(unit)),
+            None if is_number => format!("<span class=\"number\">{}</span>", escaped(word)),
+            None => escaped(word),
+        });
+    }
+    parts.join(" ")
 }
 
 /// Text escaped for HTML, between tags and in attributes.
@@ -235,7 +246,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_put_in_is_not_looked_at_again() {
+    fn numbers_are_marked_together_with_their_units() {
+        let number = |text: &str| format!("<span class=\"number\">{text}</span>");
+        let expected = format!("node {} by {}; < x", number("12"), number("3.1e-4 m"));
+        assert_eq!(with_numbers("node 12 by 3.1e-4 m; < x"), expected.replace("m</span>; <", "m;</span> &lt;"));
+    }
+
+    #[test]
+    fn inserted_text_is_not_searched_for_names() {
         assert_eq!(filled("a {{one}} {{two}} }}", &[("one", "{{two}}"), ("two", "{{")]), "a {{two}} {{ }}");
     }
 
@@ -246,11 +264,5 @@ mod tests {
         assert!(!json.contains(['<', '>', '&', '\u{2028}', '\u{2029}']), "{json}");
         assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), hostile);
         assert_eq!(escaped("<a b='\"&'>"), "&lt;a b=&#39;&quot;&amp;&#39;&gt;");
-    }
-
-    #[test]
-    fn the_template_names_what_is_put_in() {
-        let names: Vec<_> = PAGE.split("{{").skip(1).filter_map(|rest| rest.split("}}").next()).collect();
-        assert!(names.len() >= 14 && names.contains(&"data") && names.contains(&"script"), "{names:?}");
     }
 }
