@@ -3,7 +3,8 @@
 use super::body::{Body, ElementKind};
 use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
 use super::element;
-use super::lanes::{Lanes, MOST, Set, Work};
+use super::gather::Group;
+use super::lanes::{Lanes, Set, Work, each};
 use super::model::Report;
 use super::rotation::{self, moment};
 use super::snapshot::Placement;
@@ -165,46 +166,34 @@ struct Measure<'a> {
 impl Work for Measure<'_> {
     type Output = ();
 
-    /// Vectorised where as many consecutive elements as there are lanes have the same kind, else one by one; the bits
-    /// are the same.
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { body, position, first, volumes } = self;
-        let kinds = &body.kinds[first..][..volumes.len()];
-        let mut at = 0;
-        while at < kinds.len() {
-            let (kind, elements) = (kinds[at], first + at..first + at + L::WIDTH);
-            let is_block = kinds.get(at..at + L::WIDTH).is_some_and(|all| all.iter().all(|&one| one == kind));
+        let end = first + volumes.len();
+        let mut at = first;
+        while at < end {
+            let kind = body.kinds[at];
+            let (group, count) =
+                Group::take::<L>(at..end, |element| &body.elements[element], |element| body.kinds[element] == kind);
+            let volumes = &mut volumes[at - first..][..count];
             match kind {
-                ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => at += 1,
+                ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => {}
                 ElementKind::Polygon => {
-                    volumes[at] = volume_by_faces(kind, &body.elements[first + at], position);
-                    at += 1;
-                }
-                _ if is_block => {
-                    let mut arrays = [[[0.0; MOST]; 3]; 8];
-                    for (lane, element) in elements.enumerate() {
-                        let corners = corners(&body.elements[element], position);
-                        for (arrays, corner) in arrays.iter_mut().zip(corners) {
-                            for (array, value) in arrays.iter_mut().zip(corner) {
-                                array[lane] = value;
-                            }
-                        }
+                    for (volume, element) in volumes.iter_mut().zip(at..) {
+                        *volume = volume_by_faces(kind, &body.elements[element], position);
                     }
-                    let mut lanes = [[L::splat(0.0); 3]; 8];
-                    for (lanes, arrays) in lanes.iter_mut().zip(arrays) {
-                        for (lanes, array) in lanes.iter_mut().zip(arrays) {
-                            *lanes = L::from_array(array);
-                        }
-                    }
-                    volumes[at..at + L::WIDTH].copy_from_slice(&inside(kind, &lanes).to_array()[..L::WIDTH]);
-                    at += L::WIDTH;
                 }
                 _ => {
-                    volumes[at] = inside(kind, &corners(&body.elements[first + at], position));
-                    at += 1;
+                    let origin = group.vector::<L>(0, position);
+                    let mut corners = [[L::splat(0.0); 3]; 8];
+                    for (corner, relative) in corners[..group.corners()].iter_mut().enumerate() {
+                        let vector = group.vector::<L>(corner, position);
+                        *relative = each!(3, axis => vector[axis] - origin[axis]);
+                    }
+                    volumes.copy_from_slice(&inside(kind, &corners).to_array()[..count]);
                 }
             }
+            at += count;
         }
     }
 }
@@ -220,19 +209,12 @@ pub(crate) fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec
         let at = |node: u32| position[node as usize] - origin;
         return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
-    inside(kind, &corners(nodes, position))
-}
-
-/// The corners of an element (m), relative to the first one, to keep precision far from the origin. An element with a
-/// table of faces has at most eight.
-#[inline(always)]
-fn corners(nodes: &[u32], position: &[DVec3]) -> [[f64; 3]; 8] {
-    let origin = position[nodes[0] as usize];
+    // Relative to the first corner, for the same reason. An element with a table of faces has at most eight corners.
     let mut corners = [[0.0; 3]; 8];
     for (corner, &node) in corners.iter_mut().zip(nodes) {
-        *corner = (position[node as usize] - origin).to_array();
+        *corner = (position[node as usize] - position[nodes[0] as usize]).to_array();
     }
-    corners
+    inside(kind, &corners)
 }
 
 /// A scalar, or a vector of lanes.

@@ -2,6 +2,8 @@
 
 use super::body::{Body, bounds};
 use super::crew::Crew;
+use super::model::{Report, Share};
+use super::part::Part;
 use super::state::{Nodes, State};
 use super::system::{Surroundings, System};
 
@@ -22,6 +24,15 @@ pub(super) trait Dynamics: Send + Sync {
 
     /// Writes the state back, if it is kept elsewhere.
     fn settle(&mut self, _state: &mut State) {}
+
+    /// Energy and residuals of a part in a state that is settled. Calls `share`, if given, as [`ForceModel::report`]
+    /// does, which is the reference.
+    ///
+    /// [`ForceModel::report`]: super::model::ForceModel::report
+    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>) -> Report {
+        let memory = &state.memory.model[part.memory.clone()];
+        part.forces.report(part.nodes_of(state.nodes()), memory, share.unwrap_or(&mut |_, _, _| {}))
+    }
 
     /// The number of steps taken, which may be ahead of that of the state until [`Self::settle`] is called.
     fn steps(&self, state: &State) -> u64 {

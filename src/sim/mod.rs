@@ -11,6 +11,7 @@ pub(crate) mod diagnostics;
 mod dynamics;
 pub(crate) mod element;
 pub(crate) mod field;
+mod gather;
 pub(crate) mod grip;
 pub(crate) mod hull;
 pub(crate) mod integrate;

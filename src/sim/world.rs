@@ -8,7 +8,7 @@ use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator};
 use super::kernel::ByKernel;
-use super::model::{ElasticModel, Report, Share};
+use super::model::{ElasticModel, Report};
 use super::part::Part;
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
@@ -264,7 +264,7 @@ impl World {
     /// # Panics
     /// If there is no such part.
     pub(crate) fn report(&self, part: usize) -> Report {
-        self.report_with(&self.system.parts[part], &mut |_, _, _| {})
+        self.dynamics.report(&self.system.parts[part], &self.state, None)
     }
 
     /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
@@ -273,10 +273,6 @@ impl World {
     pub(crate) fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
         let part = &self.system.parts[0];
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
-    }
-
-    fn report_with(&self, part: &Part, share: &mut Share<'_>) -> Report {
-        part.forces.report(part.nodes_of(self.state.nodes()), &self.state.memory.model[part.memory.clone()], share)
     }
 
     /// The diagnostics of the first part in the present state, without copying positions and velocities.
@@ -303,12 +299,16 @@ impl World {
     pub(crate) fn snapshot_of(&self, part: usize) -> Snapshot {
         let part = &self.system.parts[part];
         let nodes = part.nodes_of(self.state.nodes());
-        let mut energies = vec![0.0; if self.field == Some(Field::ElasticEnergy) { part.body.len() } else { 0 }];
-        let report = self.report_with(part, &mut |_, nodes, shares| {
-            if !energies.is_empty() {
+        let mut energies = Vec::new();
+        let report = if self.field == Some(Field::ElasticEnergy) {
+            energies.resize(part.body.len(), 0.0);
+            let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
                 nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
-            }
-        });
+            };
+            self.dynamics.report(part, &self.state, Some(&mut share))
+        } else {
+            self.dynamics.report(part, &self.state, None)
+        };
         let (diagnostics, turned_over, placement) = part.diagnose.state(nodes, self.system.gravity, &report);
         let field = self.field.map_or_else(Vec::new, |field| field.values(&part.body, nodes, &placement, energies));
         Snapshot {

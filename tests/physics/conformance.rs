@@ -299,7 +299,7 @@ fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     let spring = mass_spring(&whole, STIFFNESS, 7.0, Springs::EdgesOneDiagonal);
     let elements: Vec<Vec<u32>> = whole.elements.iter().map(<[u32]>::to_vec).collect();
     let springs: Vec<Vec<u32>> = spring.springs.iter().map(|ends| ends.to_vec()).collect();
-    let pair = localshape::sim::model::mass_spring::MassSpring { springs: vec![[0, 1]], ..spring.clone() };
+    let pair = localshape::sim::model::mass_spring::MassSpring { springs: [[0, 1]].into(), ..spring.clone() };
     for (model, parts, alone) in
         [(&shape as &dyn ElasticModel, elements, &shape as &dyn ElasticModel), (&spring, springs, &pair)]
     {

@@ -2,6 +2,7 @@
 
 use super::general::{Constants, General};
 use super::lattice::{self, Lattice};
+use super::report::{Elastic, Energy};
 use super::springs::Stencil;
 use super::stepper::{Scheme, Stepper, Way};
 use super::{Around, Place, Rotation};
@@ -11,17 +12,20 @@ use crate::sim::crew::Crew;
 use crate::sim::dynamics::{Dynamics, Runaway, SpeedLimit};
 use crate::sim::integrate::Integrator;
 use crate::sim::lanes::Set;
-use crate::sim::model::Known;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{RotationReading, ShapeBased};
+use crate::sim::model::{Known, Report, Share};
+use crate::sim::part::Part;
 use crate::sim::state::{Memory, State};
 use crate::sim::system::System;
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A kernel that advances a simulation.
 pub(in crate::sim) struct ByKernel {
     way: Way,
+    energy: Energy,
     /// The memory of the constraints, while the kernel has the state.
     constraints: Option<Vec<f64>>,
     /// The margin (m) by which the bounds of obstacles are enlarged.
@@ -31,7 +35,7 @@ pub(in crate::sim) struct ByKernel {
 impl ByKernel {
     /// The kernel for a model on a body.
     pub(in crate::sim) fn new(
-        body: &Body,
+        body: &Arc<Body>,
         model: Known<'_>,
         integrator: Integrator,
         gravity: DVec3,
@@ -45,22 +49,40 @@ impl ByKernel {
             Integrator::ExplicitEuler => Scheme::ExplicitEuler,
             Integrator::VelocityVerlet => Scheme::VelocityVerlet,
         };
-        let stepper = match model {
-            Known::ShapeBased(model) => shape_based(body, model, scheme, gravity, step),
-            Known::MassSpring(model) => mass_spring(body, model, gravity, step),
+        let (stepper, stiffness, of) = match model {
+            Known::ShapeBased(model) => {
+                let rotation = rotation(body, model);
+                let stepper = shape_based(body, model, rotation, scheme, gravity, step);
+                (stepper, model.stiffness, Elastic::Elements(rotation))
+            }
+            Known::MassSpring(model) => {
+                let springs = Arc::clone(&model.springs);
+                (mass_spring(body, model, gravity, step), model.stiffness, Elastic::Springs(springs))
+            }
         };
-        Self { way: Way::new(stepper, scheme), constraints: None, margin: MARGIN * body.extent() }
+        let energy = Energy { set: Set::best(), body: Arc::clone(body), stiffness, of };
+        Self { way: Way::new(stepper, scheme), energy, constraints: None, margin: MARGIN * body.extent() }
     }
 }
 
-fn shape_based(body: &Body, model: &ShapeBased, scheme: Scheme, gravity: DVec3, step: f64) -> Box<dyn Stepper> {
-    let &ShapeBased { stiffness, damping, passes, rotation, .. } = model;
-    let rotation = match rotation {
+fn rotation(body: &Body, model: &ShapeBased) -> Rotation {
+    match model.rotation {
         // Eq. (9) is the optimum.
         _ if body.dimension == Dimension::Plane => Rotation::Optimum,
         RotationReading::Exact => Rotation::Optimum,
-        _ => Rotation::Arctangent { passes },
-    };
+        _ => Rotation::Arctangent { passes: model.passes },
+    }
+}
+
+fn shape_based(
+    body: &Body,
+    model: &ShapeBased,
+    rotation: Rotation,
+    scheme: Scheme,
+    gravity: DVec3,
+    step: f64,
+) -> Box<dyn Stepper> {
+    let &ShapeBased { stiffness, damping, .. } = model;
     let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
     if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best()) {
         return Box::new(lattice);
@@ -88,7 +110,7 @@ impl Dynamics for ByKernel {
     ) -> Result<(), Runaway> {
         /// Steps for which moving obstacles are placed at a time.
         const STRETCH: u64 = 256;
-        let Self { way, constraints, margin } = self;
+        let Self { way, constraints, margin, .. } = self;
         let constraints = constraints.get_or_insert_with(|| {
             way.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
@@ -155,6 +177,10 @@ impl Dynamics for ByKernel {
             integrator.clear();
             *steps = self.way.steps();
         }
+    }
+
+    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>) -> Report {
+        self.energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share)
     }
 
     fn steps(&self, state: &State) -> u64 {

@@ -11,6 +11,7 @@ pub(in crate::sim) mod general;
 pub(in crate::sim) mod lattice;
 mod memory;
 pub(in crate::sim) mod motion;
+mod report;
 mod rotation;
 pub(in crate::sim) mod springs;
 pub(in crate::sim) mod stepper;

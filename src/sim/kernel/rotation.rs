@@ -15,22 +15,31 @@ pub(super) type Matrix<L> = [[L; 3]; 3];
 
 /// A method that computes rotations in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements that are not `live` keep theirs.
-    /// Computes two vectors of elements at once: each is a long chain of dependent operations, which the processor
-    /// overlaps.
+    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements whose bit is not in `live` keep
+    /// theirs.
     ///
     /// `scale` is any number that makes the entries of `a` at rest about 1, such as `1 / Σ |R0|²`. The result depends
     /// on it in round-off only.
-    fn follow_two<L: Lanes>(
-        self,
-        a: [&Matrix<L>; 2],
-        scale: [L; 2],
-        last: [[L; 4]; 2],
-        live: [L::Mask; 2],
-    ) -> [[L; 4]; 2];
+    #[inline(always)]
+    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: u32) -> [L; 4] {
+        let (mut q, mut open) = (last, live);
+        for pass in 1..=self.passes() {
+            let ([x, y, z, s], sound, done) = self.pass(&turned_back(a, &matrix(q, scale)));
+            let (next, in_range) = turn(q, [x, y, z], s);
+            let sound = open & L::bits(L::both(sound, in_range));
+            let failed = open & !sound;
+            q = choose(L::mask(sound), next, q);
+            let late = if pass == self.passes() { sound & !L::bits(done) } else { 0 };
+            if failed | late != 0 {
+                q = self.go_on(a, scale, q, late, failed);
+            }
+            open = sound;
+        }
+        q
+    }
 
     /// The number of passes that most rotations need. A caller with many vectors calls [`Self::pass`] and [`turn`] so
-    /// often instead of [`Self::follow_two`].
+    /// often instead of [`Self::follow`].
     fn passes(self) -> u32;
 
     /// One pass for `b = RᵀA`. Returns the increment as a quaternion of any length, the lanes where it is valid as far
@@ -74,30 +83,6 @@ impl Solver for Arctangent {
     fn go_on<L: Lanes>(self, a: &Matrix<L>, _: L, q: [L; 4], _: u32, failed: u32) -> [L; 4] {
         global(a, q, failed)
     }
-
-    #[inline(always)]
-    fn follow_two<L: Lanes>(
-        self,
-        a: [&Matrix<L>; 2],
-        scale: [L; 2],
-        last: [[L; 4]; 2],
-        live: [L::Mask; 2],
-    ) -> [[L; 4]; 2] {
-        let mut q = last;
-        let mut open = [L::bits(live[0]), L::bits(live[1])];
-        for _ in 0..self.passes {
-            let b = each!(2, at => turned_back(a[at], &matrix(q[at], scale[at])));
-            let passes = each!(2, at => arctangent_pass(&b[at], q[at]));
-            let sound = each!(2, at => L::bits(L::both(is_well_posed(&b[at]), passes[at].1)));
-            let failed = [open[0] & !sound[0], open[1] & !sound[1]];
-            open = [open[0] & sound[0], open[1] & sound[1]];
-            q = each!(2, at => choose(L::mask(open[at]), passes[at].0, q[at]));
-            if failed[0] | failed[1] != 0 {
-                q = each!(2, at => if failed[at] == 0 { q[at] } else { global(a[at], q[at], failed[at]) });
-            }
-        }
-        q
-    }
 }
 
 impl Solver for Optimum {
@@ -128,35 +113,6 @@ impl Solver for Optimum {
         }
         if failed | open != 0 {
             q = global(a, q, failed | open);
-        }
-        q
-    }
-
-    #[inline(always)]
-    fn follow_two<L: Lanes>(
-        self,
-        a: [&Matrix<L>; 2],
-        scale: [L; 2],
-        last: [[L; 4]; 2],
-        live: [L::Mask; 2],
-    ) -> [[L; 4]; 2] {
-        let mut q = last;
-        let mut open = [L::bits(live[0]), L::bits(live[1])];
-        let mut failed = [0; 2];
-        for _ in 0..MOST_PASSES {
-            let passes = each!(2, at => optimum_pass(&turned_back(a[at], &matrix(q[at], scale[at])), q[at]));
-            let sound = each!(2, at => L::bits(passes[at].1));
-            failed = [failed[0] | open[0] & !sound[0], failed[1] | open[1] & !sound[1]];
-            open = [open[0] & sound[0], open[1] & sound[1]];
-            q = each!(2, at => choose(L::mask(open[at]), passes[at].0, q[at]));
-            open = each!(2, at => open[at] & !L::bits(passes[at].2));
-            if open[0] | open[1] == 0 {
-                break;
-            }
-        }
-        let failed = [failed[0] | open[0], failed[1] | open[1]];
-        if failed[0] | failed[1] != 0 {
-            q = each!(2, at => if failed[at] == 0 { q[at] } else { global(a[at], q[at], failed[at]) });
         }
         q
     }
@@ -204,7 +160,7 @@ fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
 
 /// The torque divided by `k` (m²), in the frame of the element.
 #[inline(always)]
-fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
+pub(super) fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
     [b[2][1] - b[1][2], b[0][2] - b[2][0], b[1][0] - b[0][1]]
 }
 
@@ -224,14 +180,8 @@ pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -
     (each!(4, part => product[part] * inverse), in_range)
 }
 
-/// One solution of Eq. (15), `C w = g` with `C = tr(B) I − Bᵀ`, and the rotation by `atan |w|` about it.
-#[inline(always)]
-fn arctangent_pass<L: Lanes>(b: &[[L; 3]; 3], q: [L; 4]) -> ([L; 4], L::Mask) {
-    let [x, y, z, s] = arctangent_turn(b);
-    turn(q, [x, y, z], s)
-}
-
-/// The increment as a quaternion of any length.
+/// One solution of Eq. (15), `C w = g` with `C = tr(B) I − Bᵀ`, and the rotation by `atan |w|` about it: the increment as
+/// a quaternion of any length.
 #[inline(always)]
 fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
     let g = axial(b);
@@ -266,6 +216,15 @@ fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
     let least = L::splat(WELL_POSED) * size;
     let (second, third) = (least * size, least * size * size);
     L::both(least.lt(hx), L::both(second.lt(minor), third.lt(determinant)))
+}
+
+/// Eq. (9): `(cos θ, sin θ)` from numbers proportional to it. Where both are zero all angles are equally good, and the
+/// last one is kept.
+#[inline(always)]
+pub(super) fn in_plane<L: Lanes>(turn: [L; 2], last: [L; 2]) -> [L; 2] {
+    let inverse = L::splat(1.0).div(turn[1].mul_add(turn[1], turn[0] * turn[0]).sqrt());
+    let is_sound = L::both(L::splat(0.0).lt(inverse), inverse.le(L::splat(f64::MAX)));
+    each!(2, entry => (turn[entry] * inverse).select(is_sound, last[entry]))
 }
 
 /// One pass of [`Optimum`], where it is valid, and where it is the last.
@@ -359,9 +318,7 @@ mod tests {
                 // The columns of `Σ R0 rᵀ` are the rows of `a`.
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
                 let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
-                let live = L::mask((1u32 << some.len()) - 1);
-                let [q, _] = self.0.follow_two([&a; 2], [L::splat(1.0); 2], [q; 2], [live; 2]);
-                let q = q.map(L::to_array);
+                let q = self.0.follow(&a, L::splat(1.0), q, (1 << some.len()) - 1).map(L::to_array);
                 found.extend((0..some.len()).map(|at| DQuat::from_array([0, 1, 2, 3].map(|part: usize| q[part][at]))));
             }
             found
@@ -510,10 +467,8 @@ mod tests {
                 let nan = [[L::splat(f64::NAN); 3]; 3];
                 let q = [0.5, -0.5, 0.1, 0.7].map(L::splat);
                 let one = L::splat(1.0);
-                let none = L::mask(0);
-                let (two, ones, still) = ([&nan; 2], [one; 2], [none; 2]);
-                let found = Optimum.follow_two(two, ones, [q; 2], still);
-                for found in found.into_iter().chain(Arctangent { passes: 2 }.follow_two(two, ones, [q; 2], still)) {
+                let found = [Optimum.follow(&nan, one, q, 0), Arctangent { passes: 2 }.follow(&nan, one, q, 0)];
+                for found in found {
                     assert_eq!(found.map(L::to_array), q.map(L::to_array));
                 }
             }

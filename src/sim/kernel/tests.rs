@@ -29,7 +29,7 @@ const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.0);
 const STEPS: u64 = 1000;
 
 /// Pseudo-random numbers from −1 to 1.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
@@ -41,7 +41,7 @@ impl Random {
         ((0.5 * self.next() + 0.5) * count as f64) as usize
     }
 
-    fn vector(&mut self, dimension: Dimension) -> DVec3 {
+    pub(super) fn vector(&mut self, dimension: Dimension) -> DVec3 {
         let [x, y, z] = [self.next(), self.next(), self.next()];
         DVec3::new(x, y, if dimension == Dimension::Plane { 0.0 } else { z })
     }
@@ -72,14 +72,14 @@ fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &m
 }
 
 /// A block of whole cells.
-fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
+pub(super) fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
     let random = &mut Random(seed);
     let (dimension, rest, corners) = block(cells, irregular, random);
     body(dimension, rest, corners.iter().map(|corners| &corners[..]).collect(), random)
 }
 
 /// As many elements as a block has cells, each with some of the corners of a cell; some nodes may belong to no element.
-fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
+pub(super) fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
     let random = &mut Random(seed);
     let (dimension, rest, corners) = block(cells, 0.2, random);
     let mut elements = IndexLists::default();
@@ -94,7 +94,7 @@ fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
 }
 
 /// Rotated, stretched and moving.
-fn start(body: &Body, seed: u64) -> State {
+pub(super) fn start(body: &Body, seed: u64) -> State {
     let random = &mut Random(seed);
     let turn = match body.dimension {
         Dimension::Plane => DMat3::from_cols_array(&[0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0]),
@@ -109,7 +109,7 @@ fn start(body: &Body, seed: u64) -> State {
 }
 
 /// The rotations of the elements at a state, with which the reference starts as well.
-fn rotations(body: &Body, state: &State) -> Vec<f64> {
+pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
     let mut memory = Vec::new();
     for nodes in body.elements.iter() {
         let relative = |places: &[DVec3]| -> Vec<DVec3> {
@@ -167,7 +167,7 @@ fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme:
     Moving::new(General::new(body, rotation, constants(damping), set), start, scheme, 1)
 }
 
-fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
+pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
     let (rotation, passes) = match rotation {
         Rotation::Arctangent { passes } => (RotationReading::Arctangent, passes),
         Rotation::Optimum => (RotationReading::Exact, 1),
@@ -226,7 +226,7 @@ fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, dampi
     assert!(far <= 1e-12, "{name}, {rotation:?}, D = {damping}, {scheme:?}: {far:e}");
 }
 
-const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
+pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
 
 #[test]
@@ -394,7 +394,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
 /// The kernel for families of springs, if there are families, and the general one.
 fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
     let start = start(body, 6);
-    let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.to_vec() };
+    let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.into() };
     for scheme in [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet] {
         let mut world = reference(body, &start, &model, scheme, Vec::new());
         world.advance(STEPS);
@@ -467,7 +467,7 @@ fn springs_in_several_slabs_step_like_the_reference() {
     let body = whole([19, 19, 23], 0.1, 20);
     let springs = body.topology().springs(Springs::EdgesOneDiagonal);
     let start = start(&body, 7);
-    let model = MassSpring { stiffness: STIFFNESS, damping: 10.0, springs: springs.clone() };
+    let model = MassSpring { stiffness: STIFFNESS, damping: 10.0, springs: springs[..].into() };
     let mut world = reference(&body, &start, &model, Scheme::SemiImplicitEuler, Vec::new());
     world.advance(50);
     let mut found: Option<State> = None;
@@ -519,7 +519,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
     let listed: Vec<[u32; 2]> = (0..60).map(|_| [random.below(30) as u32, 30 + random.below(30) as u32]).collect();
     let named = lattice.topology().springs(Springs::EdgesFaceDiagonals);
     for damping in [0.0, 10.0] {
-        let spring = |springs: &[[u32; 2]]| MassSpring { stiffness: STIFFNESS, damping, springs: springs.to_vec() };
+        let spring = |springs: &[[u32; 2]]| MassSpring { stiffness: STIFFNESS, damping, springs: springs.into() };
         let models: [(&Arc<Body>, Box<dyn ElasticModel>); 4] = [
             (&lattice, Box::new(shape_based(TWICE, damping))),
             (&any, Box::new(shape_based(Rotation::Optimum, damping))),

@@ -45,7 +45,7 @@ pub struct MassSpring {
     /// Damping constant `D_ij` of each spring (N s/m).
     pub(crate) damping: f64,
     /// The two nodes of each spring; the natural length is their distance at rest.
-    pub(crate) springs: Vec<[u32; 2]>,
+    pub(crate) springs: Arc<[[u32; 2]]>,
 }
 
 impl Parameters {
@@ -57,12 +57,10 @@ impl Parameters {
 
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        let mut springs = match (self.springs, listed) {
+        let springs = match (self.springs, listed) {
             (None, Some(listed)) => listed.to_vec(),
             (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
         };
-        // Duplicates were removed, so the capacity is several times the length.
-        springs.shrink_to_fit();
         if springs.is_empty() {
             let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
             let message = format!(
@@ -71,7 +69,7 @@ impl TypedModel for Parameters {
             return Err(Misfit { key: "springs", message });
         }
         let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
-        Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs }))
+        Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs: springs.into() }))
     }
 
     fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {

@@ -1,0 +1,175 @@
+//! One pass: the elements of a part and the motion of its nodes, then the motion of the nodes of several parts.
+
+use super::elements::Elements;
+use super::{Constants, General, Law, NONE, Place, RECORD, SUM, first_of};
+use crate::sim::kernel::motion::{Motion, Nodes, Stage};
+use crate::sim::kernel::rotation::{Arctangent, Optimum};
+use crate::sim::kernel::stepper::Pass;
+use crate::sim::kernel::{Around, Rotation};
+use crate::sim::lanes::{Lanes, MOST, Work, each};
+use std::ops::Range;
+
+/// The elements of a part, and the motion of the nodes of this part only.
+pub(super) struct OnePart<'a> {
+    pub(super) body: &'a General,
+    pub(super) part: usize,
+    pub(super) pass: Pass,
+    pub(super) around: Around<'a>,
+}
+
+impl Work for OnePart<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let part = &self.body.parts[self.part];
+        let Pass { stage, number, commit } = self.pass;
+        if stage != Stage::Coast {
+            for class in &part.classes {
+                let elements = Elements { part, class, constants: &self.body.constants, commit };
+                match (self.body.law, self.body.constants.damping > 0.0) {
+                    (Law::Plane, true) => elements.plane::<L, true>(),
+                    (Law::Plane, false) => elements.plane::<L, false>(),
+                    (Law::Space(Rotation::Arctangent { passes }), true) => {
+                        elements.space::<L, true>(Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Arctangent { passes }), false) => {
+                        elements.space::<L, false>(Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Optimum), true) => elements.space::<L, true>(Optimum),
+                    (Law::Space(Rotation::Optimum), false) => elements.space::<L, false>(Optimum),
+                    (Law::Spring, true) => elements.springs::<L, true>(),
+                    (Law::Spring, false) => elements.springs::<L, false>(),
+                }
+            }
+        }
+        let Constants { step, gravity, .. } = self.body.constants;
+        let motion = Motion::<L>::new(stage, step, gravity, number, self.around);
+        let own = Own { motion, stage, constants: &self.body.constants };
+        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let mut lost = NONE;
+        for first in (0..part.own * MOST).step_by(L::WIDTH) {
+            // SAFETY: these are records of the part, which is this thread's.
+            unsafe {
+                let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
+                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| part.index[first + lane]);
+            }
+        }
+        lost
+    }
+}
+
+/// The columns of sums, which are then set to zero.
+///
+/// # Safety
+/// The rows belong to this thread alone.
+#[inline(always)]
+unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let sums = L::columns_4(|lane| row(lane).cast_const());
+        for lane in 0..L::WIDTH {
+            *row(lane).cast::<[f64; SUM]>() = [0.0; SUM];
+        }
+        sums
+    }
+}
+
+/// The motion of nodes by their records.
+struct Own<'a, L> {
+    motion: Motion<'a, L>,
+    stage: Stage,
+    constants: &'a Constants,
+}
+
+impl<L: Lanes> Own<'_, L> {
+    /// Moves a vector of nodes by the forces of their elements, to which `−w` of the nodes is added.
+    ///
+    /// # Safety
+    /// Records and accelerations belong to this thread alone.
+    #[inline(always)]
+    unsafe fn advance(&self, record: impl Fn(usize) -> *mut f64, sum: [L; 3], accelerations: *mut f64) -> u32 {
+        // SAFETY: the caller's.
+        unsafe {
+            let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
+            let (k, d) = (L::splat(self.constants.stiffness), L::splat(self.constants.damping));
+            let (k, d) = (k * valence, d * valence);
+            let (position, velocity) = ([px, py, pz], [vx, vy, vz]);
+            let force: [L; 3] =
+                each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
+            let mut acceleration = [L::splat(0.0); 3];
+            if self.stage.is_verlet() {
+                acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
+            }
+            let mut nodes = Nodes { position, velocity, acceleration };
+            let lost = self.motion.advance(&mut nodes, force, inverse_mass);
+            if self.stage.is_verlet() {
+                each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
+            }
+            let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);
+            L::put_rows([px, py, vx, vy, pz, vz, inverse_mass, valence], record);
+            lost
+        }
+    }
+}
+
+/// The motion of the nodes that belong to several parts.
+pub(super) struct SharedNodes<'a> {
+    pub(super) body: &'a General,
+    pub(super) blocks: Range<usize>,
+    pub(super) pass: Pass,
+    pub(super) around: Around<'a>,
+}
+
+impl Work for SharedNodes<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Self { body: General { shared, parts, constants, .. }, blocks, pass, around } = self;
+        let Pass { stage, number, .. } = pass;
+        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
+        let own = Own { motion, stage, constants };
+        let mut lost = NONE;
+        for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
+            let places = |lane: usize| {
+                &shared.places[shared.starts[first + lane] as usize..shared.starts[first + lane + 1] as usize]
+            };
+            let mut records = [[0.0; RECORD]; MOST];
+            let mut sums = [[0.0; SUM]; MOST];
+            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are.
+            unsafe {
+                let record = |place: &Place| {
+                    parts[place.part as usize]
+                        .records
+                        .pointer()
+                        .add(place.record as usize * RECORD)
+                        .cast::<[f64; RECORD]>()
+                };
+                for lane in 0..L::WIDTH {
+                    let places = places(lane);
+                    if let Some(place) = places.first() {
+                        records[lane] = *record(place);
+                    }
+                    for place in places {
+                        let part = &parts[place.part as usize];
+                        let row = &mut *part.sums.pointer().add(place.record as usize * SUM).cast::<[f64; SUM]>();
+                        sums[lane].iter_mut().zip(&*row).for_each(|(sum, value)| *sum += value);
+                        *row = [0.0; SUM];
+                    }
+                }
+                let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
+                let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let rows = records.as_mut_ptr();
+                let lanes = own.advance(|lane| rows.add(lane).cast(), [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| shared.index[first + lane]);
+                for (lane, moved) in records.iter().enumerate().take(L::WIDTH) {
+                    places(lane).iter().for_each(|place| *record(place) = *moved);
+                }
+            }
+        }
+        lost
+    }
+}

@@ -1,0 +1,350 @@
+//! Elastic energy and residuals in lanes: what [`ForceModel::report`](crate::sim::model::ForceModel::report) computes,
+//! up to round-off.
+//!
+//! Lanes are consecutive elements with the same number of corners, or consecutive springs. Nothing is stored from one
+//! report to the next: shapes at rest are those of the body. Sums run within chunks and then over chunks, in order, so
+//! they are the same for every width and number of threads.
+
+use super::Rotation;
+use super::rotation::{self, Matrix, Solver, axial, matrix, turned_back};
+use crate::sim::body::{Body, Dimension};
+use crate::sim::gather::Group;
+use crate::sim::lanes::{Lanes, MOST, Set, Work, each};
+use crate::sim::model::{Report, Share};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Elements or springs in one task of a thread.
+const CHUNK: usize = 1024;
+
+/// What has elastic energy.
+pub(in crate::sim) enum Elastic {
+    /// The elements, with Eq. (4). In the plane the rotation is that of Eq. (9).
+    Elements(Rotation),
+    /// These springs, with Eq. (1).
+    Springs(Arc<[[u32; 2]]>),
+}
+
+/// The energy of a body.
+pub(in crate::sim) struct Energy {
+    pub(in crate::sim) set: Set,
+    pub(in crate::sim) body: Arc<Body>,
+    /// `k` (N/m).
+    pub(in crate::sim) stiffness: f64,
+    pub(in crate::sim) of: Elastic,
+}
+
+impl Energy {
+    /// Energy and residuals with the nodes at `position` (m) and this memory of the model. Calls `share`, if given, for
+    /// each element or spring, in order.
+    pub(in crate::sim) fn report(&self, position: &[DVec3], memory: &[f64], share: Option<&mut Share<'_>>) -> Report {
+        let count = match &self.of {
+            Elastic::Elements(_) => self.body.elements.len(),
+            Elastic::Springs(springs) => springs.len(),
+        };
+        let range = |chunk: usize| chunk * CHUNK..count.min((chunk + 1) * CHUNK);
+        let with_shares = share.is_some();
+        let measure = |chunk: usize| {
+            let chunk = Chunk { energy: self, position, memory, range: range(chunk), with_shares };
+            self.set.run(chunk)
+        };
+        let found: Vec<Found> = (0..count.div_ceil(CHUNK)).into_par_iter().map(measure).collect();
+        if let Some(share) = share {
+            for (chunk, Found { shares, .. }) in found.iter().enumerate() {
+                let mut rest = &shares[..];
+                for at in range(chunk) {
+                    let nodes = self.nodes_of(at);
+                    let (own, others) = rest.split_at(nodes.len());
+                    share(at, nodes, own);
+                    rest = others;
+                }
+            }
+        }
+        let energy = found.iter().map(|chunk| chunk.energy).sum();
+        let residual = found.iter().fold(0.0, |most: f64, chunk| most.max(chunk.residual));
+        let residuals = match self.of {
+            Elastic::Elements(_) => vec![(Report::ROTATION, residual)],
+            Elastic::Springs(_) => Vec::new(),
+        };
+        Report { energy: Some(energy), residuals }
+    }
+
+    #[inline(always)]
+    fn nodes_of(&self, at: usize) -> &[u32] {
+        match &self.of {
+            Elastic::Elements(_) => &self.body.elements[at],
+            Elastic::Springs(springs) => &springs[at],
+        }
+    }
+}
+
+/// Consecutive elements or springs.
+struct Chunk<'a> {
+    energy: &'a Energy,
+    position: &'a [DVec3],
+    memory: &'a [f64],
+    range: Range<usize>,
+    with_shares: bool,
+}
+
+/// What a chunk has.
+#[derive(Default)]
+struct Found {
+    /// (J)
+    energy: f64,
+    /// The largest α of Eq. (18) (rad/s²).
+    residual: f64,
+    /// The energy of each corner (J), if requested.
+    shares: Vec<f64>,
+}
+
+impl Work for Chunk<'_> {
+    type Output = Found;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Found {
+        match self.energy.of {
+            Elastic::Elements(rotation) => self.elements::<L>(rotation),
+            Elastic::Springs(_) => self.springs::<L>(),
+        }
+    }
+}
+
+impl Chunk<'_> {
+    #[inline(always)]
+    fn elements<L: Lanes>(self, rotation: Rotation) -> Found {
+        let Self { energy: Energy { body, stiffness, .. }, position, memory, range, with_shares } = self;
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let (k, half_k) = (L::splat(*stiffness), L::splat(0.5 * stiffness));
+        // `R0` and `r` of each corner, and its energy.
+        let (mut shape, mut now, mut shares) = (Vec::new(), Vec::new(), Vec::new());
+        let mut found = Found::default();
+        let mut at = range.start;
+        while at < range.end {
+            let corners = body.elements[at].len();
+            let (group, count) = Group::take::<L>(
+                at..range.end,
+                |element| &body.elements[element],
+                |element| body.elements[element].len() == corners,
+            );
+            group.centred::<L>(&body.rest, &mut shape);
+            group.centred::<L>(position, &mut now);
+            let (mut a, mut squares, mut inertia) = ([[zero; 3]; 3], zero, zero);
+            for corner in 0..corners {
+                let (rest, r) = (shape[corner], now[corner]);
+                a = each!(3, column => each!(3, row => r[row].mul_add(rest[column], a[column][row])));
+                let squared = square(rest);
+                squares = squares + squared;
+                inertia = group.number::<L>(corner, &body.mass).mul_add(squared, inertia);
+            }
+            let last = |width: usize, entry: usize| {
+                let mut array = [0.0; MOST];
+                for lane in 0..L::WIDTH {
+                    array[lane] = memory[(at + lane.min(count - 1)) * width + entry];
+                }
+                array
+            };
+            let m = match body.dimension {
+                Dimension::Plane => in_plane(&a, each!(2, entry => L::from_array(last(2, entry)))),
+                Dimension::Space => {
+                    let last = each!(4, entry => L::from_array(last(4, entry)));
+                    let scale = one.div(squares).select(zero.lt(squares), one);
+                    let turn = match rotation {
+                        Rotation::Arctangent { passes } => {
+                            rotation::Arctangent { passes }.follow(&a, scale, last, L::ALL)
+                        }
+                        Rotation::Optimum => rotation::Optimum.follow(&a, scale, last, L::ALL),
+                    };
+                    matrix(turn, one)
+                }
+            };
+            let mut energy = zero;
+            shares.clear();
+            for corner in 0..corners {
+                let ([x, y, z], r) = (shape[corner], now[corner]);
+                let displacement = each!(3, row =>
+                    r[row] - z.mul_add(m[2][row], y.mul_add(m[1][row], x * m[0][row])));
+                let share = half_k * square(displacement);
+                energy = energy + share;
+                if with_shares {
+                    shares.push(share.to_array());
+                }
+            }
+            let torque = axial(&turned_back(&a, &m));
+            let alpha = (k * square(torque).sqrt()).div(inertia).to_array();
+            let energy = energy.to_array();
+            for lane in 0..count {
+                found.energy += energy[lane];
+                found.residual = found.residual.max(alpha[lane]);
+                found.shares.extend(shares.iter().map(|share| share[lane]));
+            }
+            at += count;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn springs<L: Lanes>(self) -> Found {
+        let Self { energy, position, range, with_shares, .. } = self;
+        let half_k = L::splat(0.5 * energy.stiffness);
+        let mut found = Found::default();
+        let mut at = range.start;
+        while at < range.end {
+            let (group, count) = Group::take::<L>(at..range.end, |spring| energy.nodes_of(spring), |_| true);
+            let stretch = length::<L>(&group, position) - length::<L>(&group, &energy.body.rest);
+            let whole = (half_k * stretch * stretch).to_array();
+            for &whole in &whole[..count] {
+                found.energy += whole;
+                if with_shares {
+                    found.shares.extend([0.5 * whole; 2]);
+                }
+            }
+            at += count;
+        }
+        found
+    }
+}
+
+#[inline(always)]
+fn square<L: Lanes>([x, y, z]: [L; 3]) -> L {
+    z.mul_add(z, y.mul_add(y, x * x))
+}
+
+/// The distance of the two nodes of each spring.
+#[inline(always)]
+fn length<L: Lanes>(group: &Group<'_>, values: &[DVec3]) -> L {
+    let (from, to) = (group.vector::<L>(0, values), group.vector::<L>(1, values));
+    square(each!(3, axis => to[axis] - from[axis])).sqrt()
+}
+
+/// Eq. (8) with the angle of Eq. (9).
+#[inline(always)]
+fn in_plane<L: Lanes>(a: &Matrix<L>, last: [L; 2]) -> Matrix<L> {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let [cosine, sine] = rotation::in_plane([a[0][0] + a[1][1], a[0][1] - a[1][0]], last);
+    [[cosine, sine, zero], [-sine, cosine, zero], [zero, zero, one]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Random, TWICE, pieces, rotations, shape_based, start, whole};
+    use super::*;
+    use crate::sim::model::ElasticModel;
+    use crate::sim::model::mass_spring::MassSpring;
+    use crate::sim::state::Nodes;
+    use crate::sim::topology::Springs;
+
+    /// What was shared: the nodes of each element or spring, with their energies (J).
+    type Shares = Vec<(Vec<u32>, Vec<f64>)>;
+
+    fn with_shares(report: impl FnOnce(&mut Share<'_>) -> Report) -> (Report, Shares) {
+        let mut shares = Shares::new();
+        let report = report(&mut |at, nodes, own| {
+            assert_eq!(at, shares.len());
+            shares.push((nodes.to_vec(), own.to_vec()));
+        });
+        (report, shares)
+    }
+
+    /// The reports of the vectorised code, with the same bits for every set and number of threads, and of the
+    /// reference.
+    fn reports(
+        energy: &mut Energy,
+        model: &dyn ElasticModel,
+        position: &[DVec3],
+        memory: &[f64],
+    ) -> [(Report, Shares); 2] {
+        let mut found = None;
+        for (set, threads) in Set::all().flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+            energy.set = set;
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let here = pool.install(|| with_shares(|share| energy.report(position, memory, Some(share))));
+            let without = pool.install(|| energy.report(position, memory, None));
+            assert_eq!(here.0, without);
+            assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
+            found = Some(here);
+        }
+        let still = vec![DVec3::ZERO; position.len()];
+        let at = Nodes { position, velocity: &still };
+        [found.expect("some set"), with_shares(|share| model.prepare(&energy.body).report(at, memory, share))]
+    }
+
+    fn assert_near(name: &str, [found, expected]: [(Report, Shares); 2], largest_alpha: f64, is_unique: bool) {
+        let [energy, reference] = [&found, &expected].map(|all| all.0.energy.expect("an energy"));
+        assert!((energy - reference).abs() <= 1e-12 * reference, "{name}: {energy} instead of {reference}");
+        assert_eq!(found.0.residuals.len(), expected.0.residuals.len());
+        for (found, expected) in found.0.residuals.iter().zip(&expected.0.residuals) {
+            assert_eq!(found.0, expected.0);
+            assert!((found.1 - expected.1).abs() <= 1e-12 * largest_alpha, "{name}: {found:?} instead of {expected:?}");
+        }
+        assert_eq!(found.1.len(), expected.1.len());
+        let whole: f64 = found.1.iter().flat_map(|(_, shares)| shares).sum();
+        assert!((whole - energy).abs() <= 1e-12 * energy, "{name}");
+        for ((nodes, shares), (own, expected)) in found.1.iter().zip(&expected.1) {
+            assert_eq!(nodes, own);
+            let largest = expected.iter().fold(0.0, |most: f64, share| most.max(*share));
+            let far = shares.iter().zip(expected).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            // Where several rotations are optimal, round-off may select another one.
+            assert!(far <= 1e-12 * largest || !is_unique, "{name}: {shares:?} instead of {expected:?}");
+        }
+    }
+
+    /// The angular acceleration (rad/s²) that the largest possible torque would cause.
+    fn largest_alpha(body: &Body, stiffness: f64, position: &[DVec3]) -> f64 {
+        let largest = |nodes: &[u32]| {
+            let arms = |places: &[DVec3]| -> Vec<f64> {
+                let mean = nodes.iter().map(|&node| places[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+                nodes.iter().map(|&node| places[node as usize].distance(mean)).collect()
+            };
+            let (rest, now) = (arms(&body.rest), arms(position));
+            let inertia: f64 = nodes.iter().zip(&rest).map(|(&node, r)| body.mass[node as usize] * r * r).sum();
+            stiffness * rest.iter().zip(&now).map(|(rest, now)| rest * now).sum::<f64>() / inertia
+        };
+        body.elements.iter().map(largest).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn energies_and_residuals_are_those_of_the_reference() {
+        let crushes = [DVec3::new(1.0, 1.0, -1.0), DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 0.0), DVec3::ZERO];
+        let mut bodies = vec![("a block", whole([11, 12, 10], 0.1, 1)), ("squares", whole([9, 3, 0], 0.1, 2))];
+        for corners in 2..9 {
+            bodies.push(("one kind", pieces([4, 3, 3], &[corners], corners as u64)));
+        }
+        bodies.push(("anything", pieces([5, 4, 4], &[2, 3, 4, 5, 6, 7, 8], 9)));
+        bodies.push(("anything flat", pieces([7, 5, 0], &[3, 4], 10)));
+        bodies.push(("one tetrahedron", pieces([1, 1, 1], &[4], 11)));
+        for (name, body) in &bodies {
+            let springs: Arc<[[u32; 2]]> = body.topology().springs(Springs::All).into();
+            for crush in [None].into_iter().chain(crushes.map(Some)) {
+                let mut state = start(body, 3);
+                let memory = rotations(body, &state);
+                let random = &mut Random(4);
+                state.position.iter_mut().for_each(|place| *place += random.vector(body.dimension) * 0.002);
+                // Some elements among others are turned inside out, flattened or collapsed to a line or a point.
+                for nodes in crush.into_iter().flat_map(|_| body.elements.iter().step_by(5)) {
+                    let middle = state.position[nodes[0] as usize];
+                    for &node in nodes {
+                        let place = &mut state.position[node as usize];
+                        *place = middle + (*place - middle) * crush.unwrap_or(DVec3::ONE);
+                    }
+                }
+                let position = &state.position;
+                let name = format!("{name}, {} corners, {crush:?}", body.elements[0].len());
+                for rotation in [Rotation::Optimum, TWICE] {
+                    let (model, of) = (shape_based(rotation, 0.0), Elastic::Elements(rotation));
+                    let stiffness = model.stiffness();
+                    let mut energy = Energy { set: Set::best(), body: Arc::clone(body), stiffness, of };
+                    let both = reports(&mut energy, &model, position, &memory);
+                    let name = format!("{name}, {rotation:?}");
+                    assert_near(&name, both, largest_alpha(body, stiffness, position), crush.is_none());
+                }
+                let model = MassSpring { stiffness: 1e4, damping: 0.0, springs: Arc::clone(&springs) };
+                let of = Elastic::Springs(Arc::clone(&springs));
+                let mut energy = Energy { set: Set::best(), body: Arc::clone(body), stiffness: 1e4, of };
+                assert_near(&name, reports(&mut energy, &model, position, &[]), 0.0, true);
+            }
+        }
+    }
+}
