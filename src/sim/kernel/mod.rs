@@ -1,4 +1,5 @@
-//! Vectorised steps. Their reference is the code of [`model`](super::model) and [`integrate`](super::integrate).
+//! Vectorised steps and energies. Their reference is the code of [`model`](super::model) and
+//! [`integrate`](super::integrate).
 //!
 //! A kernel keeps positions, velocities and rotations in its own arrays, takes any number of steps, and writes the
 //! state back when it is read. Its results have the same bits for every vector set and every number of threads.

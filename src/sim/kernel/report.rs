@@ -282,9 +282,9 @@ mod tests {
         assert_eq!(found.1.len(), expected.1.len());
         let whole: f64 = found.1.iter().flat_map(|(_, shares)| shares).sum();
         assert!((whole - energy).abs() <= 1e-12 * energy, "{name}");
+        let largest = expected.1.iter().flat_map(|(_, shares)| shares).fold(0.0, |most: f64, share| most.max(*share));
         for ((nodes, shares), (own, expected)) in found.1.iter().zip(&expected.1) {
             assert_eq!(nodes, own);
-            let largest = expected.iter().fold(0.0, |most: f64, share| most.max(*share));
             let far = shares.iter().zip(expected).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
             // Where several rotations are optimal, round-off may select another one.
             assert!(far <= 1e-12 * largest || !is_unique, "{name}: {shares:?} instead of {expected:?}");

@@ -24,22 +24,29 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
     fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: u32) -> [L; 4] {
         let (mut q, mut open) = (last, live);
         for pass in 1..=self.passes() {
-            let ([x, y, z, s], sound, done) = self.pass(&turned_back(a, &matrix(q, scale)));
-            let (next, in_range) = turn(q, [x, y, z], s);
-            let sound = open & L::bits(L::both(sound, in_range));
-            let failed = open & !sound;
-            q = choose(L::mask(sound), next, q);
-            let late = if pass == self.passes() { sound & !L::bits(done) } else { 0 };
-            if failed | late != 0 {
-                q = self.go_on(a, scale, q, late, failed);
-            }
-            open = sound;
+            (q, open) = self.step(a, scale, q, open, pass == self.passes());
         }
         q
     }
 
-    /// The number of passes that most rotations need. A caller with many vectors calls [`Self::pass`] and [`turn`] so
-    /// often instead of [`Self::follow`].
+    /// One pass of [`Self::follow`] from rotations `q`, in the lanes that are `open`. Returns the lanes that are open in
+    /// the next pass, too. A caller with several vectors computes each pass for all of them before the next one: a pass
+    /// is a long chain of dependent operations, and the processor overlaps those of several vectors.
+    #[inline(always)]
+    fn step<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, is_last: bool) -> ([L; 4], u32) {
+        let ([x, y, z, s], sound, done) = self.pass(&turned_back(a, &matrix(q, scale)));
+        let (next, in_range) = turn(q, [x, y, z], s);
+        let sound = open & L::bits(L::both(sound, in_range));
+        let failed = open & !sound;
+        let mut q = choose(L::mask(sound), next, q);
+        let late = if is_last { sound & !L::bits(done) } else { 0 };
+        if failed | late != 0 {
+            q = self.go_on(a, scale, q, late, failed);
+        }
+        (q, sound)
+    }
+
+    /// The number of passes that most rotations need.
     fn passes(self) -> u32;
 
     /// One pass for `b = RᵀA`. Returns the increment as a quaternion of any length, the lanes where it is valid as far

@@ -176,6 +176,10 @@ impl Way {
         let (first, steps) = (steps.start, steps.end - steps.start);
         let passes = Passes { scheme: *scheme, is_damped, is_held: around.grips.is_some(), first, steps };
         let Some(grips) = around.grips else { return stepper.run(passes, 0..passes.len(), around, crew) };
+        // In the second half of velocity Verlet the speed test comes before the grips, in the reference after them: here
+        // it is part of the pass, which does not know the nodes that are held. So a node that is held is tested with
+        // the velocity that its forces would give it. The limit is many times any speed of a run that does not diverge,
+        // so that this decides only in which step a run stops that does.
         (0..passes.len()).find_map(|pass| {
             let lost = stepper.run(passes, pass..pass + 1, around, crew);
             grips(passes.get(pass).number, &mut |node, position, velocity| {

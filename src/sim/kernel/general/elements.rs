@@ -28,9 +28,13 @@ unsafe fn sum_of(sums: *mut f64, record: u32) -> *mut f64 {
     unsafe { sums.cast::<f32>().add(record as usize).cast() }
 }
 
-/// What the elements of a block add to all their corners: `w̄` and `k M`, lane by lane.
+/// What the elements of a block add to all their corners, lane by lane: in space `w̄` and `k M`, and behind them the
+/// rotations between two passes.
 #[repr(C, align(64))]
-struct Block([[f64; MOST]; 12]);
+struct Block<const ROWS: usize>([[f64; MOST]; ROWS]);
+
+/// Where these rotations are.
+const TURN: usize = 12;
 
 impl Elements<'_> {
     /// Eq. (4) in space.
@@ -44,7 +48,7 @@ impl Elements<'_> {
         let d_mean = L::splat(constants.damping / corners as f64);
         let zero = L::splat(0.0);
         let blocks = class.elements.len().div_ceil(MOST);
-        let mut batch = [const { Block([[0.0; MOST]; 12]) }; BATCH];
+        let mut batch = [const { Block([[0.0; MOST]; TURN + 4]) }; BATCH];
         for begin in (0..blocks).step_by(BATCH) {
             let batch = &mut batch[..BATCH.min(blocks - begin)];
             // SAFETY: the arrays have an entry for each block, corner, coordinate and lane; the records named are the
@@ -86,21 +90,35 @@ impl Elements<'_> {
                         }
                     }
                 }
-                for (block, out) in (begin..).zip(&mut *batch) {
-                    for lanes in (0..MOST).step_by(L::WIDTH) {
-                        let out = out.0.as_mut_ptr().cast::<f64>().add(lanes);
-                        let turns = class.turns.pointer().add(block * 4 * MOST + lanes);
-                        let a = each!(3, axis => each!(3, row => L::load(out.add((3 + 3 * axis + row) * MOST))));
-                        let last = each!(4, entry => L::load(turns.add(entry * MOST)));
-                        let live = (1 << class.elements.len().saturating_sub(block * MOST + lanes).min(L::WIDTH)) - 1;
-                        let scale = L::load(class.scale.pointer().add(block * MOST + lanes));
-                        let turn = solver.follow(&a, scale, last, live);
-                        if commit {
-                            each!(4, entry => turn[entry].store(turns.add(entry * MOST)));
+                let passes = solver.passes();
+                let mut open = [[0; MOST]; BATCH];
+                for pass in 1..=passes {
+                    for (block, (out, open)) in (begin..).zip(batch.iter_mut().zip(&mut open)) {
+                        for lanes in (0..MOST).step_by(L::WIDTH) {
+                            let out = out.0.as_mut_ptr().cast::<f64>().add(lanes);
+                            let turns = class.turns.pointer().add(block * 4 * MOST + lanes);
+                            let a = each!(3, axis => each!(3, row => L::load(out.add((3 + 3 * axis + row) * MOST))));
+                            let scale = L::load(class.scale.pointer().add(block * MOST + lanes));
+                            let last = if pass == 1 {
+                                let left = class.elements.len().saturating_sub(block * MOST + lanes);
+                                open[lanes] = (1 << left.min(L::WIDTH)) - 1;
+                                each!(4, entry => L::load(turns.add(entry * MOST)))
+                            } else {
+                                each!(4, entry => L::load(out.add((TURN + entry) * MOST)))
+                            };
+                            let (turn, next) = solver.step(&a, scale, last, open[lanes], pass == passes);
+                            if pass < passes {
+                                open[lanes] = next;
+                                each!(4, entry => turn[entry].store(out.add((TURN + entry) * MOST)));
+                                continue;
+                            }
+                            if commit {
+                                each!(4, entry => turn[entry].store(turns.add(entry * MOST)));
+                            }
+                            let matrix = rotation::matrix(turn, k);
+                            each!(3, axis => each!(3, row =>
+                                matrix[axis][row].store(out.add((3 + 3 * axis + row) * MOST))));
                         }
-                        let matrix = rotation::matrix(turn, k);
-                        each!(3, axis => each!(3, row =>
-                            matrix[axis][row].store(out.add((3 + 3 * axis + row) * MOST))));
                     }
                 }
                 for (block, out) in (begin..).zip(&*batch) {
@@ -158,7 +176,7 @@ impl Elements<'_> {
         let d_mean = L::splat(constants.damping / corners as f64);
         let zero = L::splat(0.0);
         for block in 0..class.elements.len().div_ceil(MOST) {
-            let mut out = Block([[0.0; MOST]; 12]);
+            let mut out = Block([[0.0; MOST]; 4]);
             // SAFETY: as in space.
             unsafe {
                 let nodes = class.nodes.as_ptr().add(block * corners * MOST);
@@ -219,7 +237,7 @@ impl Elements<'_> {
         let (k, d) = (L::splat(constants.stiffness), L::splat(constants.damping));
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         for block in 0..class.elements.len().div_ceil(MOST) {
-            let mut out = Block([[0.0; MOST]; 12]);
+            let mut out = Block([[0.0; MOST]; 3]);
             // SAFETY: as in space.
             unsafe {
                 let nodes = class.nodes.as_ptr().add(block * 2 * MOST);

@@ -4,30 +4,16 @@ use super::*;
 use crate::sim::body::{IndexLists, Solids};
 use crate::sim::contact::{self, Bound, Obstacle, Shape};
 use crate::sim::dynamics::Runaway;
-use crate::sim::integrate::Integrator;
 use crate::sim::kernel::stepper::Way;
-use crate::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use crate::sim::rotation::{davenport1968, moment};
+use crate::sim::kernel::tests::{FREE, Random, rotations, shape_based, stepped_by_reference};
+use crate::sim::model::shape_based::ShapeBased;
 use crate::sim::state::State;
-use crate::sim::world::{Kernel, Stepping, Surroundings, World};
+use crate::sim::world::Surroundings;
 use glam::DQuat;
 use std::sync::Arc;
 
 const STEP: f64 = 1e-3;
 const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.1);
-
-/// Pseudo-random numbers from −1 to 1.
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-fn vector(random: &mut impl FnMut() -> f64) -> DVec3 {
-    DVec3::new(random(), random(), random())
-}
 
 fn lattice(cells: [usize; 3], sides: DVec3) -> Arc<Body> {
     let grid = Grid { cells, sides };
@@ -48,28 +34,20 @@ fn lattice(cells: [usize; 3], sides: DVec3) -> Arc<Body> {
 
 /// Rotated, stretched, randomly displaced and moving, close above the floor.
 fn start(body: &Body, shake: f64) -> State {
-    let mut random = random(7);
+    let mut random = Random(7);
     let turn = DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize();
     let spin = DVec3::new(0.5, 2.0, -1.0);
     let side = (body.rest[1] - body.rest[0]).length();
     let position: Vec<_> = body
         .rest
         .iter()
-        .map(|&rest| turn * (rest * DVec3::new(1.05, 0.97, 1.0)) + vector(&mut random) * (shake * side) + DVec3::Y)
+        .map(|&rest| {
+            turn * (rest * DVec3::new(1.05, 0.97, 1.0)) + random.vector(Dimension::Space) * (shake * side) + DVec3::Y
+        })
         .collect();
-    let velocity = position.iter().map(|&at| spin.cross(at) + vector(&mut random) * 0.1 - DVec3::Y).collect();
+    let velocity =
+        position.iter().map(|&at| spin.cross(at) + random.vector(Dimension::Space) * 0.1 - DVec3::Y).collect();
     State::new(position, velocity)
-}
-
-fn turns(body: &Body, state: &State) -> Vec<f64> {
-    let turn = |nodes: &[u32]| {
-        let relative = |of: &[DVec3]| -> Vec<DVec3> {
-            let mean = nodes.iter().map(|&node| of[node as usize]).sum::<DVec3>() / 8.0;
-            nodes.iter().map(|&node| of[node as usize] - mean).collect()
-        };
-        davenport1968::optimum(moment(&relative(&body.rest), relative(&state.position)), DQuat::IDENTITY).to_array()
-    };
-    body.elements.iter().flat_map(turn).collect()
 }
 
 fn parameters(damping: f64, rotation: Rotation) -> Parameters {
@@ -100,7 +78,7 @@ fn run_by(
     set: Set,
     [calls, steps]: [u64; 2],
 ) -> (State, Vec<f64>) {
-    let (mut way, mut memory) = (way(body, parameters, scheme, set), turns(body, state));
+    let (mut way, mut memory) = (way(body, parameters, scheme, set), rotations(body, state));
     way.load(0, &state.position, &state.velocity, &memory);
     let floor = floor();
     let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
@@ -113,34 +91,14 @@ fn run_by(
     (state, memory)
 }
 
-/// No obstacle.
-const FREE: Around<'_> =
-    Around { bounds: &[], row: &|_| 0..0, resolve: &|_, _, _, _| {}, floor: None, grips: None, speed_limit: &|_| 1e6 };
-
 fn way(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Way {
     Way::new(Box::new(Lattice::new(body, parameters, scheme, set).expect("a lattice")), scheme)
 }
 
 fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
-    let (passes, rotation) = match parameters.rotation {
-        Rotation::Arctangent { passes } => (passes, RotationReading::Arctangent),
-        Rotation::Optimum => (1, RotationReading::Exact),
-    };
-    let model = ShapeBased {
-        stiffness: parameters.stiffness,
-        damping: parameters.damping,
-        passes,
-        rotation,
-        damping_of: DampingReading::RelativeMotion,
-    };
-    let surroundings = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
-    let integrator = match scheme {
-        Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
-        Scheme::ExplicitEuler => Integrator::ExplicitEuler,
-        Scheme::VelocityVerlet => Integrator::VelocityVerlet,
-    };
-    let plain = Stepping { integrator, step: STEP, kernel: Kernel::Reference };
-    let mut world = World::new(body, state.clone(), &model, surroundings, plain);
+    let model = ShapeBased { stiffness: parameters.stiffness, ..shape_based(parameters.rotation, parameters.damping) };
+    let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
+    let mut world = stepped_by_reference(body, state, &model, scheme, around, STEP);
     world.advance(steps);
     assert_eq!(world.steps(), steps);
     world.state().clone()
@@ -170,8 +128,8 @@ fn steps_are_those_of_the_reference() {
             {
                 let parameters = parameters(damping, rotation);
                 for scheme in SCHEMES {
-                    // A rebound in velocity Verlet takes the square root of a difference, which loses half of the
-                    // digits.
+                    // In velocity Verlet a node that barely leaves the floor does so with the root of a small difference:
+                    // whatever the formula, errors from before are divided by that speed. Here nothing rebounds.
                     let mut state = state.clone();
                     if scheme == Scheme::VelocityVerlet {
                         state.velocity.iter_mut().for_each(|velocity| velocity.y += 9.0);
@@ -194,7 +152,7 @@ fn rebounds_in_velocity_verlet_are_those_of_the_reference() {
         let (found, _) = run_by(1, Scheme::VelocityVerlet, &body, &state, parameters, Set::best(), [8, 50]);
         let reference = reference(Scheme::VelocityVerlet, &body, &state, parameters, 400);
         assert!(reference.velocity.iter().any(|velocity| velocity.y > 1.0), "some have rebounded");
-        assert!(distance(&reference, &found) < 1e-11, "{}", distance(&reference, &found));
+        assert!(distance(&reference, &found) < 1e-12, "{}", distance(&reference, &found));
     }
 }
 
@@ -236,7 +194,7 @@ fn before_a_runaway_the_state_is_that_of_the_step_before() {
     // Far beyond the limit of stability.
     let parameters = Parameters { step: 0.3, ..parameters(0.0, Rotation::Optimum) };
     let around = Around { speed_limit: &|step| 1e6 + step as f64, ..FREE };
-    let memory = turns(&body, &state);
+    let memory = rotations(&body, &state);
     for scheme in SCHEMES {
         let make = || {
             let mut way = way(&body, parameters, scheme, Set::best());
@@ -273,7 +231,7 @@ fn what_is_no_number_is_lost_at_once() {
     let state = start(&body, 0.0);
     let parameters = parameters(0.1, Rotation::Optimum);
     let mut way = way(&body, parameters, Scheme::SemiImplicitEuler, Set::best());
-    way.load(0, &state.position, &state.velocity, &turns(&body, &state));
+    way.load(0, &state.position, &state.velocity, &rotations(&body, &state));
     way.stepper.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
     assert!(matches!(way.advance(3, &FREE, &mut Crew::new(1)), Err(Runaway { .. })) && way.steps() == 0);
     assert!(way.stepper.node(17).0.y.is_nan() && way.stepper.node(0) == (state.position[0], state.velocity[0]));

@@ -16,7 +16,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Executes some of the passes: see [`Stepper::run`](super::Stepper::run). Uses at most as many threads of the crew as there are planes of boxes along z.
+/// Executes some of the passes; see [`Stepper::run`](super::Stepper::run). Uses at most as many threads of the crew as
+/// there are planes of boxes along z.
 pub(super) fn run(
     lattice: &mut Lattice,
     passes: Passes,

@@ -1,0 +1,96 @@
+//! The kernels for springs, in families and others.
+
+use super::*;
+
+/// The kernel for families of springs, if there are families, and the general one.
+fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
+    let start = start(body, 6);
+    let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.into() };
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet] {
+        let mut world = reference(body, &start, &model, scheme, Vec::new());
+        world.advance(STEPS);
+        let (mut by_families, mut gathered): (Option<State>, Option<State>) = (None, None);
+        for set in Set::all() {
+            let same = |found: &mut Option<State>, here: State| {
+                assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} has other bits");
+                let far = distance(&here, world.state());
+                assert!(far <= 1e-12, "{} springs, {scheme:?}, {set:?}: {far:e}", springs.len());
+                *found = Some(here);
+            };
+            let stencil = Stencil::new(springs, &body.rest, &body.mass, constants(damping), set);
+            assert_eq!(stencil.is_some(), families, "{} springs", springs.len());
+            let whole = (start.clone(), Vec::new());
+            let run = |kernel: Moving| {
+                let mut kernel = kernel;
+                assert_eq!(kernel.advance(STEPS, FREE), Ok(()));
+                kernel.stored(&whole).0
+            };
+            if let Some(stencil) = stencil {
+                same(&mut by_families, run(Moving::new(stencil, &whole, scheme, 1)));
+            }
+            let kernel = General::springs(body, springs, constants(damping), set);
+            same(&mut gathered, run(Moving::new(kernel, &whole, scheme, 1)));
+        }
+    }
+}
+
+#[test]
+fn springs_step_like_the_reference() {
+    for damping in [0.0, 10.0] {
+        for cells in [[3, 4, 2], [1, 1, 1], [7, 1, 3], [9, 5, 0]] {
+            let body = whole(cells, 0.1, 16);
+            for named in [Springs::Edges, Springs::EdgesOneDiagonal, Springs::All] {
+                assert_springs_step_like_the_reference(&body, &body.topology().springs(named), damping, true);
+            }
+        }
+        // All lengths equal; and one spring twice.
+        let body = whole([4, 4, 4], 0.0, 17);
+        let mut springs = body.topology().springs(Springs::EdgesFaceDiagonals);
+        springs.push([springs[0][1], springs[0][0]]);
+        assert_springs_step_like_the_reference(&body, &springs, damping, true);
+        assert_springs_step_like_the_reference(&body, &[[9, 4]], damping, true);
+        let random = &mut Random(18);
+        let springs: Vec<[u32; 2]> = (0..90).map(|_| [random.below(62) as u32, 62 + random.below(62) as u32]).collect();
+        assert_springs_step_like_the_reference(&body, &springs, damping, false);
+    }
+}
+
+#[test]
+fn a_spring_between_coincident_nodes_does_nothing() {
+    let body = whole([4, 1, 1], 0.0, 19);
+    let springs = body.topology().springs(Springs::Edges);
+    let start = State::at_rest(vec![DVec3::ONE; body.len()]);
+    for set in Set::all() {
+        let free = Constants { gravity: DVec3::ZERO, ..constants(10.0) };
+        let start = (start.clone(), Vec::new());
+        let stencil = Stencil::new(&springs, &body.rest, &body.mass, free, set).expect("a lattice");
+        let kernel = General::springs(&body, &springs, free, set);
+        for mut kernel in [Moving::new(stencil, &start, SEMI, 1), Moving::new(kernel, &start, SEMI, 1)] {
+            assert_eq!(kernel.advance(9, FREE), Ok(()));
+            assert_eq!(kernel.stored(&start), start);
+        }
+    }
+}
+
+/// Slabs, each with nodes that are moved after all others.
+#[test]
+fn springs_in_several_slabs_step_like_the_reference() {
+    let body = whole([19, 19, 23], 0.1, 20);
+    let springs = body.topology().springs(Springs::EdgesOneDiagonal);
+    let start = start(&body, 7);
+    let model = MassSpring { stiffness: STIFFNESS, damping: 10.0, springs: springs[..].into() };
+    let mut world = reference(&body, &start, &model, Scheme::SemiImplicitEuler, Vec::new());
+    world.advance(50);
+    let mut found: Option<State> = None;
+    for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+        let stencil = Stencil::new(&springs, &body.rest, &body.mass, constants(10.0), set).expect("a lattice");
+        let whole = (start.clone(), Vec::new());
+        let mut kernel = Moving::new(stencil, &whole, SEMI, threads);
+        assert_eq!(kernel.advance(50, FREE), Ok(()));
+        let end = kernel.stored(&whole).0;
+        assert!(found.as_ref().is_none_or(|found| *found == end), "{set:?} on {threads} threads has other bits");
+        found = Some(end);
+    }
+    let far = distance(&found.expect("some set"), world.state());
+    assert!(far <= 1e-12, "{far:e}");
+}

@@ -1,0 +1,152 @@
+//! Obstacles, grips and the speed limit, with all kernels.
+
+use super::*;
+
+#[test]
+fn nodes_rebound_as_in_the_reference() {
+    let body = pieces([4, 3, 4], &[4, 8], 14);
+    let mut start = start(&body, 4);
+    start.velocity.iter_mut().for_each(|velocity| velocity.y -= 3.0);
+    let start = (start.clone(), rotations(&body, &start));
+    let floor = Obstacle {
+        shape: Shape::Floor { normal: DVec3::Y, height: 0.45 },
+        motion: Motion::Still,
+        pivot: DVec3::ZERO,
+        restitution: 0.5,
+        friction: 0.3,
+    };
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+        let model = shape_based(TWICE, 10.0);
+        let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
+        world.advance(300);
+        let resolve = |_: u64, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
+            floor.at(STEP, STEP).rebound(position, velocity, acceleration);
+        };
+        for bound in [
+            Bound::HalfSpace { normal: DVec3::Y, height: 0.46 },
+            Bound::Box { low: DVec3::splat(-9.0), high: DVec3::new(9.0, 0.47, 9.0) },
+        ] {
+            for set in Set::all() {
+                let mut kernel = general(&body, &start, TWICE, 10.0, scheme, set);
+                let around = Around { bounds: &[bound], row: &|_| 0..1, resolve: &resolve, ..FREE };
+                assert_eq!(kernel.advance(300, around), Ok(()));
+                let far = distance(&kernel.stored(&start).0, world.state());
+                assert!(far <= 1e-12, "{scheme:?}: {far:e}");
+            }
+        }
+    }
+}
+
+/// The step in which a node becomes too fast is rejected and those before are kept, for any division into calls.
+#[test]
+fn a_runaway_leaves_the_state_before_its_step() {
+    let body = pieces([4, 3, 4], &[4, 8], 15);
+    let start = start(&body, 5);
+    let start = (start.clone(), rotations(&body, &start));
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+        for damping in [0.0, 10.0] {
+            let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
+            let mut one_by_one = make();
+            // It falls, and becomes too fast at some time.
+            let limit = 8.0;
+            let around = Around { speed_limit: &|_| limit, ..FREE };
+            let taken = (0..10_000).take_while(|_| one_by_one.advance(1, around).is_ok()).count() as u64;
+            assert!(taken > 40 && taken < 9_999, "{taken}");
+            let mut at_once = make();
+            let runaway = at_once.advance(10_000, around).expect_err("it falls");
+            assert_eq!(at_once.0.steps(), taken);
+            assert_eq!(at_once.stored(&start), one_by_one.stored(&start));
+            // Without a limit the same node is the first to exceed it.
+            let mut free = make();
+            assert_eq!(free.advance(taken + 1, FREE), Ok(()));
+            let speeds = free.stored(&start).0.velocity;
+            assert_eq!(
+                speeds.iter().position(|speed| speed.length() > limit),
+                Some(runaway.node),
+                "{scheme:?} {damping}"
+            );
+        }
+    }
+    let mut kernel = general(&body, &start, TWICE, 0.0, SEMI, Set::best());
+    kernel.0.stepper.set_node(7, DVec3::NAN, DVec3::ZERO);
+    assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
+}
+
+/// Grips that become active and inactive, and moving obstacles, with every scheme and kernel: a lattice, any elements,
+/// springs in families and others.
+#[test]
+fn what_holds_and_moves_is_that_of_the_reference() {
+    let offset = |x: f64, turn: f64| Offset { shift: DVec3::new(x, 0.02, 0.0), rotation: DVec3::Z * turn };
+    let keys = [(0.0, 0.0, 0.0), (0.1, 0.03, 0.2), (0.15, 0.01, 0.1)];
+    let keys = keys.map(|(time, x, turn)| Key { time, offset: offset(x, turn) }).to_vec();
+    let dragging = Motion::Keys { keys, ease: Ease::Smooth, repeat: false };
+    let grip = |nodes: &[u32], from: f64, until: f64, motion: &Motion| Grip {
+        nodes: nodes.to_vec(),
+        from,
+        until,
+        motion: motion.clone(),
+    };
+    let still = Motion::Still;
+    let grips = vec![
+        grip(&[0, 3], 0.0, f64::INFINITY, &dragging),
+        grip(&[17], 0.0101, 0.05, &still),
+        grip(&[17, 11], 0.11, 0.12, &dragging),
+    ];
+    let some_time = vec![grip(&[5, 12], 0.02, 0.03, &dragging)];
+    // It moves with the nodes and pushes them.
+    let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: offset(0.3, 0.4) };
+    let paddle = Obstacle {
+        shape: Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 },
+        motion: swing,
+        pivot: DVec3::ZERO,
+        restitution: 0.0,
+        friction: 0.0,
+    };
+    let random = &mut Random(21);
+    let (lattice, any) = (whole([4, 2, 3], 0.0, 22), pieces([3, 2, 2], &[4, 6, 8], 23));
+    let listed: Vec<[u32; 2]> = (0..60).map(|_| [random.below(30) as u32, 30 + random.below(30) as u32]).collect();
+    let named = lattice.topology().springs(Springs::EdgesFaceDiagonals);
+    for damping in [0.0, 10.0] {
+        let spring = |springs: &[[u32; 2]]| MassSpring { stiffness: STIFFNESS, damping, springs: springs.into() };
+        let models: [(&Arc<Body>, Box<dyn ElasticModel>); 4] = [
+            (&lattice, Box::new(shape_based(TWICE, damping))),
+            (&any, Box::new(shape_based(Rotation::Optimum, damping))),
+            (&lattice, Box::new(spring(&named))),
+            (&lattice, Box::new(spring(&listed))),
+        ];
+        for (body, model) in models {
+            for integrator in [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet] {
+                // Without damping its energy grows without bound.
+                if integrator == Integrator::ExplicitEuler && damping == 0.0 {
+                    continue;
+                }
+                for (grips, obstacles) in [(&grips, vec![]), (&some_time, vec![paddle.clone()])] {
+                    let world = |kernel, obstacles: &[Obstacle]| {
+                        let (obstacles, grips) = (obstacles.to_vec(), grips.clone());
+                        let around = Surroundings { gravity: GRAVITY, obstacles, grips };
+                        let stepping = Stepping { integrator, step: STEP, kernel };
+                        World::new(body, start(body, 8), model.as_ref(), around, stepping)
+                    };
+                    let [mut fast, mut plain] =
+                        [Kernel::Fast, Kernel::Reference].map(|kernel| world(kernel, &obstacles));
+                    fast.advance(STEPS);
+                    plain.advance(STEPS);
+                    let far = distance(fast.state(), plain.state());
+                    let name = format!("{integrator:?} {damping} {} {model:?}", obstacles.len());
+                    assert!(far <= 1e-12, "{far:e} {name}");
+                    assert!(fast.state().memory.constraints.iter().any(|&gripped| gripped != 0.0));
+                    let mut cut = world(Kernel::Fast, &obstacles);
+                    for steps in [1, 49, 1, 33, 466, 1, STEPS - 551] {
+                        cut.advance(steps);
+                    }
+                    assert!(cut.state() == fast.state(), "cut: {name}");
+                    if !obstacles.is_empty() {
+                        let mut free = world(Kernel::Fast, &[]);
+                        free.advance(STEPS);
+                        assert!(distance(fast.state(), free.state()) > 1e-3, "touched: {name}");
+                    }
+                }
+            }
+        }
+    }
+}
