@@ -14,8 +14,8 @@ const CASES: [(&str, &str, u64); 5] = [
     ("", "kind = 'shape-based'", 294),
     ("", "kind = 'shape-based', rotation = 'arctangent'", 420),
     ("", "kind = 'mass-spring', springs = 'all'", 348),
-    (", irregular = 0.2", "kind = 'shape-based'", 454),
-    (", elements = 'tetrahedra'", "kind = 'shape-based'", 262),
+    (", irregular = 0.2", "kind = 'shape-based'", 424),
+    (", elements = 'tetrahedra'", "kind = 'shape-based'", 243),
 ];
 
 fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
