@@ -64,8 +64,8 @@ pub(super) fn run_all(
         }
         let path = job.folder.path().to_owned();
         let mut blank = if number > 0 { "\n" } else { "" };
-        if let Some(earlier) = job.folder.earlier().filter(|_| options.telling.is_in_words()) {
-            console::print(&format!("{blank}{}: replacing {earlier}\n", path.display()))?;
+        if let Some(replaced) = job.folder.replaced().filter(|_| options.telling.is_in_words()) {
+            console::print(&format!("{blank}{}: replacing {replaced}\n", path.display()))?;
             blank = "";
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
@@ -98,7 +98,7 @@ fn record(
 ) -> Result<(), Failure> {
     let Job { scene, runs, frames, folder } = job;
     let begin = || -> Result<_, Failure> {
-        let folder = folder.prepare(options.states)?;
+        let folder = folder.prepare()?;
         let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };

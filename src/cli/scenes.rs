@@ -3,7 +3,7 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Folder, Look, OutputError, Replace};
+use crate::output::{Folder, Plan, OutputError, Replace};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
 use std::collections::HashMap;
@@ -84,8 +84,9 @@ impl RunOptions {
             let runs = self.runs(&scene)?;
             let frames = self.frames(&scene)?;
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
-            let look = pictures.then_some(Look { size: scene.view.size, runs: names });
-            let folder = Folder::inspect(&path, &scene, look, self.replace()).map_err(|error| match error {
+            let size = pictures.then_some(scene.view.size);
+            let plan = Plan { runs: names, frames: frames.clone(), states: self.states, size };
+            let folder = Folder::inspect(&path, &scene, plan, self.replace()).map_err(|error| match error {
                 OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", overwriting(words))),
                 error => error.into(),
             })?;
@@ -99,7 +100,7 @@ impl RunOptions {
     fn replace(&self) -> Replace {
         match (self.overwrite, &self.out) {
             (true, _) => Replace::All,
-            (false, None) => Replace::Earlier,
+            (false, None) => Replace::Own,
             (false, Some(_)) => Replace::Nothing,
         }
     }

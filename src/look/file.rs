@@ -39,9 +39,10 @@ pub(crate) struct ViewFile {
     /// narrower than a quarter of that times `text_scale`, so that texts do not touch.
     #[schemars(range(min = 0.0, max = 2.0))]
     pub(crate) margin: f64,
-    /// The words below the time, which say since when it counts.
+    /// The words below the time, which say since when it counts. Default: `after release`; in scenes with `hold` or `grab`
+    /// `after the start`.
     #[schemars(length(max = 80))]
-    pub(crate) clock: String,
+    pub(crate) clock: Option<String>,
     /// Number of panels in a row. Default: all runs, up to 3. Not together with `panels`.
     #[schemars(range(min = 1, max = 64))]
     pub(crate) columns: Option<u32>,
@@ -118,7 +119,7 @@ impl Default for ViewFile {
             text_scale: 1.0,
             line_scale: 1.0,
             margin: 1.0,
-            clock: "after release".into(),
+            clock: None,
             columns: None,
             panels: None,
             show: None,

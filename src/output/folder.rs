@@ -4,6 +4,8 @@ use super::atomic::remove;
 use super::error::kind_of;
 use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_tags};
 use crate::scene::Scene;
+use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -37,22 +39,26 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
     Ok(frames)
 }
 
-/// The properties that all frames of a sequence share.
+/// What a command writes into the folder of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Look {
-    /// Width and height (px).
-    pub size: [u32; 2],
-    /// Names of the runs drawn, in the scene's order.
+pub(crate) struct Plan {
+    /// Names of the runs, in the scene's order.
     pub runs: Vec<String>,
+    /// Numbers of the frames, rising.
+    pub frames: Vec<u64>,
+    /// Whether states are written.
+    pub states: bool,
+    /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
+    pub size: Option<[u32; 2]>,
 }
 
-/// Which files in a folder may be replaced, in addition to those of the same scene.
+/// Which files in a folder may be replaced, in addition to those that are made again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Replace {
     /// None.
     Nothing,
-    /// Those of earlier versions of the same scene file.
-    Earlier,
+    /// Tables of the same scene, and all results of earlier versions of its file.
+    Own,
     /// All that have the names of output files.
     All,
 }
@@ -62,10 +68,10 @@ pub(crate) enum Replace {
 pub(crate) struct Folder {
     path: PathBuf,
     scene: Whose,
-    look: Option<Look>,
+    plan: Plan,
     replace: Replace,
-    /// The results of an earlier version of the scene file that are replaced, in words.
-    earlier: Option<String>,
+    /// What is replaced although the command does not make it again, in words.
+    replaced: Option<String>,
 }
 
 /// Identifies the scene to which results belong.
@@ -81,31 +87,33 @@ impl Folder {
     ///
     /// A folder with results of another scene, or with other files that have the names of output files, is refused
     /// unless `replace` permits their replacement. Something that has such a name but is not a file, such as a folder,
-    /// is always refused. Results of the same scene are allowed: they are replaced one by one, and its other frames are
-    /// kept, so that a scene can be drawn in parts. But if frames are to be drawn, the existing ones must have the same
-    /// `look`, so that the folder has one sequence. A folder to which another process writes is always refused.
+    /// is always refused. Results of the same scene are replaced one by one, and its other frames are kept, so that a
+    /// scene can be drawn in parts. But the existing frames must have the size and runs of new ones, so that the folder
+    /// has one sequence; and unless `replace` permits it, the tables must not have rows or states that the `plan` lacks.
+    /// A folder to which another process writes is always refused.
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
     pub(crate) fn inspect(
         path: &Path,
         scene: &Scene,
-        look: Option<Look>,
+        plan: Plan,
         replace: Replace,
     ) -> Result<Self, OutputError> {
         let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
-        let mut folder = Self { path: path.to_owned(), scene, look, replace, earlier: None };
+        let mut folder = Self { path: path.to_owned(), scene, plan, replace, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
-            folder.earlier = folder.find()?.earlier();
+            let found = folder.find()?;
+            folder.replaced = found.earlier().or(found.lost);
         }
         Ok(folder)
     }
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let found = Found::in_folder(&self.path, &self.scene, self.look.as_ref())?;
-        match found.describe(self.replace == Replace::Earlier) {
+        let found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        match found.describe(self.replace == Replace::Own) {
             Some(what) if self.replace != Replace::All => Err(OutputError::Occupied { path: self.path.clone(), what }),
             _ => Ok(found),
         }
@@ -116,25 +124,25 @@ impl Folder {
         &self.path
     }
 
-    /// The replaced results of an earlier version of the scene file, in words: `31 frames made by an earlier version of
+    /// What is replaced although the command does not make it again, in words: `31 frames made by an earlier version of
     /// sag.toml`.
-    pub(crate) fn earlier(&self) -> Option<&str> {
-        self.earlier.as_deref()
+    pub(crate) fn replaced(&self) -> Option<&str> {
+        self.replaced.as_deref()
     }
 
     /// Creates the folder if necessary, locks it, and removes leftovers of killed processes and the results of another
-    /// scene. Unless new `states` are written, earlier ones are removed, too, as they would not match the diagnostics.
+    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics.
     ///
     /// # Errors
     /// If the folder cannot be created or written to; and the errors of [`Self::inspect`], which is repeated because
     /// the folder may have changed before it was locked.
-    pub(crate) fn prepare(self, states: bool) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone(&self.path)?;
         let found = self.find()?;
         // The summary is removed last: until then it identifies the owner of the other files.
         let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
-        for path in stale.iter().chain(found.states.iter().filter(|_| !states)) {
+        for path in stale.iter().chain(found.states.iter().filter(|_| !self.plan.states)) {
             remove(path)?;
         }
         Ok(Claimed { path: self.path, _lock: lock })
@@ -155,12 +163,36 @@ impl Claimed {
     }
 }
 
-impl Look {
-    fn describe(&self) -> String {
-        let [width, height] = self.size;
-        let runs: Vec<_> = self.runs.iter().map(|run| format!("“{run}”")).collect();
-        format!("{width}×{height} pixels with {}", runs.join(", "))
+impl Plan {
+    /// What the diagnostics and states of the same scene at these paths have that the plan does not make again, in words.
+    fn lacks(&self, diagnostics: &Path, states: Option<&PathBuf>) -> Option<String> {
+        // A table that cannot be read has nothing to lose.
+        let rows = csv::Reader::from_path(diagnostics).into_iter().flat_map(csv::Reader::into_deserialize);
+        let rows: Vec<(String, u64)> = rows.filter_map(Result::ok).map(|Row { run, frame }| (run, frame)).collect();
+        let lost: BTreeSet<u64> = rows
+            .iter()
+            .filter(|(run, frame)| !self.runs.contains(run) || self.frames.binary_search(frame).is_err())
+            .map(|&(_, frame)| frame)
+            .collect();
+        let lost_runs: BTreeSet<&str> =
+            rows.iter().map(|(run, _)| run.as_str()).filter(|run| !self.runs.iter().any(|own| own == run)).collect();
+        let of_runs = lost_runs.iter().map(|run| format!(" of “{run}”")).collect::<Vec<_>>().join(" and");
+        let rows = match lost.len() {
+            0 => None,
+            1 => Some(format!("diagnostics of one frame{of_runs}")),
+            count => Some(format!("diagnostics of {count} frames{of_runs}")),
+        };
+        let states = states.filter(|_| !self.states).map(|_| format!("{STATES_FILE} (written with --states)"));
+        let lost: Vec<_> = rows.into_iter().chain(states).collect();
+        (!lost.is_empty()).then(|| format!("{} of this scene, which this command does not make", lost.join(" and ")))
     }
+}
+
+/// The columns that identify a row of the diagnostics.
+#[derive(Deserialize)]
+struct Row {
+    run: String,
+    frame: u64,
 }
 
 /// Existing results in a folder.
@@ -170,8 +202,8 @@ struct Found {
     frames: Vec<PathBuf>,
     /// Frames of this scene that do not match new ones.
     unlike: Vec<PathBuf>,
-    /// The look of one of these, in words.
-    unlike_look: String,
+    /// Size and runs of one of these, in words.
+    unlike_words: String,
     /// Diagnostics, states and summary of another scene.
     records: Vec<PathBuf>,
     /// Frames that were made with an earlier version of this scene's file.
@@ -182,6 +214,8 @@ struct Found {
     file: String,
     /// States of this scene.
     states: Option<PathBuf>,
+    /// What the tables of this scene have that would not be made again, in words.
+    lost: Option<String>,
     /// That other scene, if its summary exists.
     other: Option<Owner>,
     /// Title of this scene.
@@ -191,7 +225,7 @@ struct Found {
 }
 
 impl Found {
-    fn in_folder(path: &Path, scene: &Whose, look: Option<&Look>) -> Result<Self, OutputError> {
+    fn in_folder(path: &Path, scene: &Whose, plan: &Plan) -> Result<Self, OutputError> {
         // Scenes with models made in code have no digest, so their own results are not recognised.
         let is_own = |digest: &str| !digest.is_empty() && digest == scene.digest;
         let name = scene.file.as_ref().and_then(|file| Some(file.file_name()?.to_string_lossy().into_owned()));
@@ -226,11 +260,12 @@ impl Found {
             if !is_record {
                 match read_tags(&entry.path())?.filter(|(_, tags)| tags.frame().is_some()) {
                     Some((size, tags)) if tags.scenes.iter().any(|scene| is_own(scene)) => {
-                        let runs = tags.states.into_iter().map(|(_, run)| run).collect();
-                        let own = Look { size, runs };
-                        if look.is_some_and(|look| *look != own) {
+                        let runs: Vec<String> = tags.states.into_iter().map(|(_, run)| run).collect();
+                        if plan.size.is_some_and(|own| own != size || plan.runs != runs) {
                             found.unlike.push(entry.path());
-                            found.unlike_look = own.describe();
+                            let [width, height] = size;
+                            let runs: Vec<_> = runs.iter().map(|run| format!("“{run}”")).collect();
+                            found.unlike_words = format!("{width}×{height} pixels with {}", runs.join(", "));
                         }
                     }
                     Some((_, tags)) if earlier.is_some_and(|earlier| tags.scenes.contains(&earlier.digest)) => {
@@ -252,6 +287,9 @@ impl Found {
                 }
             }
         }
+        if owner.as_ref().is_some_and(|owner| is_own(&owner.digest)) {
+            found.lost = plan.lacks(&path.join(DIAGNOSTICS_FILE), found.states.as_ref());
+        }
         found.foreign.sort_unstable();
         // The summary last, see `prepare`.
         found.records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
@@ -271,8 +309,9 @@ impl Found {
         Some(format!("{what} made by an earlier version of {}", self.file))
     }
 
-    /// Why the folder cannot be used, in words; `None` if it can, also if results of an earlier version may be replaced.
-    fn describe(&self, may_replace_earlier: bool) -> Option<String> {
+    /// What prevents the use of the folder, in words; `None` if nothing does, or only what the same scene or an earlier
+    /// version of it made and may be replaced.
+    fn describe(&self, may_replace_own: bool) -> Option<String> {
         let another = match &self.other {
             None => "another scene".to_owned(),
             Some(Owner { title, file: Some(file), .. }) => format!("another scene (“{title}”, {file})"),
@@ -284,11 +323,11 @@ impl Found {
         };
         let unlike = match self.unlike.len() {
             0 => None,
-            1 => Some(format!("a frame of this scene of {}", self.unlike_look)),
-            count => Some(format!("{count} frames of this scene of {}", self.unlike_look)),
+            1 => Some(format!("a frame of this scene of {}", self.unlike_words)),
+            count => Some(format!("{count} frames of this scene of {}", self.unlike_words)),
         };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
-            (0, true, []) => self.earlier().filter(|_| !may_replace_earlier).or(unlike),
+            (0, true, []) => self.earlier().or(self.lost.clone()).filter(|_| !may_replace_own).or(unlike),
             (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
             (0, true, [name, others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))
@@ -342,10 +381,11 @@ mod tests {
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
-        let inspect = |scene, replace| Folder::inspect(place.path(), scene, None, replace);
-        inspect(&one, Replace::Nothing).unwrap().prepare(false).unwrap();
+        let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
+        let inspect = |scene, replace| Folder::inspect(place.path(), scene, plan.clone(), replace);
+        inspect(&one, Replace::Nothing).unwrap().prepare().unwrap();
         Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
-        for replace in [Replace::Nothing, Replace::Earlier] {
+        for replace in [Replace::Nothing, Replace::Own] {
             let message = inspect(&other, replace).unwrap_err().to_string();
             assert!(message.contains("the results of another scene (“one”)"), "{message}");
         }

@@ -21,7 +21,7 @@ pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{FRAME_FILES, Folder, Look, Replace, frame_file_name, frame_files};
+pub(crate) use folder::{FRAME_FILES, Folder, Plan, Replace, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};

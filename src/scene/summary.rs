@@ -47,8 +47,10 @@ pub struct SceneSummary {
     pub runs: Vec<RunSummary>,
     /// Each obstacle in a few words.
     pub obstacles: Vec<String>,
-    /// Each grip in a few words.
-    pub grips: Vec<String>,
+    /// Each `[[hold]]` in a few words.
+    pub holds: Vec<String>,
+    /// Each `[[grab]]` in a few words.
+    pub grabs: Vec<String>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -58,7 +60,7 @@ pub struct SceneSummary {
 pub struct RunSummary {
     /// Its name.
     pub name: String,
-    /// Its model, in the words of the picture's second line.
+    /// Its model with all that changes its result.
     pub model: String,
     /// How time is stepped, as typed in a scene.
     pub integrator: String,
@@ -83,7 +85,7 @@ impl Scene {
         let last = self.last_frame();
         let run = |(at, run): (usize, &super::Run)| RunSummary {
             name: run.name.clone(),
-            model: run.model.describe(body),
+            model: run.model.describe_fully(body),
             integrator: typed(&run.integrator),
             kernel: run.kernel,
             step: run.step,
@@ -106,9 +108,16 @@ impl Scene {
             cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
             obstacles: self.obstacles.iter().map(|one| describe(one, &coordinates)).collect(),
-            grips: self.grips.iter().map(|one| grip(one, self.duration)).collect(),
+            holds: self.constraints(true),
+            grabs: self.constraints(false),
             picture: self.picture(),
         }
+    }
+
+    /// The nodes that are held, or dragged, and when.
+    fn constraints(&self, held: bool) -> Vec<String> {
+        let wanted = self.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
+        wanted.map(|grip| constraint(grip, self.duration)).collect()
     }
 
     /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), of which a scene's steps are fractions.
@@ -182,16 +191,15 @@ fn path(motion: &Motion) -> String {
     }
 }
 
-/// A grip in words.
-fn grip(grip: &Grip, duration: f64) -> String {
+/// A kinematic constraint in words.
+fn constraint(grip: &Grip, duration: f64) -> String {
     let nodes = match grip.nodes.len() {
         1 => format!("node {}", grip.nodes[0]),
         several => format!("{} nodes", count(several as u128)),
     };
     let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "on".into() };
-    let what = if grip.motion == Motion::Still { "held" } else { "dragged" };
     let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
-    format!("{nodes} {what} from {} s {until}{note}", short(grip.from))
+    format!("{nodes} from {} s {until}{note}", short(grip.from))
 }
 
 fn vector(coordinates: &[f64]) -> String {
@@ -229,8 +237,8 @@ impl fmt::Display for SceneSummary {
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;
         }
-        for grip in &self.grips {
-            line("grip", grip)?;
+        for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs)] {
+            constraints.iter().try_for_each(|constraint| line(name, constraint))?;
         }
         line("picture", &self.picture)?;
         write!(f, "  {:<9} {}", "digest", self.digest)

@@ -108,7 +108,7 @@ fn a_mesh_written_with_numpy() {
         let scene = document["scenes"][0]["scene"].clone();
         assert_eq!((&scene["nodes"], &scene["elements"][0]), (&264.into(), &"120 hexahedra".into()));
         assert_eq!(scene["start"][0], serde_json::json!([-0.5, -0.25, -0.25]));
-        assert_eq!(scene["grips"][0], "24 nodes held from 0 s on");
+        assert_eq!(scene["holds"][0], "24 nodes from 0 s on");
     };
     check(include_bytes!("tube.npz"));
     if let Some(python) = numpy() {

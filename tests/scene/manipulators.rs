@@ -397,8 +397,8 @@ fn a_summary_tells_of_obstacles_and_grips() {
     for line in [
         "obstacle  sphere at (1, 1, 1) m, radius 0.1 m, e = 0, μ = 0, swinging once in 2 s",
         "obstacle  floor at 0 m along (0, 1, 0), e = 0, μ = 0",
-        "grip      node 0 held from 0 s on",
-        "grip      2 nodes dragged from 0.5 s until 0.7 s",
+        "hold      node 0 from 0 s on",
+        "grab      2 nodes from 0.5 s until 0.7 s",
     ] {
         assert!(text.contains(line), "{line}\n{text}");
     }

@@ -106,6 +106,11 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
     fn describe(&self, body: &Body) -> String;
 
+    /// The same with all choices that change the result, such as the rotation solver.
+    fn describe_fully(&self, body: &Body) -> String {
+        self.describe(body)
+    }
+
     /// The two nodes of each spring; empty for models without springs.
     fn springs(&self) -> &[[u32; 2]] {
         &[]

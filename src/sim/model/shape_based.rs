@@ -13,6 +13,7 @@ use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, Typ
 use crate::sim::body::{Body, Dimension};
 use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
 use crate::sim::state::Nodes;
+use crate::sim::words;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -152,6 +153,22 @@ impl ElasticModel for ShapeBased {
         });
         if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
             text.push_str(" of deformation");
+        }
+        text
+    }
+
+    fn describe_fully(&self, body: &Body) -> String {
+        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
+        match (body.dimension, self.rotation) {
+            (Dimension::Plane, _) => text += ", rotations by Eq. (9)",
+            (Dimension::Space, RotationReading::Exact) => text += ", rotation \"exact\"",
+            (Dimension::Space, rotation) => {
+                let plural = if self.passes == 1 { "" } else { "es" };
+                text += &format!(", rotation \"{}\" with {} pass{plural}", words::typed(&rotation), self.passes);
+            }
+        }
+        if self.damping > 0.0 {
+            text += &format!(", damping of \"{}\"", words::typed(&self.damping_of));
         }
         text
     }
