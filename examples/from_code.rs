@@ -7,16 +7,18 @@ use localshape::{BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, R
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.
     let cubes = BodyBuilder::lattice(Lattice::new([3, 3, 3], 0.1));
-    let scene = Scene::builder("cubes", cubes.rotation(Rotation::about([1.0, 0.0, 1.0], 0.4)).lowest(0.2))
+    let mut scene = Scene::builder("cubes", cubes.rotation(Rotation::about([1.0, 0.0, 1.0], 0.4)).lowest(0.2))
         .gravity([0.0, -9.8, 0.0])
         .obstacle(ObstacleBuilder::floor(0.0).restitution(0.5))
-        .run("Local shape", shape_based::Parameters::new(1e4))
-        .run("Springs", mass_spring::Parameters::new(1e4))
+        .run("Local shape", shape_based::Parameters { damping_ratio: Some(0.1), ..shape_based::Parameters::new(1e4) })
+        .run("Springs", mass_spring::Parameters { damping_ratio: Some(0.1), ..mass_spring::Parameters::new(1e4) })
         .build(&Limits::default())?;
+    scene.view.labels.letter = true; // `View` has all that pictures show.
     // Both runs half a second after the start, beside each other.
     let frame = Runner::new(&scene, &[0, 1]).frame(30);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
-    let image = Renderer::new(&gpu, scene.view.size, 4)?.draw(&picture::compose(&scene, &frame))?;
+    let samples = 4; // of each pixel: 4 for smooth edges, 1 for speed
+    let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture::compose(&scene, &frame))?;
     image.save("cubes.png")?;
     Ok(())
 }

@@ -267,7 +267,7 @@ fn mistakes_in_code_are_told_as_those_in_files() {
         ),
         (
             with(arrays()).obstacle(ObstacleBuilder::floor(0.5)),
-            "`obstacle[0]`: the body starts inside this floor: node 0 lies 5.000e-1 m below its surface",
+            "`obstacle[0]`: the body starts inside this floor: node 0 lies 500 mm below its surface",
         ),
         (
             with(arrays()).obstacle(ObstacleBuilder::floor(0.0).restitution(2.0)),

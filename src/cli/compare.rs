@@ -145,7 +145,7 @@ impl Compare {
     /// Both sides beside each other; `None` if the user asked to stop.
     fn comparison(&self) -> Result<Option<Comparison>, Failure> {
         let failed = |error: ComparisonError| match error {
-            ComparisonError::Read { .. } => Failure::files(with_causes(&error)),
+            ComparisonError::Absent { .. } | ComparisonError::Read { .. } => Failure::files(with_causes(&error)),
             _ => Failure::usage(error.to_string()),
         };
         let is_scene = self.actual.extension().is_some_and(|ending| ending == "toml") && !self.actual.is_dir();
@@ -164,7 +164,9 @@ impl Compare {
                 return Err(Failure::usage(message));
             }
             self.no_drawing()?;
-            return Comparison::of(&self.expected, &self.actual).map(Some).map_err(failed);
+            return Comparison::of(&self.expected, &self.actual, self.bless || self.bless_state)
+                .map(Some)
+                .map_err(failed);
         }
         let expected = Side::read_or_absent(&self.expected).map_err(failed)?;
         if !expected.is_golden() {

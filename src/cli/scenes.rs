@@ -3,7 +3,7 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Folder, Plan, OutputError, Replace};
+use crate::output::{Folder, OutputError, Plan, Replace};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
 use std::collections::HashMap;

@@ -52,6 +52,12 @@ use std::path::{Path, PathBuf};
 /// Why no comparison can be made.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ComparisonError {
+    /// There is nothing at a path.
+    #[error("{} does not exist; expected a picture or a folder of pictures", path.display())]
+    Absent {
+        /// The path.
+        path: PathBuf,
+    },
     /// A file or folder is not there or cannot be read.
     #[error("cannot read {}", path.display())]
     Read {
@@ -130,12 +136,13 @@ pub(crate) struct Compared {
 
 impl Comparison {
     /// Compares a picture, or a folder of pictures, with an expected picture, folder or golden. Pictures in folders are
-    /// paired by name.
+    /// paired by name. `may_be_absent`: what is expected is to be made.
     ///
     /// # Errors
     /// If one of the sides cannot be read or has nothing to compare. Errors of single pictures are verdicts.
-    pub(crate) fn of(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
-        Self::between(Side::read_or_absent(expected)?, Side::read(actual)?)
+    pub(crate) fn of(expected: &Path, actual: &Path, may_be_absent: bool) -> Result<Self, ComparisonError> {
+        let expected = if may_be_absent { Side::read_or_absent(expected)? } else { Side::read(expected)? };
+        Self::between(expected, Side::read(actual)?)
     }
 
     /// Compares two sides.

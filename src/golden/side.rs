@@ -9,6 +9,7 @@ use crate::output::{SUMMARY_FILE, Shown, Tags, folder_of};
 use crate::shell;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The largest summary that is read (bytes).
@@ -70,7 +71,10 @@ pub(crate) struct Side {
 impl Side {
     /// A picture, a folder of pictures or a golden.
     pub(crate) fn read(path: &Path) -> Result<Self, ComparisonError> {
-        let found = path.metadata().map_err(|source| ComparisonError::Read { path: path.into(), source })?;
+        let found = path.metadata().map_err(|source| match source.kind() {
+            ErrorKind::NotFound => ComparisonError::Absent { path: path.into() },
+            _ => ComparisonError::Read { path: path.into(), source },
+        })?;
         if !found.is_dir() {
             return Ok(Self::picture(path));
         }

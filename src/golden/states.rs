@@ -3,7 +3,7 @@
 use crate::output::state_digest;
 use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
 use crate::sim::snapshot::Snapshot;
-use crate::sim::words::rounded;
+use crate::sim::words::{quantity, rounded};
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -300,16 +300,11 @@ impl Displacement {
             format!("no node{place}, but velocities differ")
         } else if distance <= precision {
             // Both rounding errors can have the same direction.
-            format!("no node by more than {:.0e} m{place} (positions are recorded no finer)", 2.0 * precision)
+            let most = quantity(2.0 * precision, "m");
+            format!("no node by more than {most}{place} (positions are recorded no finer)")
         } else {
-            format!("node {node} by {distance:.2e} m{place}")
+            format!("node {node} by {}{place}", quantity(*distance, "m"))
         }
-    }
-}
-
-impl fmt::Display for Displacement {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&format!(" at frame {}", self.frame)))
     }
 }
 
@@ -332,12 +327,17 @@ impl fmt::Display for Moved {
             write!(f, ": {after} nodes instead of {before}")?;
             return self.step.map_or(Ok(()), |step| write!(f, "; {step}"));
         }
-        match (&self.displacement, &self.largest) {
-            (Some(near), Some(far)) if near.frame != far.frame && far.distance > far.precision => {
-                write!(f, ": {near}; farthest {far}")?;
+        match &self.displacement {
+            // Goldens record the positions of some frames.
+            Some(near) if self.first != Some(near.frame) => {
+                write!(f, "; at frame {}, the next with recorded positions, {}", near.frame, near.words(""))?;
             }
-            (Some(near), _) => write!(f, ": {near}")?,
-            (None, _) => f.write_str("; by how much is not recorded")?,
+            Some(near) => write!(f, ": {}", near.words(""))?,
+            None => f.write_str("; how far nodes moved is known only with states.npz on both sides (--states)")?,
+        }
+        let farther = |far: &&Displacement| Some(far.frame) != self.displacement.map(|near| near.frame);
+        if let Some(far) = self.largest.as_ref().filter(farther).filter(|far| far.distance > far.precision) {
+            write!(f, "; farthest at frame {}: {}", far.frame, far.words(""))?;
         }
         if let Some(numbers) = &self.numbers {
             let [before, after] = [0, 1].map(|side| numbers[side].get(Diagnostic::TurnedOver));
@@ -377,15 +377,12 @@ mod tests {
         });
         let [found] = &moved(&golden, &later, &run_differences(&golden, &later))[..] else { panic!("one run") };
         assert_eq!((found.first, found.last_equal), (Some(2), Some(1)));
-        assert_eq!(
-            found.to_string(),
-            "run, first at frame 2: node 1 by 1.00e-1 m at frame 2; farthest node 1 by 2.00e-1 m at frame 3"
-        );
+        assert_eq!(found.to_string(), "run, first at frame 2: node 1 by 100 mm; farthest at frame 3: node 1 by 200 mm");
         // Below what the record knows, nothing is made up.
         let hardly = states(|_| state("bb", 0.0, &[1e-5, 1.0]));
         let [found] = &moved(&golden, &hardly, &run_differences(&golden, &hardly))[..] else { panic!("one run") };
         assert!(
-            found.to_string().starts_with("run, first at frame 0: no node by more than 2e-3 m at frame 0 (positions"),
+            found.to_string().starts_with("run, first at frame 0: no node by more than 1.73 mm (positions"),
             "{found}"
         );
     }

@@ -91,9 +91,10 @@ pub(crate) fn resolve(
         size: typed.size,
         look,
         camera: chosen,
-        clock: typed.clock.clone().unwrap_or_else(|| {
-            if scene.grips.is_empty() { "after release".into() } else { "after the start".into() }
-        }),
+        clock: typed
+            .clock
+            .clone()
+            .unwrap_or_else(|| if scene.grips.is_empty() { "after release".into() } else { "after the start".into() }),
         columns,
         visible,
         colour,

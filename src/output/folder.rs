@@ -94,12 +94,7 @@ impl Folder {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
-    pub(crate) fn inspect(
-        path: &Path,
-        scene: &Scene,
-        plan: Plan,
-        replace: Replace,
-    ) -> Result<Self, OutputError> {
+    pub(crate) fn inspect(path: &Path, scene: &Scene, plan: Plan, replace: Replace) -> Result<Self, OutputError> {
         let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
         let mut folder = Self { path: path.to_owned(), scene, plan, replace, replaced: None };
         if is_folder(path)? {

@@ -31,7 +31,8 @@ pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str)
     }
 }
 
-/// The known name most similar to the one typed, if they differ by at most one letter in three.
+/// The known name most similar to the one typed, if they differ by at most one letter in three; else one that contains
+/// it, or of whose words it has the first letters, as `fps` has of `frames_per_second`.
 pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     // A quadratic comparison, so nothing long is compared.
     if typed.len() > 100 {
@@ -45,7 +46,9 @@ pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
         distance(&name) * 3 <= name.chars().count().max(typed.chars().count()).max(3)
     };
     let contained = |name: &&&str| typed.len() >= 4 && plain(name).contains(&typed);
-    known.iter().filter(near).min_by_key(|name| distance(name)).or_else(|| known.iter().find(contained)).copied()
+    let initials = |name: &&&str| plain(name).split('-').filter_map(|word| word.chars().next()).eq(typed.chars());
+    let others = || known.iter().find(contained).or_else(|| known.iter().find(initials));
+    known.iter().filter(near).min_by_key(|name| distance(name)).or_else(others).copied()
 }
 
 /// What a value is: `the string "3"`, `an array of 2`.
@@ -127,6 +130,7 @@ mod tests {
         assert_eq!(nearest("ratio", &known), Some("damping_ratio"));
         assert_eq!(nearest("colour", &known), None);
         assert_eq!(nearest("", &known), None);
+        assert_eq!(nearest("fps", &["duration", "frames_per_second"]), Some("frames_per_second"));
     }
 
     #[test]

@@ -185,6 +185,21 @@ impl SceneBuilder {
 
     /// Checks all that was said, and gives it its meaning. The camera shows the body and what comes near it.
     ///
+    /// What pictures show besides is in [`Scene::view`] and may be changed before they are composed: title, caption and
+    /// labels, what is drawn of the body, edges, light, line and text scale, and every number of the camera.
+    ///
+    /// ```
+    /// # use localshape::scene::{BodyBuilder, Limits, Scene};
+    /// # use localshape::sim::model::shape_based;
+    /// # let scene = Scene::builder("hexagon", BodyBuilder::polygon(6, 1.0)).run("One", shape_based::Parameters::new(1e4));
+    /// let mut scene = scene.build(&Limits::default())?;
+    /// scene.view.title = "A hexagon at rest".into();
+    /// scene.view.labels.model = false;
+    /// scene.view.camera.distance *= 0.8;
+    /// scene.view.look.text_scale = 1.5;
+    /// # Ok::<(), localshape::scene::SceneError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SceneError::Mistakes`] with all mistakes: each says which setting is wrong, what it is, what is expected, and,
     /// if that is not all, what to do.

@@ -152,17 +152,19 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
         .iter()
         .map(|error| {
             let span = error.span().unwrap_or(0..0);
-            let message = match (error.message(), source.text().get(span.clone())) {
-                ("duplicate key", Some(key)) => format!("`{key}` is given a second time"),
-                (message, _) => format!("this is not TOML: {message}"),
-            };
-            let help = match (error.message(), source.text().get(span.clone())) {
-                (message, _) if message.contains("array") => Some(UNCLOSED.to_owned()),
+            let (found, text) = (error.message(), source.text().get(span.clone()).unwrap_or_default());
+            let not_toml = || format!("this is not TOML: {found}");
+            let (message, help) = if found == "duplicate key" {
+                (format!("`{text}` is given a second time"), None)
+            } else if let Some(key) = key_without_value(source.text(), span.start) {
+                (format!("`{key}` has no value"), Some("write one after `=`, or remove the key".to_owned()))
+            } else if found.contains("array") {
+                (not_toml(), Some(UNCLOSED.to_owned()))
+            } else if found.starts_with("invalid boolean") {
                 // The parser takes unquoted text for a truth value.
-                (message, Some(text)) if message.starts_with("invalid boolean") => {
-                    Some(format!("a text needs quotation marks: {}", quoted(text)))
-                }
-                _ => None,
+                (not_toml(), Some(format!("a text needs quotation marks: {}", quoted(text))))
+            } else {
+                (not_toml(), None)
             };
             mistake(source, span, &[], message, help)
         })
@@ -175,6 +177,15 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
     let total = found.len();
     found.truncate(1000);
     Mistakes { file: name.into(), found, total }
+}
+
+/// The key before an equals sign that nothing follows up to the end of its line or table, before a byte of a text.
+fn key_without_value(text: &str, at: usize) -> Option<&str> {
+    let (before, after) = text.split_at_checked(at)?;
+    let rest = after.lines().next().unwrap_or_default().trim_start();
+    let is_end = rest.is_empty() || rest.starts_with(['#', ',', '}']);
+    let key = before.lines().last()?.trim_end().strip_suffix('=')?.trim_end();
+    key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
 /// The bytes of a file.

@@ -45,10 +45,12 @@ impl<'s> Reference<'s> {
                 (false, true) => ("##", format!("[[{path}]]")),
                 (false, false) => ("##", format!("[{path}]")),
             };
-            self.text += &format!("\n{depth} `{heading}`\n\n{}\n", description(table));
-            let each = description(&table["items"]);
-            if !description(table).starts_with(each) {
-                self.text += &format!("\n{each}\n");
+            self.text += &format!("\n{depth} `{heading}`\n");
+            // The list of keys above has the first sentence.
+            let more = description(table).strip_prefix(first_sentence(description(table))).unwrap_or_default().trim();
+            let each = Some(description(&table["items"])).filter(|each| !description(table).starts_with(each));
+            for text in [Some(more), each].into_iter().flatten().filter(|text| !text.is_empty()) {
+                self.text += &format!("\n{text}\n");
             }
             self.body(table_of(table).expect("a table"), &path);
             self.finish();
@@ -76,12 +78,12 @@ impl<'s> Reference<'s> {
         for (key, value) in properties.iter().filter(|(key, value)| wanted(key, value)) {
             let (mut kind, mut meaning) = (kind(value), description(value));
             if table_of(value).is_some() {
-                let anchor = self.section(value, path, key);
-                // The section begins with the whole description, unless it was written for another key.
-                if anchor == joined(path, key).replace('.', "") {
+                let (table, path) = self.section(value, path, key);
+                // The section has the rest, unless it was written for a key that means something else.
+                if description(table) == meaning {
                     meaning = first_sentence(meaning);
                 }
-                kind = format!("[{kind}](#{anchor})");
+                kind = format!("[{kind}](#{})", path.replace('.', ""));
             }
             if required.is_some_and(|required| required.iter().any(|name| name == key)) {
                 kind += ", required";
@@ -101,23 +103,17 @@ impl<'s> Reference<'s> {
         }
     }
 
-    /// The anchor of the section of a table, which is written later unless there is one already.
-    fn section(&mut self, table: &'s Value, path: &str, key: &str) -> String {
-        let inner = table_of(table).expect("a table");
-        let known = self
-            .sections
-            .iter()
-            .find(|(known, _)| known["properties"] == inner["properties"] && known["oneOf"] == inner["oneOf"]);
-        let path = match known {
-            Some((_, path)) => path.clone(),
-            None => {
-                let path = joined(path, key);
-                self.sections.push((inner, path.clone()));
-                self.next.push((table, path.clone()));
-                path
-            }
-        };
-        path.replace('.', "")
+    /// The section of a table, which is written later unless there is one already.
+    fn section(&mut self, table: &'s Value, path: &str, key: &str) -> (&'s Value, String) {
+        let inner = |table| table_of(table).expect("a table");
+        let is_same = |known| ["properties", "oneOf"].iter().all(|part| inner(known)[part] == inner(table)[part]);
+        if let Some(known) = self.sections.iter().find(|(known, _)| is_same(known)) {
+            return known.clone();
+        }
+        let section = (table, joined(path, key));
+        self.sections.push(section.clone());
+        self.next.push(section.clone());
+        section
     }
 }
 

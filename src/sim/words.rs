@@ -80,6 +80,12 @@ pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
+/// A quantity with three significant digits and a prefix of its unit: `315 mm`.
+pub(crate) fn quantity(value: f64, unit: &str) -> String {
+    let (factor, prefix) = prefix(value.abs());
+    format!("{} {prefix}{unit}", rounded(value / factor, 3))
+}
+
 /// A number rounded to so many significant digits.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)

@@ -202,9 +202,8 @@ impl Ratios {
             (`kernel = \"fast\"`): the shape model, with two passes of Eq. (15), by the fused kernel of lattices, mass-spring by \
             the kernel of springs that repeat from node to node. Medians of {rounds} rounds in which all models take turns, \
             of ratios with their quartiles in parentheses. The paper \
-            says {PRINTED}, for a body, springs and a machine that it does not tell. These are times of one machine: \
-            another one, or this one while it does something else, gives others. Springs that cubes share are \
-            computed once.\n\n",
+            gives {PRINTED}, without naming body, springs and machine. Other machines, and other load on this one, give \
+            other times. Springs that cubes share are computed once.\n\n",
             mark(threads),
             if threads == 1 { "" } else { "s" },
             std::env::consts::ARCH,

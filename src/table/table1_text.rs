@@ -24,10 +24,10 @@ impl Table1 {
             a free cube of side 0.1 m with 1 kg in each corner that falls 1 m onto a floor with restitution 1. g = 9.8 \
             m/s², neither damping nor friction, semi-implicit Euler. μ, σ and max are the mean of α, its standard deviation \
             and its largest value; k/m is in 1/s². Row A has one pass of the solver at each evaluation and steps of a tenth \
-            of the cycle, row B steps of a hundredth, row C two passes, row D three. The paper's figures are those of one start that it \
-            does not tell; ours are medians over {orientations} start{plural} at rest, turned at random, with the range \
-            over all of them in parentheses, but for σ. A dash among the paper's figures: below the lower limit of its \
-            measurable range; a dash for passes: the solver has none. Figures around 1e-9 and below are round-off.\n\n\
+            of the cycle, row B steps of a hundredth, row C two passes, row D three. The paper does not give the orientation of \
+            its cube; ours are medians over {orientations} start{plural} at rest with random orientation{plural}, for μ \
+            and max with the range in parentheses. A dash in a column of the paper means that the value was below its \
+            measurable range, a dash for passes that the solver has none. Values around 1e-9 and below are round-off.\n\n\
             ## The paper's solver: Eq. (15), θ = atan |w|, true rotations accumulated, each evaluation starting from \
             the last\n\n",
             self.protocol.mark()
@@ -69,7 +69,10 @@ impl Table1 {
         text += &Sheet::of(others).markdown(3);
         let diverged: usize = summaries.iter().map(|summary| summary.diverged).sum();
         if diverged > 0 {
-            text += &format!("\n{diverged} of {} simulations blew up, and count until then.\n", self.courses.len());
+            text += &format!(
+                "\n{diverged} of {} simulations diverged; their values are those until then.\n",
+                self.courses.len()
+            );
         }
         text
     }

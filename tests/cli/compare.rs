@@ -76,7 +76,7 @@ fn two_folders() {
     assert_eq!(found.status, Some(1));
     assert_eq!(
         found.out,
-        "state moved: Local shape, first at frame 3; by how much is not recorded\n\
+        "state moved: Local shape, first at frame 3; how far nodes moved is known only with states.npz on both sides (--states)\n\
          frame_00003.png: state moved: Local shape\n\
          frame_00004.png: state moved: Local shape\n\
          gone.png: missing\n\
@@ -138,17 +138,19 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
 fn what_is_missing_fails_with_the_command_that_makes_it() {
     let place = Place::new();
     put(&place, "is/a.png", &picture("one", "1", 0, &GREY));
-    for (what, expected, actual) in [("folder", "was", "is"), ("picture", "was.png", "is/a.png")] {
-        let ran = place.run(&format!("compare {expected} {actual}"));
-        let told =
-            format!("the {what} {expected} is missing\nmake it with: localshape compare --bless {expected} {actual}\n");
-        assert_eq!((ran.status, ran.out), (Some(1), told));
+    for (expected, actual) in [("was", "is"), ("was.png", "is/a.png")] {
+        // A path that was mistyped is told alike on both sides.
+        let words = format!("{expected} does not exist; expected a picture or a folder of pictures");
+        place.run(&format!("compare {expected} {actual}")).bad(4, &[&words]);
+        place.run(&format!("compare {actual} {expected}")).bad(4, &[&words]);
+        place.run(&format!("compare --bless {actual} {expected}")).bad(4, &[&words]);
         place.run(&format!("compare --bless {expected} {actual}")).good();
         place.run(&format!("compare {expected} {actual}")).good();
     }
-    // A path with spaces is quoted, so that it can be pasted.
+    // An empty folder is filled on request. A path with spaces is quoted, so that it can be pasted.
+    std::fs::create_dir(place.path("my golden")).unwrap();
     let ran = run(&mut place.command(["compare", "my golden", "is"]));
-    assert!(ran.out.contains("--bless 'my golden' is\n"), "{ran:?}");
+    assert!(ran.out.ends_with("localshape compare --bless 'my golden' is\n"), "{ran:?}");
 }
 
 #[test]
@@ -261,7 +263,7 @@ fn exact_states_tell_node_distance_and_first_frame() {
         told.contains("steady: states.npz does not belong to these pictures; frame 1 shows another state\n"),
         "{told}"
     );
-    assert!(told.contains("by how much is not recorded"), "{told}");
+    assert!(told.contains("known only with states.npz on both sides"), "{told}");
     for (bytes, words) in [(&b"PK\x03\x04"[..], "damaged"), (b"", "is empty")] {
         std::fs::write(place.path("steady/states.npz"), bytes).unwrap();
         let told = place.run("compare steady stiffer").out;
@@ -481,7 +483,7 @@ fn wrong_words() {
     let place = Place::new();
     put(&place, "a.png", &picture("one", "1", 0, &GREY));
     std::fs::create_dir(place.path("none")).unwrap();
-    place.run("compare a.png b.png").bad(4, &["cannot read b.png"]);
+    place.run("compare a.png b.png").bad(4, &["b.png does not exist"]);
     if cfg!(feature = "render") {
         place.run("compare a.png a.png --size 20x20").bad(2, &["--size is for scenes and figures"]);
     }

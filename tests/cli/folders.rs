@@ -22,7 +22,10 @@ fn states_of_an_earlier_run_do_not_stay() {
     assert_eq!(files(&place), serde_json::json!(["diagnostics.csv", "states.npz"]));
     place.run("simulate small.toml --states --frames 3").good();
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "run.json", "states.npz"]);
-    place.run("simulate small.toml --frames 2").good();
+    // What is not made again is named.
+    let ran = place.run("simulate small.toml --frames 2").good();
+    let lost = "output/small: replacing diagnostics of one frame and states.npz (written with --states) of this scene";
+    assert!(ran.out.starts_with(lost), "{ran:?}");
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "run.json"]);
     assert_eq!(files(&place), serde_json::json!(["diagnostics.csv"]));
 }
@@ -111,6 +114,38 @@ fn a_folder_named_by_its_user_keeps_an_earlier_version() {
     assert_eq!(place.read("before/run.json"), before);
     place.run("simulate --overwrite small.toml -o before").good();
     assert_ne!(place.read("before/run.json"), before);
+}
+
+/// A folder that its user has named keeps what a later command on the same scene does not make again.
+#[test]
+fn results_of_the_same_scene_are_not_lost_unasked() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --states -o out").good();
+    let files =
+        |place: &Place| ["diagnostics.csv", "states.npz"].map(|name| std::fs::read(place.path("out").join(name)).ok());
+    let before = files(&place);
+    let draws: &[&str] = if cfg!(feature = "render") { &["simulate", "render"] } else { &["simulate"] };
+    for command in draws {
+        for (options, words) in [
+            ("--frames 0-3", "out holds diagnostics of 3 frames and states.npz (written with --states) of this scene"),
+            (
+                "--states --frames 0-3",
+                "out holds diagnostics of 3 frames of this scene, which this command does not make",
+            ),
+            ("--states --only Mass-spring", "out holds diagnostics of 7 frames of “Local shape” of this scene"),
+            ("", "out holds states.npz (written with --states) of this scene"),
+        ] {
+            let ran = place.run(&format!("{command} small.toml -o out {options}"));
+            ran.bad(2, &[words, "choose another folder with -o, or replace", "--overwrite"]);
+            assert!(files(&place) == before, "{command} {options}");
+        }
+    }
+    place.run("simulate small.toml --states -o out").good();
+    place.run("simulate small.toml --frames 0-3 -o out --overwrite").good();
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
+    // More frames and runs lose nothing.
+    place.run("simulate small.toml -o out --states").good();
+    assert!(files(&place) == before);
 }
 
 #[test]

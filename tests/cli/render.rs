@@ -230,8 +230,10 @@ fn frames_of_another_scene() {
     let frames: Vec<_> = place.names("out").into_iter().filter(|name| name.ends_with(".png")).collect();
     assert_eq!(frames.len(), 4, "{frames:?}");
 
-    // Other frames of the same scene are kept.
-    place.run("render other.toml -o out --frames 1 --samples 1").good();
+    // The diagnostics of its other frames are not lost unasked; the frames themselves are kept.
+    let ran = place.run("render other.toml -o out --frames 1 --samples 1");
+    ran.bad(2, &["out holds diagnostics of 3 frames of this scene, which this command does not make"]);
+    place.run("render other.toml -o out --frames 1 --samples 1 --overwrite").good();
     assert_eq!(place.names("out").len(), 4 + 2);
 }
 

@@ -162,6 +162,9 @@ fn what_is_not_said_has_its_documented_default() {
     assert!((camera.field_of_view.to_degrees() - 20.0).abs() < 1e-12);
     assert_eq!((camera.distance, camera.target), (8.5, DVec3::new(0.0, 0.5, 0.0)));
     assert_eq!((scene.view.size, scene.view.clock.as_str()), ([1280, 720], "after release"));
+    let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\n";
+    let held = good(&format!("{WORLD}{body}[[hold]]\nnodes = [0]\nuntil = 0.5\n"));
+    assert_eq!(held.view.clock, "after the start");
 }
 
 #[test]
@@ -288,7 +291,7 @@ fn a_summary_says_what_a_scene_holds() {
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s
-  run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1
+  run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1, rotation arctangent with 2 passes, damping of relative-motion
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
   run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
@@ -298,6 +301,10 @@ fn a_summary_says_what_a_scene_holds() {
             summary.digest
         )
     );
+    let cube = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n");
+    let model = |more: &str| good(&cube.replace("1e4", more)).summary().runs[0].model.clone();
+    assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation exact");
+    assert_eq!(model("1e4, passes = 1"), "1 cube, k = 10 kN/m, rotation arctangent with 1 pass");
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
     assert_eq!(json["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");

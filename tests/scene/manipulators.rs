@@ -210,7 +210,7 @@ fn obstacles_that_start_inside_the_body() {
     case(
         WORLD,
         touching,
-        &[(1, 1, "the body starts inside this sphere: node 1 lies 3.000e-2 m below its surface move one")],
+        &[(1, 1, "the body starts inside this sphere: node 1 lies 30 mm below its surface move one")],
     );
     let hidden = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.05, 0.15, 0]\nradius = 0.01";
     case(WORLD, hidden, &[(1, 1, "this sphere starts inside the body, at [0.05, 0.15, 0], between its nodes")]);
@@ -220,7 +220,7 @@ fn obstacles_that_start_inside_the_body() {
     case(
         WORLD,
         floor,
-        &[(1, 1, "the body starts inside this floor: node 0 lies 5.000e-2 m below its surface move the floor")],
+        &[(1, 1, "the body starts inside this floor: node 0 lies 50 mm below its surface move the floor")],
     );
     // Straight through it, between all nodes.
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [0.05, 0.15, -1]\nto = [0.05, 0.15, 1]\nradius = 0.01";

@@ -100,6 +100,19 @@ fn unknown_keys() {
     );
     case(PLANE, "mass = 1", "colour = 1", &[(9, 1, "`colour` belongs to `run` or `view`; known")]);
     case(PLANE, "mass = 1", "friction = 1", &[(9, 1, "`friction` belongs to `obstacle`")]);
+    // Another kind of the same table comes before similar keys and other tables.
+    let (shape, springs) = ("kind = 'shape-based', ", "kind = 'mass-spring', ");
+    let words = "`springs` belongs to kind = \"mass-spring\" or `body`; known here: kind, stiffness";
+    case(PLANE, shape, &format!("{shape}springs = 'all', "), &[(12, 33, words)]);
+    let words = "`damping_of` belongs to kind = \"shape-based\"; known here: kind, stiffness";
+    case(PLANE, springs, &format!("{springs}damping_of = 'deformation', "), &[(15, 33, words)]);
+    case(
+        PLANE,
+        "step = 'T/50'",
+        "step = 0",
+        &[(4, 8, "expected a number greater than 0 A time step in seconds, or a")],
+    );
+    case(PLANE, "duration = 3", "duration = 3\nfps = 30", &[(4, 1, "did you mean `frames_per_second`?")]);
     case(PLANE, "mass = 1", "follow = true", &[(9, 1, "`follow` belongs to `view.camera`")]);
     case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", &[(5, 44, "`rotation` belongs to `body`")]);
     case(PLANE, "mass = 1", "\"\" = 1", &[(9, 1, "unknown key `` in `body`")]);
@@ -546,6 +559,11 @@ fn springs_beyond_the_limits_are_refused_before_they_are_made() {
 fn syntax_errors_have_their_place() {
     let error = bad(&PLANE.replace("duration = 3", "duration = = 3"));
     assert!(matches!(error, SceneError::Syntax(_)));
+    for value in ["", "    # a comment"] {
+        let empty = format!("mass = {value}");
+        case(PLANE, "mass = 1", &empty, &[(9, 8, "`mass` has no value write one after `=`, or remove the key")]);
+    }
+    case(SPACE, "side = 0.1", "side = ", &[(5, 37, "`side` has no value")]);
     case(PLANE, "duration = 3", "duration = = 3", &[(3, 12, "this is not TOML: extra `=`")]);
     case(PLANE, "duration = 3", "duration = 3\nduration = 4", &[(4, 1, "`duration` is given a second time")]);
     case(PLANE, "[0, -9.8]", "[0, -9.8", &[(2, 1, "is an array before this not closed with `]`?")]);

@@ -88,7 +88,7 @@ fn sixty() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum StepFile {
-    /// Seconds.
+    /// A time step in seconds, or a fraction of the cycle T such as `"T/50"`.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// A fraction of the cycle T.
     Cycles(#[schemars(extend("format" = "fraction-of-T"))] FractionOfCycle),

@@ -7,7 +7,7 @@ use crate::reading::report::{Report, Way};
 use crate::scene::file::{Coordinates, ObstacleFile};
 use crate::sim::body::{Dimension, IndexLists, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
-use crate::sim::words::rounded;
+use crate::sim::words::{quantity, rounded};
 use glam::{DQuat, DVec3};
 
 /// The obstacles, or `None` after reporting every mistake in them.
@@ -113,7 +113,8 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         _ => Some(this),
     });
     if let Some((node, depth)) = deepest {
-        let message = format!("the body starts inside this {name}: node {node} lies {depth:.3e} m below its surface");
+        let message =
+            format!("the body starts inside this {name}: node {node} lies {} below its surface", quantity(depth, "m"));
         let help = match obstacle.shape {
             Shape::Floor { .. } => "move the floor, or set the body on it with `lowest` or `offset` in [body]",
             _ => "move one of them; a path can move the obstacle there later",

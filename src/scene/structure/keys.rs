@@ -3,7 +3,7 @@
 use super::Walk;
 use super::expect::first_sentence;
 use crate::reading::report::written;
-use crate::reading::words::{list, nearest, shortened};
+use crate::reading::words::{list, nearest, quoted, shortened};
 use serde_json::Value as Json;
 use std::ops::Range;
 use toml::Spanned;
@@ -94,7 +94,8 @@ impl Walk<'_, '_, '_> {
         );
     }
 
-    pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>) {
+    /// A key that a table of a kind does not have. Other `kinds` of it may have it.
+    pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>, kinds: &[(&str, &Json)]) {
         // There may be millions, and to find a similar name takes long.
         if self.report.only_counted() {
             return;
@@ -104,11 +105,16 @@ impl Walk<'_, '_, '_> {
             [before @ .., _] if !before.is_empty() => format!(" in `{}`", written(before)),
             _ => String::new(),
         };
-        let others: Vec<_> = elsewhere(self.schema, name).iter().map(|other| format!("`{other}`")).collect();
-        let help = match nearest(name, &known) {
+        let of_kinds = kinds.iter().filter(|(_, kind)| kind["properties"].get(name).is_some());
+        let mut others: Vec<_> = of_kinds.map(|(kind, _)| format!("kind = {}", quoted(kind))).collect();
+        let help = match nearest(name, &known).filter(|_| others.is_empty()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None if others.is_empty() => format!("known here: {}", known.join(", ")),
-            None => format!("`{name}` belongs to {}; known here: {}", others.join(" or "), known.join(", ")),
+            None => {
+                others.extend(elsewhere(self.schema, name).iter().map(|other| format!("`{other}`")));
+                let others = list(&others, "or", str::to_owned);
+                let known = format!("known here: {}", known.join(", "));
+                if others.is_empty() { known } else { format!("`{name}` belongs to {others}; {known}") }
+            }
         };
         self.mistake(span, format!("unknown key `{}`{place}", shortened(name)), Some(help));
     }

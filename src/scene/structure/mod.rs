@@ -42,7 +42,7 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
         walk.path.push(Way::Key(name));
         let part = match (schema["properties"].get(name), value.get_ref()) {
             (None, _) => {
-                walk.unknown_key(schema, name, key.span());
+                walk.unknown_key(schema, name, key.span(), &[]);
                 Json::Null
             }
             (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
@@ -51,7 +51,9 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
                 let most = inner["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
                 Json::Array(walk.entries(inner, &items[..most]))
             }
-            (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => walk.table(inner, table, value.span()),
+            (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => {
+                walk.table(inner, table, value.span(), &[])
+            }
             (Some(inner), _) => walk.guarded(inner, value),
         };
         walk.path.pop();
@@ -129,7 +131,7 @@ impl<'p> Walk<'_, '_, 'p> {
                 self.lengths(schema, "entries", "entry", items.len(), value.span());
                 Json::Array(self.entries(schema, items))
             }
-            DeValue::Table(table) => self.table(schema, table, value.span()),
+            DeValue::Table(table) => self.table(schema, table, value.span(), &[]),
         }
     }
 
@@ -260,7 +262,7 @@ impl<'p> Walk<'_, '_, 'p> {
             return Json::Null;
         };
         match given.get_ref().as_str().and_then(|name| kinds.iter().find(|(known, _)| *known == name)) {
-            Some((_, branch)) => self.table(branch, table, span),
+            Some((_, branch)) => self.table(branch, table, span, kinds),
             None => {
                 let found = given.get_ref().as_str().map_or_else(|| words::found(given.get_ref()), quoted);
                 let message = format!("`{}.{tag}` is {found}; expected {}", self.here(), list(&names, "or", quoted));
@@ -271,14 +273,15 @@ impl<'p> Walk<'_, '_, 'p> {
         }
     }
 
-    fn table(&mut self, schema: &Json, table: &'p DeTable<'p>, span: Range<usize>) -> Json {
+    /// A table; `kinds` are the other kinds that it could be, by name.
+    fn table(&mut self, schema: &Json, table: &'p DeTable<'p>, span: Range<usize>, kinds: &[(&str, &Json)]) -> Json {
         self.table_rules(schema, table, span);
         let mut json = Map::new();
         for (key, value) in table.iter() {
             let name = key.get_ref().as_ref();
             self.path.push(Way::Key(name));
             match schema["properties"].get(name) {
-                None => self.unknown_key(schema, name, key.span()),
+                None => self.unknown_key(schema, name, key.span(), kinds),
                 Some(inner) => {
                     let inner = self.guarded(inner, value);
                     if !inner.is_null() {

@@ -243,8 +243,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
 
 /// The second line of a picture: the parts of the model, its stiffness and, if it has any, its damping.
 fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
-    let (factor, prefix) = words::prefix(stiffness);
-    let mut text = format!("{parts}, k = {} {prefix}N/m", words::rounded(stiffness / factor, 3));
+    let mut text = format!("{parts}, k = {}", words::quantity(stiffness, "N/m"));
     if damping > 0.0 {
         let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
         text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));

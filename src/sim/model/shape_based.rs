@@ -161,14 +161,14 @@ impl ElasticModel for ShapeBased {
         let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
         match (body.dimension, self.rotation) {
             (Dimension::Plane, _) => text += ", rotations by Eq. (9)",
-            (Dimension::Space, RotationReading::Exact) => text += ", rotation \"exact\"",
+            (Dimension::Space, RotationReading::Exact) => text += ", rotation exact",
             (Dimension::Space, rotation) => {
                 let plural = if self.passes == 1 { "" } else { "es" };
-                text += &format!(", rotation \"{}\" with {} pass{plural}", words::typed(&rotation), self.passes);
+                text += &format!(", rotation {} with {} pass{plural}", words::typed(&rotation), self.passes);
             }
         }
         if self.damping > 0.0 {
-            text += &format!(", damping of \"{}\"", words::typed(&self.damping_of));
+            text += &format!(", damping of {}", words::typed(&self.damping_of));
         }
         text
     }
