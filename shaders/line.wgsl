@@ -1,5 +1,5 @@
-// Edges, contours and outlines as smooth lines. Each pixel gets the opacity of four kinds of lines: edges of sound
-// elements, edges of turned-over ones, the outer outline, and steps of depth inside the body. The largest wins, so that
+// Edges, contours and outlines as smooth lines. Each pixel gets the opacity of four kinds of lines: edges of turned-over
+// elements, edges of others, the outer outline, and steps of depth inside the body. The largest wins, so that
 // joints are as even as the rest.
 
 struct Segment {
@@ -18,7 +18,7 @@ const BAR = 4u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
 
-// Opacities of hidden edges: of those of sound elements and of those of turned-over ones, behind surfaces that hide
+// Opacities of hidden edges: of elements that are not inverted and of turned-over ones, behind surfaces that hide
 // everything and behind those that hide nothing.
 const HIDDEN = vec2<f32>(0.16, 0.62);
 const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
@@ -164,7 +164,7 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
         shares += edge_shares(at, kind, sample) / f32(SAMPLES);
     }
     if kind == ALARM_EDGE {
-        // Turned-over elements hide more of it than sound ones.
+        // Turned-over elements hide more of it than others.
         var free = 0.0;
         for (var sample = 0u; sample < SAMPLES; sample++) {
             free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, sample)) / f32(SAMPLES);

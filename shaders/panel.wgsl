@@ -21,7 +21,7 @@ struct Panel {
     // Out of the floor; its height along that.
     up: vec3<f32>,
     floor: f32,
-    // Colour of sound elements; length of an element's edge (px).
+    // Colour of elements that are not inverted; length of an element's edge (px).
     sound: vec3<f32>,
     element: f32,
     // Colour of turned-over elements; thickness of lines in parts of the reference.
@@ -30,7 +30,7 @@ struct Panel {
     // Colour of their hatch and edges.
     alarm_line: vec3<f32>,
     outline_alpha: f32,
-    // Colour of the edges of sound elements; pixels for a slope of one.
+    // Colour of the edges of elements that are not inverted; pixels for a slope of one.
     edge: vec3<f32>,
     focal: f32,
     // Colour of the outline; unit of soft distances in light and of steps in depth.
@@ -41,11 +41,11 @@ struct Panel {
     // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // Opacity of sound elements.
+    // Opacity of elements that are not inverted.
     opacity: f32,
     // 1 if turned-over elements are hatched, else 0.
     hatch: f32,
-    // 0 if nothing lies behind sound elements, 1 if something may.
+    // 0 if nothing lies behind elements that are not inverted, 1 if something may.
     behind: f32,
     // How much is drawn of the lines of elements, from 0 to 1.
     line_share: f32,

@@ -1,4 +1,4 @@
-// Surfaces of bodies: lit, hatched where turned over, and with the turned-over elements showing through the sound ones.
+// Surfaces of bodies: lit, hatched where turned over, and with the turned-over elements showing through the others.
 // Colours are stored as their square roots, which keeps eight bits fine in the dark and is quick to undo.
 
 struct Corner {
@@ -20,7 +20,7 @@ const CONTACT_LIGHT = 0.72;
 // of the key light.
 const TAKEN = 0.75;
 const KEY_TAKEN = 0.8;
-// The turned-over set is drawn this much nearer (sides), so that it wins where it shares faces with the sound one.
+// The turned-over set is drawn this much nearer (sides), so that it wins where it shares faces with the other one.
 const NEARER = 0.02;
 // A face turned away lies this much farther back, as a part of the distance.
 const BACK_FACE = 1e-5;
@@ -140,7 +140,7 @@ fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
 }
 
-// What is stored of a sound surface of a colour, which lets through what is behind.
+// What is stored of a surface that is not inverted of a colour, which lets through what is behind.
 fn see_through(colour: vec3<f32>) -> vec4<f32> {
     let alpha = select(min(panel.opacity, MOST_OPACITY), 1.0, panel.opacity >= 1.0);
     return vec4(sqrt(saturate(colour) * panel.opacity), alpha);
@@ -153,7 +153,7 @@ fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> v
         if behind > 0.0 && stored.a > SOLID_BEHIND {
             return vec4(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity)), 1.0);
         }
-        // In the plane, turned-over elements lie before sound ones.
+        // In the plane, turned-over elements lie before others.
         if behind <= 0.0 || panel.flatness > 0.5 {
             return vec4(saturate(colour) * panel.opacity, panel.opacity);
         }

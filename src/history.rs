@@ -16,12 +16,12 @@ pub struct History {
     /// Time of the scene's last frame (s).
     pub end: f64,
     /// The requested runs, in that order.
-    pub courses: Vec<Course>,
+    pub series: Vec<TimeSeries>,
 }
 
 /// The time series of one run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct TimeSeries {
     /// Index of the run in the scene.
     pub run: usize,
     /// The times of steps of this run (s), rising from the start to the scene's last frame; for a run that diverged, up
@@ -33,7 +33,7 @@ pub struct Course {
     pub divergence: Option<Divergence>,
 }
 
-impl Course {
+impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
         Self { run, times: Vec::new(), diagnostics: Vec::new(), divergence: None }
@@ -98,19 +98,19 @@ mod tests {
         let history = History::new(&scene, &[0, 1]);
         let mut runner = Runner::new(&scene, &[0, 1]);
         for index in 0..=scene.last_frame() {
-            for (run, course) in runner.frame(index).runs.iter().zip(&history.courses) {
-                let at = course.times.iter().position(|time| time.to_bits() == run.snapshot.time.to_bits());
+            for (run, series) in runner.frame(index).runs.iter().zip(&history.series) {
+                let at = series.times.iter().position(|time| time.to_bits() == run.snapshot.time.to_bits());
                 let at = at.unwrap_or_else(|| panic!("frame {index} is missing"));
                 // NaN is not equal to itself, so texts are compared.
-                assert_eq!(format!("{:?}", course.diagnostics[at]), format!("{:?}", run.snapshot.diagnostics));
+                assert_eq!(format!("{:?}", series.diagnostics[at]), format!("{:?}", run.snapshot.diagnostics));
             }
         }
-        for course in &history.courses {
-            assert!(course.times.len() > 300 && course.times.len() <= 601, "{}", course.times.len());
-            assert!(course.times.windows(2).all(|two| two[0] < two[1]));
-            assert_eq!(course.times.len(), course.diagnostics.len());
-            let step = scene.runs[course.run].step;
-            assert!(course.times.iter().all(|time| (time / step - (time / step).round()).abs() < 1e-9));
+        for series in &history.series {
+            assert!(series.times.len() > 300 && series.times.len() <= 601, "{}", series.times.len());
+            assert!(series.times.windows(2).all(|two| two[0] < two[1]));
+            assert_eq!(series.times.len(), series.diagnostics.len());
+            let step = scene.runs[series.run].step;
+            assert!(series.times.iter().all(|time| (time / step - (time / step).round()).abs() < 1e-9));
         }
         assert_eq!(history.end, 0.5);
     }
@@ -121,14 +121,14 @@ mod tests {
         let end = scene.moment(scene.last_frame());
         let whole = format!("{:?}", History::new(&scene, &[0, 1]));
         for slice in [1, 3, 1000] {
-            let mut runner = Runner::new(&scene, &[0, 1]).with_course(Diagnostic::ALL);
+            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
             while !runner.advance_towards(end, slice) {
                 assert!(runner.steps() < runner.steps_at(end));
             }
             assert_eq!(runner.steps(), runner.steps_at(end));
             assert_eq!(format!("{:?}", runner.take_history()), whole);
         }
-        assert_eq!(History::new(&scene, &[1]).courses[0].run, 1);
+        assert_eq!(History::new(&scene, &[1]).series[0].run, 1);
     }
 
     #[test]
@@ -153,10 +153,10 @@ mod tests {
         let scene = scene("3", "60", "T/70");
         let usual = History::new(&scene, &[0, 1]);
         let mut runner =
-            Runner::new(&scene, &[0, 1]).with_closer_course(Diagnostic::ALL, Some([0.0, 0.1]), &[1.2345, 9.0]);
+            Runner::new(&scene, &[0, 1]).with_closer_time_series(Diagnostic::ALL, Some([0.0, 0.1]), &[1.2345, 9.0]);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         let closer = runner.take_history();
-        for (usual, closer) in usual.courses.iter().zip(&closer.courses) {
+        for (usual, closer) in usual.series.iter().zip(&closer.series) {
             assert!(closer.times.windows(2).all(|two| two[0] < two[1]));
             let step = scene.runs[closer.run].step;
             let early = closer.times.iter().filter(|&&time| time < 0.1).count();
@@ -175,7 +175,7 @@ mod tests {
     fn a_run_that_blows_up_ends_there() {
         let scene = scene("2", "60", "T/2");
         let history = History::new(&scene, &[0, 1]);
-        let [whole, short] = &history.courses[..] else { panic!("two runs") };
+        let [whole, short] = &history.series[..] else { panic!("two runs") };
         assert_eq!(whole.divergence, None);
         assert!((whole.times.last().unwrap() - 2.0).abs() < scene.runs[0].step);
         let divergence = short.divergence.expect("such long steps blow up");

@@ -90,7 +90,7 @@ pub(crate) struct Taking<'a> {
     figure: &'a Figure,
     parts: Vec<Part<'a>>,
     /// The parts with the time series of the first scene's runs, if strips are shown.
-    courses: Option<Vec<usize>>,
+    series: Option<Vec<usize>>,
 }
 
 /// One run, advanced through the moments of it that are shown.
@@ -110,7 +110,7 @@ impl<'a> Taking<'a> {
     pub(crate) fn new(figure: &'a Figure) -> Self {
         match &figure.content {
             Content::Sheet(sheet) => Self::of_sheet(figure, sheet),
-            Content::Forces(_) => Self { figure, parts: Vec::new(), courses: None },
+            Content::Forces(_) => Self { figure, parts: Vec::new(), series: None },
         }
     }
 
@@ -129,7 +129,7 @@ impl<'a> Taking<'a> {
         let cells = (0..rows * columns).map(|at| sheet.cell(at / columns, at % columns));
         let shown: Vec<_> = cells.map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
         let scene = &sheet.scenes[0];
-        let courses = (!sheet.strips.is_empty()).then(|| {
+        let series = (!sheet.strips.is_empty()).then(|| {
             // The runs shown, in the order of the scene.
             let runs =
                 (0..scene.runs.len()).filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name));
@@ -147,8 +147,8 @@ impl<'a> Taking<'a> {
         let times: Vec<_> = sheet.columns.iter().filter_map(|column| column.time).collect();
         let closer = sheet.split.map(|split| [sheet.from, split]);
         let parts = parts.into_iter().enumerate().map(|(at, mut part)| {
-            if courses.as_ref().is_some_and(|courses| courses.contains(&at)) {
-                part.runner = part.runner.with_closer_course(&sheet.strips, closer, &times);
+            if series.as_ref().is_some_and(|series| series.contains(&at)) {
+                part.runner = part.runner.with_closer_time_series(&sheet.strips, closer, &times);
                 let last = scene.moment(scene.last_frame());
                 if part.runner.steps_at(last) > part.runner.steps_at(part.end) {
                     part.end = last;
@@ -156,7 +156,7 @@ impl<'a> Taking<'a> {
             }
             part
         });
-        Self { figure, parts: parts.collect(), courses }
+        Self { figure, parts: parts.collect(), series }
     }
 
     /// Advances each run by at most `most_steps`, and returns whether all have reached their end. The result has the
@@ -189,10 +189,10 @@ impl<'a> Taking<'a> {
                 }
                 let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
                 let rows = cells.chunks(sheet.columns.len().max(1)).map(<[RunFrame]>::to_vec).collect();
-                let history = self.courses.map(|courses| {
-                    let mut all = courses.into_iter().map(|part| self.parts[part].runner.take_history());
+                let history = self.series.map(|series| {
+                    let mut all = series.into_iter().map(|part| self.parts[part].runner.take_history());
                     let mut history = all.next().unwrap_or_default();
-                    history.courses.extend(all.flat_map(|one| one.courses));
+                    history.series.extend(all.flat_map(|one| one.series));
                     history
                 });
                 Moments { cells: rows, history, forces: Vec::new() }
@@ -246,6 +246,6 @@ mod tests {
         let time = Some(sheet.scenes[0].frame_time(last));
         let column = sheet.columns.iter().position(|column| column.time == time).expect("the last moment is shown");
         assert_eq!(whole.cells[1][column].snapshot.position, frame.runs[1].snapshot.position);
-        assert_eq!(whole.history.unwrap().courses.len(), 2);
+        assert_eq!(whole.history.unwrap().series.len(), 2);
     }
 }

@@ -1,7 +1,7 @@
 //! Advances runs of a scene, in parallel, to requested moments: frames, states of a figure, moments of a time series.
 //! All other code simulates through this one.
 
-pub use crate::history::{Course, History};
+pub use crate::history::{History, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
@@ -31,7 +31,7 @@ struct Running {
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
-    course: Course,
+    series: TimeSeries,
 }
 
 impl<'a> Runner<'a> {
@@ -57,7 +57,7 @@ impl<'a> Runner<'a> {
                 step: scene.runs[run].step,
                 notes: Vec::new(),
                 wanted: Vec::new(),
-                course: Course::new(run),
+                series: TimeSeries::new(run),
             }
         };
         Self { scene, runs: runs.iter().map(running).collect() }
@@ -70,13 +70,18 @@ impl<'a> Runner<'a> {
     }
 
     /// The same, recording time series of some diagnostics of all runs.
-    pub(crate) fn with_course(self, wanted: &[Diagnostic]) -> Self {
-        self.with_closer_course(wanted, None, &[])
+    pub(crate) fn with_time_series(self, wanted: &[Diagnostic]) -> Self {
+        self.with_closer_time_series(wanted, None, &[])
     }
 
     /// The same with more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually
     /// has, and the steps nearest to each of `shown` (s) are added.
-    pub(crate) fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+    pub(crate) fn with_closer_time_series(
+        mut self,
+        wanted: &[Diagnostic],
+        closer: Option<[f64; 2]>,
+        shown: &[f64],
+    ) -> Self {
         for running in &mut self.runs {
             running.wanted = wanted.to_vec();
             running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
@@ -141,18 +146,18 @@ impl<'a> Runner<'a> {
     pub(crate) fn take_history(&mut self) -> History {
         let take = |running: &mut Running| {
             running.notes.clear();
-            let run = running.course.run;
-            std::mem::replace(&mut running.course, Course::new(run))
+            let run = running.series.run;
+            std::mem::replace(&mut running.series, TimeSeries::new(run))
         };
-        let courses = self.runs.iter_mut().map(take).collect();
-        History { end: self.scene.frame_time(self.scene.last_frame()), courses }
+        let series = self.runs.iter_mut().map(take).collect();
+        History { end: self.scene.frame_time(self.scene.last_frame()), series }
     }
 }
 
 impl Running {
     fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
-        while let (Some(&note), None) = (self.notes.get(self.course.times.len()), self.course.divergence) {
+        while let (Some(&note), None) = (self.notes.get(self.series.times.len()), self.series.divergence) {
             if self.world.steps_at(note) > target {
                 break;
             }
@@ -160,11 +165,11 @@ impl Running {
             let is_there = self.world.advance_towards(note, left);
             if let Status::Diverged(divergence) = self.world.status() {
                 // The last finite state is that before the rejected step.
-                let (last, noted) = (divergence.step - 1, self.course.times.len());
+                let (last, noted) = (divergence.step - 1, self.series.times.len());
                 if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
                     self.note(last);
                 }
-                self.course.divergence = Some(divergence);
+                self.series.divergence = Some(divergence);
             } else if is_there {
                 left -= self.world.steps() - before;
                 self.note(self.world.steps());
@@ -177,8 +182,8 @@ impl Running {
 
     /// Records the present state as that after a step.
     fn note(&mut self, step: u64) {
-        self.course.times.push(step as f64 * self.step);
-        self.course.diagnostics.push(self.world.some_diagnostics(&self.wanted));
+        self.series.times.push(step as f64 * self.step);
+        self.series.diagnostics.push(self.world.some_diagnostics(&self.wanted));
     }
 }
 
@@ -207,7 +212,7 @@ pub(crate) enum Next {
     /// Some more steps were taken.
     Working,
     /// The time series of the scene from start to end, before the first frame.
-    Course(History),
+    TimeSeries(History),
     /// The next frame.
     Frame(Frame),
     /// There are no more.
@@ -215,11 +220,11 @@ pub(crate) enum Next {
 }
 
 impl<'a> Frames<'a> {
-    /// Frames of a runner at its start, in rising order. With `whole_course` the runner has to record time series;
+    /// Frames of a runner at its start, in rising order. With `whole_series` the runner has to record time series;
     /// everything is then simulated before the first frame is returned, and the states of the frames are stored in an
     /// unnamed temporary file in `folder`.
-    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_course: bool, folder: &Path) -> Self {
-        let waiting = whole_course.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
+    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_series: bool, folder: &Path) -> Self {
+        let waiting = whole_series.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
         Self { runner, frames: frames.to_vec(), taken: 0, waiting }
     }
 
@@ -243,7 +248,7 @@ impl<'a> Frames<'a> {
                 return Ok(Next::Working);
             }
             waiting.is_known = true;
-            return Ok(Next::Course(runner.take_history()));
+            return Ok(Next::TimeSeries(runner.take_history()));
         }
         let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
         if let Some(waiting) = waiting {
@@ -341,7 +346,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_course(Diagnostic::ALL);
+        let mut runner = Runner::new(scene, runs).without_field().with_time_series(Diagnostic::ALL);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }
@@ -390,34 +395,34 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_wait_for_the_course_are_the_same() {
+    fn frames_that_wait_for_the_time_series_are_the_same() {
         let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
-        let take = |whole_course: bool, slice: u64| {
-            let runner = Runner::new(&scene, &[0, 1]).with_course(Diagnostic::ALL);
-            let mut frames = Frames::new(runner, &[0, 2], whole_course, &std::env::temp_dir());
-            let (mut taken, mut course) = (Vec::new(), None);
+        let take = |whole_series: bool, slice: u64| {
+            let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
+            let mut frames = Frames::new(runner, &[0, 2], whole_series, &std::env::temp_dir());
+            let (mut taken, mut series) = (Vec::new(), None);
             loop {
                 let [done, all] = frames.steps();
                 assert!(done <= all);
                 match frames.next(slice).expect("a file") {
                     Next::Working => {}
-                    Next::Course(history) => {
+                    Next::TimeSeries(history) => {
                         assert!(taken.is_empty());
-                        course = Some(history);
+                        series = Some(history);
                     }
                     Next::Frame(frame) => taken.push(format!("{frame:?}")),
                     Next::Done => break,
                 }
             }
             assert_eq!(frames.steps()[0], frames.steps()[1]);
-            (taken, course)
+            (taken, series)
         };
         let (streamed, none) = take(false, 1000);
         assert!(none.is_none() && streamed.len() == 2);
         for slice in [3, 1000] {
-            let (waited, course) = take(true, slice);
+            let (waited, series) = take(true, slice);
             assert_eq!(waited, streamed);
-            assert_eq!(format!("{:?}", course.unwrap()), format!("{:?}", History::new(&scene, &[0, 1])));
+            assert_eq!(format!("{:?}", series.unwrap()), format!("{:?}", History::new(&scene, &[0, 1])));
         }
     }
 

@@ -5,7 +5,7 @@ use super::failure::{Failure, Status};
 use super::film::{comment, replaceable, summary};
 use super::frames::FrameRanges;
 use super::interrupt;
-use super::options::{Telling, ThreadOptions, size};
+use super::options::{PrintOptions, ThreadOptions, number_in, size};
 use crate::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline, Written, resized};
 use crate::golden::Pixels;
 use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, read_tags};
@@ -53,11 +53,11 @@ pub(super) struct Animate {
     frames: Option<FrameRanges>,
 
     /// Playback speed: 0.25 for slow motion
-    #[arg(long, value_name = "TIMES", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIMES", value_parser = number_in(0.001, 1000.0), allow_hyphen_values = true)]
     speed: Option<f64>,
 
     /// Frames per second of the animation [default: every frame is shown]
-    #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATE", value_parser = number_in(0.1, 1000.0), allow_hyphen_values = true)]
     fps: Option<f64>,
 
     /// How often it plays; 0 for endless (GIF and APNG) [default: 0]
@@ -65,7 +65,7 @@ pub(super) struct Animate {
     plays: Option<u16>,
 
     /// Show the last frame longer by this time (s)
-    #[arg(long, value_name = "SECONDS", value_parser = pause, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = number_in(0.0, 3600.0), allow_hyphen_values = true)]
     hold_last: Option<f64>,
 
     /// Play forwards, then backwards
@@ -87,7 +87,7 @@ pub(super) struct Animate {
     #[command(flatten)]
     threads: ThreadOptions,
     #[command(flatten)]
-    telling: Telling,
+    printing: PrintOptions,
 }
 
 impl Animate {
@@ -119,7 +119,7 @@ impl Animate {
         let comment = comment(words, &reel.scenes);
         let sheet = Sheet { times: reel.moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
         let sheet = Sheet { size: self.size.unwrap_or(sheet.size), ..sheet };
-        let bar = self.telling.progress(&self.out.to_string_lossy(), PARTS);
+        let bar = self.printing.progress(&self.out.to_string_lossy(), PARTS);
         bar.set_message(format!("{} frames", reel.moments.len()));
         let progress = |done: f64| bar.set_position((done * PARTS as f64) as u64);
         let animation = Animation {
@@ -172,7 +172,7 @@ impl Animate {
             "--loop is for .gif and .apng; with other formats the player decides how often they play".to_owned()
         } else if self.stack && self.folders.len() == 1 {
             "--stack shows several folders one above the other; expected more than one".to_owned()
-        } else if self.telling.json && self.out == Path::new(STANDARD_OUTPUT) {
+        } else if self.printing.json && self.out == Path::new(STANDARD_OUTPUT) {
             "--json describes a file; with -o - standard output is for the pictures".to_owned()
         } else {
             return Ok(());
@@ -181,7 +181,7 @@ impl Animate {
     }
 
     fn report(&self, frames: usize, written: &Written) -> Result<(), Failure> {
-        if self.telling.json {
+        if self.printing.json {
             let bytes = self.out.metadata().map_or(0, |found| found.len());
             let Written { pictures, duration, size } = *written;
             let file = self.out.to_string_lossy();
@@ -189,7 +189,7 @@ impl Animate {
                 "file": file, "size": size, "frames": frames, "pictures": pictures, "duration": duration, "bytes": bytes,
             }));
         }
-        if self.telling.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
+        if self.printing.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
     }
 }
 
@@ -217,7 +217,7 @@ struct Folder {
 }
 
 impl Folders {
-    /// Looks at all frames that are asked for.
+    /// Inspects all requested frames.
     fn open(options: &Animate) -> Result<Self, Failure> {
         let folders: Vec<Folder> =
             options.folders.iter().map(|path| Folder::open(path, options.frames.as_ref())).collect::<Result<_, _>>()?;
@@ -405,25 +405,6 @@ fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("“{name}”")).collect::<Vec<_>>().join(", ")
 }
 
-fn number(typed: &str) -> Result<f64, String> {
-    typed.trim().parse().map_err(|_| "expected a number".to_owned())
-}
-
-fn positive(typed: &str) -> Result<f64, String> {
-    let times = number(typed)?;
-    if (0.001..=1000.0).contains(&times) { Ok(times) } else { Err("expected a number from 0.001 to 1000".to_owned()) }
-}
-
 fn plays(typed: &str) -> Result<u16, String> {
     typed.trim().parse().map_err(|_| format!("expected a whole number from 1 to {}, or 0 for endless", u16::MAX))
-}
-
-fn rate(typed: &str) -> Result<f64, String> {
-    let rate = number(typed)?;
-    if (0.1..=1000.0).contains(&rate) { Ok(rate) } else { Err("expected a number from 0.1 to 1000".to_owned()) }
-}
-
-fn pause(typed: &str) -> Result<f64, String> {
-    let time = number(typed)?;
-    if (0.0..=3600.0).contains(&time) { Ok(time) } else { Err("expected seconds from 0 to 3600".to_owned()) }
 }

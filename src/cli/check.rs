@@ -2,7 +2,7 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::options::{SceneOptions, Telling};
+use super::options::{PrintOptions, SceneOptions};
 use super::scenes::{status_of, worse};
 use clap::Args;
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ pub(super) struct Check {
     scenes: SceneOptions,
 
     #[command(flatten)]
-    telling: Telling,
+    printing: PrintOptions,
 }
 
 impl Check {
@@ -30,11 +30,11 @@ impl Check {
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
             match self.scenes.load(path) {
-                Ok(scene) if self.telling.json => {
+                Ok(scene) if self.printing.json => {
                     let (scene, warnings) = (scene.summary(), &scene.warnings);
                     documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
                 }
-                Ok(_) if self.telling.quiet => {}
+                Ok(_) if self.printing.quiet => {}
                 Ok(scene) => {
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
@@ -42,7 +42,7 @@ impl Check {
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));
-                    if self.telling.json {
+                    if self.printing.json {
                         let (message, mistakes) = (with_causes(&error), error.mistakes());
                         documents.push(json!({ "file": file, "ok": false, "error": message, "mistakes": mistakes }));
                     } else {
@@ -51,7 +51,7 @@ impl Check {
                 }
             }
         }
-        if self.telling.json {
+        if self.printing.json {
             print_json(&json!({ "scenes": Value::from(documents) }))?;
         }
         Ok(failed.unwrap_or(Status::Done))

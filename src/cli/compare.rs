@@ -2,7 +2,7 @@
 
 use super::console;
 use super::failure::{Failure, Status, with_causes};
-use super::options::Telling;
+use super::options::PrintOptions;
 #[cfg(feature = "render")]
 use super::{
     failure::{warn, warn_of_figure},
@@ -70,7 +70,7 @@ pub(super) struct Compare {
     drawing: Drawing,
 
     #[command(flatten)]
-    telling: Telling,
+    printing: PrintOptions,
 }
 
 /// How a scene is drawn to be compared.
@@ -115,7 +115,7 @@ impl Compare {
         let blessed = blesses.then(|| comparison.bless(self.bless_state)).transpose();
         let is_changed = |blessed: &Blessed| !blessed.written.is_empty() || !blessed.removed.is_empty();
         let accepted = matches!(&blessed, Ok(Some(blessed)) if is_changed(blessed) && blessed.left.is_empty());
-        if self.telling.json {
+        if self.printing.json {
             let written = match &blessed {
                 Ok(Some(blessed)) => {
                     json!({ "written": blessed.written, "removed": blessed.removed, "left": blessed.left })
@@ -123,7 +123,7 @@ impl Compare {
                 _ => Value::Null,
             };
             console::print_json(&document(&comparison, &written))?;
-        } else if !self.telling.quiet {
+        } else if !self.printing.quiet {
             console::print(&comparison.text(!blesses))?;
             if let Ok(Some(blessed)) = &blessed {
                 let nothing = comparison.passes().then(|| "nothing to accept\n".to_owned());
@@ -142,7 +142,7 @@ impl Compare {
         }
     }
 
-    /// Both sides beside each other; `None` if the user asked to stop.
+    /// Both sides beside each other; `None` if it was interrupted.
     fn comparison(&self) -> Result<Option<Comparison>, Failure> {
         let failed = |error: ComparisonError| match error {
             ComparisonError::Absent { .. } | ComparisonError::Read { .. } => Failure::files(with_causes(&error)),
@@ -214,7 +214,7 @@ impl Compare {
             _ => Failure::usage(error.to_string()),
         })?;
         match &subject {
-            _ if self.telling.quiet => {}
+            _ if self.printing.quiet => {}
             Subject::Scene(scene) => warn(path, scene),
             Subject::Figure(figure) => warn_of_figure(figure),
         }

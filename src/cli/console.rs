@@ -4,7 +4,7 @@ use super::failure::Failure;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// Prints results. A closed pipe is not an error: the work goes on without its reader.
+/// Prints results. A closed pipe is not an error: the work continues without its reader.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -18,19 +18,6 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value).expect("plain data");
     print(&(text + "\n"))
-}
-
-/// A number with three significant digits.
-pub(super) fn significant(number: f64) -> String {
-    let size = number.abs();
-    if number == 0.0 {
-        "0".to_owned()
-    } else if !(1e-4..1e6).contains(&size) {
-        format!("{number:.2e}")
-    } else {
-        let decimals = (2.0 - size.log10().floor()).max(0.0) as usize;
-        format!("{number:.decimals$}")
-    }
 }
 
 /// Rows with aligned columns: to the left, or to the right where `right` says so.
@@ -52,16 +39,6 @@ pub(super) fn columns<const N: usize>(rows: &[[String; N]], right: [bool; N]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn three_digits() {
-        let cases =
-            [(0.0, "0"), (1.0, "1.00"), (0.012345, "0.0123"), (1234.5, "1234"), (99.96, "100.0"), (1e-9, "1.00e-9")];
-        for (number, text) in cases {
-            assert_eq!(significant(number), text);
-        }
-        assert_eq!(significant(f64::NAN), "NaN");
-    }
 
     #[test]
     fn columns_line_up() {

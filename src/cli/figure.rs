@@ -3,7 +3,7 @@
 use super::console;
 use super::failure::{Failure, Status, warn_of_figure, with_causes};
 use super::interrupt;
-use super::options::{DeviceOptions, Telling, ThreadOptions, size};
+use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
 use super::record;
 use crate::artist::{FigureError, draw_figure};
 use crate::gpu::Gpu;
@@ -56,7 +56,7 @@ pub(super) struct FigureCommand {
     size: Option<[u32; 2]>,
 
     /// Scale of the figures, from 0.1 to 4: 0.5 for web pages
-    #[arg(long, value_name = "TIMES", value_parser = times, conflicts_with = "size")]
+    #[arg(long, value_name = "TIMES", value_parser = number_in(0.1, 4.0), conflicts_with = "size")]
     scale: Option<f64>,
 
     /// The colours: light for papers, dark for talks [default: those of each figure]
@@ -68,7 +68,7 @@ pub(super) struct FigureCommand {
     #[command(flatten)]
     threads: ThreadOptions,
     #[command(flatten)]
-    telling: Telling,
+    printing: PrintOptions,
 }
 
 /// A theme by name.
@@ -81,7 +81,7 @@ enum ThemeOption {
 impl FigureCommand {
     pub(super) fn run(self) -> Result<Status, Failure> {
         if self.figures.is_empty() {
-            if self.telling.json {
+            if self.printing.json {
                 console::print_json(&json!({ "names": NAMES }))?;
                 return Ok(Status::Done);
             }
@@ -89,7 +89,7 @@ impl FigureCommand {
             return Ok(Status::Done);
         }
         let mut figures = self.load()?;
-        if !self.telling.quiet {
+        if !self.printing.quiet {
             figures.iter().for_each(warn_of_figure);
         }
         for figure in &mut figures {
@@ -139,8 +139,8 @@ impl FigureCommand {
         Ok(())
     }
 
-    /// Makes one figure and returns the numbers behind it; `None` if the user asked to stop. That its file can be written
-    /// is found out before the work.
+    /// Makes one figure and returns the numbers behind it; `None` if it was interrupted. That its file can be written is
+    /// checked before the work.
     fn make(&self, figure: &Figure, path: &Path, gpu: &Gpu) -> Result<Option<Value>, Failure> {
         let mut file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
@@ -216,11 +216,11 @@ impl FigureCommand {
         figures.iter().map(path).collect()
     }
 
-    /// What a figure shows of its simulations; `None` if the user asked to stop.
+    /// What a figure shows of its simulations; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
-        let bar = self.telling.progress(&figure.name, taking.steps()[1]);
+        let bar = self.printing.progress(&figure.name, taking.steps()[1]);
         let mut is_there = false;
         while !is_there && !interrupt::requested() {
             is_there = taking.advance(slice);
@@ -232,7 +232,7 @@ impl FigureCommand {
 
     /// Lists the figures that were made.
     fn report(&self, made: &[(&Figure, &PathBuf, Value)]) -> Result<(), Failure> {
-        if self.telling.json {
+        if self.printing.json {
             let entry = |(figure, path, numbers): &(&Figure, &PathBuf, Value)| {
                 let file = path.to_string_lossy();
                 json!({ "name": figure.name, "file": file, "size": figure.size, "numbers": numbers })
@@ -240,7 +240,7 @@ impl FigureCommand {
             let figures: Vec<_> = made.iter().map(entry).collect();
             return console::print_json(&json!({ "figures": figures }));
         }
-        if !self.telling.quiet {
+        if !self.printing.quiet {
             for (figure, path, _) in made {
                 let [width, height] = figure.size;
                 console::print(&format!("{}  {width}×{height}\n", path.display()))?;
@@ -291,11 +291,6 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
             json!(all.collect::<Vec<_>>())
         }
     }
-}
-
-fn times(typed: &str) -> Result<f64, String> {
-    let times: f64 = typed.trim().parse().map_err(|_| "expected a number, such as 0.5".to_owned())?;
-    if (0.1..=4.0).contains(&times) { Ok(times) } else { Err("expected a number from 0.1 to 4".to_owned()) }
 }
 
 /// The message for an unknown name.

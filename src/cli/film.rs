@@ -3,6 +3,7 @@
 use super::failure::{Failure, Status, with_causes};
 use crate::animation::{AnimationError, Written};
 use crate::golden::PictureError;
+use indicatif::DecimalBytes;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::Read;
@@ -18,12 +19,7 @@ pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
     let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
     let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
-    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", file_size(bytes))
-}
-
-/// The size of a file for people.
-fn file_size(bytes: u64) -> String {
-    if bytes < 1_000_000 { format!("{} kB", bytes.div_ceil(1000)) } else { format!("{:.1} MB", bytes as f64 / 1e6) }
+    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", DecimalBytes(bytes))
 }
 
 /// The comment of an animation.

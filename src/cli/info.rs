@@ -25,7 +25,7 @@ impl Info {
         let version = env!("CARGO_PKG_VERSION");
         let machine = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
         let (used, present) = processor_features();
-        let graphics = Graphics::find();
+        let (adapters, as_json) = graphics();
         if self.json {
             print_json(&json!({
                 "version": version,
@@ -33,7 +33,7 @@ impl Info {
                 "threads": threads,
                 "processor_features": { "used": used, "present": present },
                 "pictures": cfg!(feature = "render"),
-                "adapters": graphics.json(),
+                "adapters": as_json,
             }))?;
             return Ok(Status::Done);
         }
@@ -42,7 +42,7 @@ impl Info {
         let mut line = |head: &str, what: &str| writeln!(text, "  {head:<12}{what}").expect("writing to a string");
         line("machine", &format!("{machine}, {threads} thread{}", if threads == 1 { "" } else { "s" }));
         line("features", &format!("{} in use; the processor has {}", list(&used), list(&present)));
-        for (number, adapter) in graphics.lines().iter().enumerate() {
+        for (number, adapter) in adapters.iter().enumerate() {
             line(if number == 0 { "adapters" } else { "" }, adapter);
         }
         print(&text)?;
@@ -66,58 +66,30 @@ fn processor_features() -> (Vec<&'static str>, Vec<&'static str>) {
     (used, present)
 }
 
-/// The graphics adapters of this machine and the number of the one that would be chosen.
+/// The graphics adapters of this machine in lines of text, and as JSON.
 #[cfg(feature = "render")]
-struct Graphics(Vec<crate::gpu::AdapterDescription>, Option<usize>);
-
-#[cfg(feature = "render")]
-impl Graphics {
-    fn find() -> Self {
-        let (adapters, chosen) = crate::gpu::adapters();
-        Self(adapters, chosen)
+fn graphics() -> (Vec<String>, Vec<Value>) {
+    let (adapters, chosen) = crate::gpu::adapters();
+    if adapters.is_empty() {
+        return (vec![format!("none: {}", crate::gpu::InitError::NoAdapter)], Vec::new());
     }
-
-    fn lines(&self) -> Vec<String> {
-        if self.0.is_empty() {
-            return vec![format!("none: {}", crate::gpu::InitError::NoAdapter)];
-        }
-        let line = |(at, adapter): (usize, &crate::gpu::AdapterDescription)| {
-            let mark = if self.1 == Some(at) { ", chosen by --adapter auto" } else { "" };
-            format!("{adapter}{mark}")
-        };
-        self.0.iter().enumerate().map(line).collect()
-    }
-
-    fn json(&self) -> Value {
-        let entry = |(at, adapter): (usize, &crate::gpu::AdapterDescription)| {
-            json!({
-                "name": adapter.name,
-                "type": adapter.device_type,
-                "backend": adapter.backend,
-                "driver": adapter.driver,
-                "driver_info": adapter.driver_info,
-                "chosen": self.1 == Some(at),
-            })
-        };
-        self.0.iter().enumerate().map(entry).collect()
-    }
+    let both = adapters.into_iter().enumerate().map(|(at, adapter)| {
+        let is_chosen = chosen == Some(at);
+        let entry = json!({
+            "name": adapter.name,
+            "type": adapter.device_type,
+            "backend": adapter.backend,
+            "driver": adapter.driver,
+            "driver_info": adapter.driver_info,
+            "chosen": is_chosen,
+        });
+        (format!("{adapter}{}", if is_chosen { ", chosen by --adapter auto" } else { "" }), entry)
+    });
+    both.unzip()
 }
 
-/// Without pictures no adapter is looked for.
+/// Without pictures no adapter is searched for.
 #[cfg(not(feature = "render"))]
-struct Graphics;
-
-#[cfg(not(feature = "render"))]
-impl Graphics {
-    fn find() -> Self {
-        Self
-    }
-
-    fn lines(&self) -> Vec<String> {
-        vec!["not searched: this program was built without the feature `render`".to_owned()]
-    }
-
-    fn json(&self) -> Value {
-        json!([])
-    }
+fn graphics() -> (Vec<String>, Vec<Value>) {
+    (vec!["not searched: this program was built without the feature `render`".to_owned()], Vec::new())
 }

@@ -53,7 +53,7 @@ fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
 
 /// Whether a signal does what it does by default: neither ignored nor handled.
 #[cfg(unix)]
-#[allow(unsafe_code, reason = "no crate asks for this in a safe way, and only Linux tells it in a file")]
+#[allow(unsafe_code, reason = "no crate asks for this in a safe way, and only Linux has it in a file")]
 fn is_default(signal: std::ffi::c_int) -> bool {
     let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
     // SAFETY: without a new action, `sigaction` changes nothing but what the last pointer points to, which has room for
@@ -64,8 +64,8 @@ fn is_default(signal: std::ffi::c_int) -> bool {
     }
 }
 
-/// Calls `request` for each request to end the program, all of which are taken for Ctrl-C, until it says that the program
-/// is to end at once.
+/// Calls `request` for each request to end the program, all of which count as Ctrl-C, until it returns that the program
+/// shall end at once.
 #[cfg(not(unix))]
 fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     // A program that has its own handler keeps it.
@@ -76,7 +76,7 @@ fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     });
 }
 
-/// Whether the user asked to stop.
+/// Whether an interruption was requested.
 pub(super) fn requested() -> bool {
     REQUESTED.load(Ordering::SeqCst)
 }

@@ -53,7 +53,7 @@ pub(super) struct RunOptions {
     #[command(flatten)]
     pub(super) threads: ThreadOptions,
     #[command(flatten)]
-    pub(super) telling: Telling,
+    pub(super) printing: PrintOptions,
 }
 
 /// The number of threads.
@@ -65,12 +65,12 @@ pub(super) struct ThreadOptions {
 }
 
 impl ThreadOptions {
-    /// As many as were asked for, or one for each processor.
+    /// The requested number, or one for each processor.
     pub(super) fn count(self) -> usize {
         self.count_or(processors())
     }
 
-    /// As many as were asked for, or so many.
+    /// The requested number, or this one.
     pub(super) fn count_or(self, usual: usize) -> usize {
         self.threads.map_or(usual, usize::from)
     }
@@ -78,7 +78,7 @@ impl ThreadOptions {
 
 /// What is printed, and how.
 #[derive(Args, Clone, Copy, Debug)]
-pub(super) struct Telling {
+pub(super) struct PrintOptions {
     /// Print errors only, neither progress, results nor warnings
     #[arg(short, long)]
     pub(super) quiet: bool,
@@ -88,9 +88,9 @@ pub(super) struct Telling {
     pub(super) json: bool,
 }
 
-impl Telling {
-    /// Whether results are told in words.
-    pub(super) fn is_in_words(self) -> bool {
+impl PrintOptions {
+    /// Whether results are printed as text.
+    pub(super) fn prints_text(self) -> bool {
         !self.quiet && !self.json
     }
 
@@ -136,6 +136,15 @@ impl DeviceOptions {
 #[cfg(feature = "render")]
 pub(super) fn samples() -> impl TypedValueParser<Value = u32> {
     PossibleValuesParser::new(["1", "4"]).map(|typed| typed.parse().expect("one of the numbers above"))
+}
+
+/// A number from `least` to `most`.
+#[cfg(feature = "render")]
+pub(super) fn number_in(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |typed| {
+        let number = typed.trim().parse().ok().filter(|number| (least..=most).contains(number));
+        number.ok_or_else(|| format!("expected a number from {least} to {most}"))
+    }
 }
 
 /// Sides of a picture that a scene may have, too (px).

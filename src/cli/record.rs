@@ -3,7 +3,7 @@
 use super::console;
 use super::failure::{Failure, Status};
 use super::interrupt;
-use super::options::{RunOptions, Telling};
+use super::options::{PrintOptions, RunOptions};
 use super::report;
 use super::scenes::Job;
 use crate::history::History;
@@ -28,7 +28,7 @@ pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
     /// The diagnostic, if there is one, whose time series over the whole scene is needed before the first frame.
-    fn course(&self) -> Option<Diagnostic>;
+    fn strip(&self) -> Option<Diagnostic>;
     /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
@@ -64,17 +64,17 @@ pub(super) fn run_all(
         }
         let path = job.folder.path().to_owned();
         let mut blank = if number > 0 { "\n" } else { "" };
-        if let Some(replaced) = job.folder.replaced().filter(|_| options.telling.is_in_words()) {
+        if let Some(replaced) = job.folder.replaced().filter(|_| options.printing.prints_text()) {
             console::print(&format!("{blank}{}: replacing {replaced}\n", path.display()))?;
             blank = "";
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         result = record(job, &mut summary, &pool, options, studio);
-        if options.telling.json {
+        if options.printing.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
             merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
             documents.push(document);
-        } else if !options.telling.quiet && result.is_ok() {
+        } else if !options.printing.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
         }
         if result.is_err() {
@@ -83,7 +83,7 @@ pub(super) fn run_all(
         interrupted = summary.outcome == Outcome::Interrupted;
     }
     // Finished scenes are reported before the failure.
-    let printed = if options.telling.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
+    let printed = if options.printing.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
     result.and(printed)?;
     Ok(if interrupted { Status::Interrupted } else { Status::Done })
 }
@@ -155,7 +155,7 @@ impl Recording<'_> {
         let mut states =
             options.states.then(|| StatesWriter::create(self.folder, self.scene, &self.runs)).transpose()?;
 
-        let made = self.simulate(pool, options.telling, pictures.as_deref_mut(), |frame, pictures| {
+        let made = self.simulate(pool, options.printing, pictures.as_deref_mut(), |frame, pictures| {
             diagnostics.write(frame)?;
             if let Some(states) = &mut states {
                 states.write(frame)?;
@@ -203,24 +203,24 @@ impl Recording<'_> {
     fn simulate<'p>(
         &mut self,
         pool: &ThreadPool,
-        telling: Telling,
+        printing: PrintOptions,
         mut pictures: Option<&mut (dyn Pictures + 'p)>,
         mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
-        let course = pictures.as_ref().and_then(|pictures| pictures.course());
+        let strip = pictures.as_ref().and_then(|pictures| pictures.strip());
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_field();
             }
-            if let Some(diagnostic) = course {
-                runner = runner.with_course(&[diagnostic]);
+            if let Some(diagnostic) = strip {
+                runner = runner.with_time_series(&[diagnostic]);
             }
-            Frames::new(runner, &self.frames, course.is_some(), self.folder)
+            Frames::new(runner, &self.frames, strip.is_some(), self.folder)
         });
-        let bar = telling.progress(&self.scene.title, frames.steps()[1]);
-        if course.is_some() {
+        let bar = printing.progress(&self.scene.title, frames.steps()[1]);
+        if strip.is_some() {
             bar.set_message("simulating ahead for the strips");
         }
         let slice = slice(&self.scene.body);
@@ -231,7 +231,7 @@ impl Recording<'_> {
             bar.set_position(frames.steps()[0]);
             match next.map_err(OutputError::writing(self.folder))? {
                 Next::Working => {}
-                Next::Course(history) => {
+                Next::TimeSeries(history) => {
                     pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(&history));
                 }
                 Next::Frame(frame) => {

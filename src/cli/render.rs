@@ -72,7 +72,7 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let mut scenes = self.scenes.load_all(self.options.telling.quiet)?;
+        let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| scene.view.size = size);
         }
@@ -97,14 +97,14 @@ impl Render {
             made: Mutex::default(),
         };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
-        if self.options.telling.is_in_words() {
+        if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
             made.iter().try_for_each(|line| console::print(line))?;
         }
         result
     }
 
-    /// The animations that are asked for, if they can be made.
+    /// The requested animations, if they can be made.
     fn films(&self, scenes: usize) -> Result<Vec<(Format, PathBuf)>, Failure> {
         if scenes > 1 && !self.animate.is_empty() {
             return Err(Failure::usage("--animate writes one scene to a file; render the scenes one at a time"));
@@ -298,7 +298,7 @@ impl Pictures for Drawing<'_> {
         }
     }
 
-    fn course(&self) -> Option<Diagnostic> {
+    fn strip(&self) -> Option<Diagnostic> {
         self.scene.view.strip
     }
 

@@ -1,8 +1,10 @@
 //! The summary after a scene was run.
 
-use super::console::{columns, significant};
+use super::console::columns;
 use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
+use crate::reading::words::short;
 use crate::sim::diagnostics::Diagnostic;
+use crate::sim::words::quantity;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -40,13 +42,13 @@ fn row(run: &RunSummary) -> [String; 4] {
         RunStatus::Ok => "ok".to_owned(),
         RunStatus::Diverged { time, step, element } => {
             let element = element.map(|element| format!(", element {element}")).unwrap_or_default();
-            format!("diverged at {} s (step {step}{element})", significant(time))
+            format!("diverged at {} s (step {step}{element})", short(time))
         }
     };
     let (turned_over, shape_error) = match &run.last {
         Some(last) => {
             let number = |diagnostic| last.diagnostics.get(diagnostic);
-            let shape_error = format!("{} m", significant(number(Diagnostic::ShapeError)));
+            let shape_error = quantity(number(Diagnostic::ShapeError), "m");
             (number(Diagnostic::TurnedOver).to_string(), shape_error)
         }
         None => Default::default(),

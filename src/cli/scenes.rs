@@ -108,7 +108,9 @@ impl RunOptions {
     fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
         let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
         if let Some(unknown) = self.only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
-            return Err(Failure::usage(unknown_run(scene, unknown, &names)));
+            let (message, help) = scene.no_run(unknown);
+            let help = help.map_or(String::new(), |help| format!("; {help}"));
+            return Err(Failure::usage(format!("--only: {message}{help}")));
         }
         let wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|only| only == name);
         Ok((0..names.len()).filter(|&run| wanted(names[run])).collect())
@@ -121,24 +123,9 @@ impl RunOptions {
     }
 }
 
-/// The same command with `--overwrite`, which stands where no other word is taken for its own.
+/// The same command with `--overwrite`, placed where it cannot be the value of another option.
 fn overwriting(words: &[OsString]) -> String {
     let words: Vec<_> = words.iter().map(|word| shell::word(&word.to_string_lossy())).collect();
     let (program, rest) = words.split_at(words.len().min(2));
     [program, &["--overwrite".to_owned()], rest].concat().join(" ")
-}
-
-/// How similar a name must be to be suggested, of 1 for equal.
-const SIMILAR: f64 = 0.7;
-
-fn unknown_run(scene: &Scene, unknown: &str, names: &[&str]) -> String {
-    let lower = unknown.to_lowercase();
-    let likeness = |name: &str| strsim::jaro_winkler(&lower, &name.to_lowercase());
-    let nearest = names.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    let hint = match nearest.filter(|name| likeness(name) >= SIMILAR) {
-        Some(name) => format!("; did you mean “{name}”?"),
-        None => ".".to_owned(),
-    };
-    let all: Vec<_> = names.iter().map(|name| format!("“{name}”")).collect();
-    format!("--only: “{}” has no run “{unknown}”{hint} Its runs are {}", scene.title, all.join(", "))
 }

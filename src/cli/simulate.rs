@@ -30,7 +30,7 @@ pub(super) struct Simulate {
 
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let jobs = self.options.jobs(self.scenes.load_all(self.options.telling.quiet)?, false, words)?;
+        let jobs = self.options.jobs(self.scenes.load_all(self.options.printing.quiet)?, false, words)?;
         record::run_all(jobs, &self.options, words, false, None)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status};
-use super::options::{Telling, ThreadOptions};
+use super::options::{PrintOptions, ThreadOptions};
 use super::{interrupt, record};
 use crate::output::SheetFiles;
 use crate::table::{Watch, ratio, table1};
@@ -40,14 +40,14 @@ pub(super) struct Table {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     orientations: u32,
 
-    // The ratio is measured on one thread if nobody asks for more.
+    // The ratio is measured on one thread by default.
     #[command(flatten)]
     threads: ThreadOptions,
     #[command(flatten)]
-    telling: Telling,
+    printing: PrintOptions,
 }
 
-/// What can be asked for.
+/// The tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Name {
     /// The errors of the rotations (Table 1)
@@ -85,24 +85,24 @@ impl Table {
             let files = SheetFiles::begin(&folder, name.files(), &self.mark(name), self.overwrite)?;
             let Some(made) = self.measure(name)? else {
                 status = Status::Interrupted;
-                if self.telling.is_in_words() {
+                if self.printing.prints_text() {
                     print(&format!("interrupted; {} was not made\n", name.word()))?;
                 }
                 break;
             };
             files.finish(&made.texts)?;
-            if self.telling.json {
+            if self.printing.json {
                 let mut document = json!({ "table": name.word(), "folder": folder.to_string_lossy() });
                 document["files"] = json!(name.files());
                 record::merge(&mut document, made.json);
                 documents.push(document);
-            } else if !self.telling.quiet {
+            } else if !self.printing.quiet {
                 let blank = if number > 0 { "\n" } else { "" };
                 let (table, names) = (&made.texts[0], name.files().join(", "));
                 print(&format!("{blank}{table}\nIn {}: {names}\n", folder.display()))?;
             }
         }
-        if self.telling.json {
+        if self.printing.json {
             print_json(&json!({ "tables": documents }))?;
         }
         Ok(status)
@@ -128,7 +128,7 @@ impl Table {
             _ => (protocol.work(), self.threads.count()),
         };
         let pool = record::pool(threads)?;
-        let bar = self.telling.progress(name.word(), work);
+        let bar = self.printing.progress(name.word(), work);
         let watch: &Watch<'_> = &|more| {
             bar.inc(more);
             !interrupt::requested()

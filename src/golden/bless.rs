@@ -94,20 +94,20 @@ impl Comparison {
         let is_golden = expected.kind == Kind::Golden;
         let failed = self.pictures.iter().filter(|picture| !picture.verdict.passes());
         let mut wrong = failed.filter_map(|picture| {
-            let told = |what: String| Some(format!("{}: {what}", picture.name));
+            let unfit = |what: String| Some(format!("{}: {what}", picture.name));
             if !is_golden && !matches!(picture.verdict, Verdict::Unreadable { .. }) {
                 // It was read before.
                 return None;
             }
             match self.sides[1].source(&picture.name)?.pixels() {
-                Err(error) => told(error.to_string()),
+                Err(error) => unfit(error.to_string()),
                 Ok(pixels) if is_golden && pixels.label.is_none() => {
-                    told("it has no recorded state and cannot belong to a golden".to_owned())
+                    unfit("it has no recorded state and cannot belong to a golden".to_owned())
                 }
                 Ok(pixels) if is_golden && actual.record.is_none() => {
                     let size = expected.record.as_ref().map(|record| record.size);
                     let [width, height] = size.filter(|size| *size != pixels.size)?;
-                    told(format!(
+                    unfit(format!(
                         "a picture of this golden has {width}×{height} pixels; draw it so, or compare its scene"
                     ))
                 }

@@ -179,7 +179,7 @@ fn draw_scene(
     let strip = scene.view.strip.filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
     let runner = match &strip {
-        Some(strip) => runner.with_course(std::slice::from_ref(strip)),
+        Some(strip) => runner.with_time_series(std::slice::from_ref(strip)),
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();
@@ -190,7 +190,7 @@ fn draw_scene(
         }
         let frame = match frames.next(SLICE)? {
             Next::Working => continue,
-            Next::Course(history) => {
+            Next::TimeSeries(history) => {
                 artist.iter_mut().for_each(|artist| artist.set_history(&history));
                 continue;
             }
@@ -334,7 +334,7 @@ mod tests {
         Comparison::between(side(golden, Kind::Golden), side(actual, Kind::Drawn)).expect("two records")
     }
 
-    /// Fewer states are other ones, also where no picture could tell.
+    /// Fewer states are other ones, also where no picture shows it.
     #[test]
     fn a_scene_that_became_shorter_never_passes() {
         assert!(changed(|_| ()).passes());

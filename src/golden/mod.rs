@@ -180,10 +180,10 @@ impl Comparison {
         notes.extend(actual.notes.iter().cloned());
         match ends(&expected, &actual) {
             Some([recorded, end]) if end < recorded => {
-                notes.push(format!("the golden goes on to frame {recorded}, the scene ends with frame {end}"));
+                notes.push(format!("the golden continues to frame {recorded}, the scene ends with frame {end}"));
             }
             Some([recorded, end]) if end > recorded => {
-                notes.push(format!("the golden ends with frame {recorded}, the scene goes on to frame {end}"));
+                notes.push(format!("the golden ends with frame {recorded}, the scene continues to frame {end}"));
             }
             _ => {}
         }
@@ -196,9 +196,9 @@ impl Comparison {
             notes.push(format!("the golden records states of {}, of which none is known here", unknown.join(", ")));
         }
         let judged: Vec<Compared> = beside.iter().filter_map(|(name, label)| judge(name, label, &expected)).collect();
-        let told = beside.len() - judged.len();
-        if told > 0 {
-            let frames = if told == 1 { "1 more frame has" } else { &format!("{told} more frames have") };
+        let undrawn = beside.len() - judged.len();
+        if undrawn > 0 {
+            let frames = if undrawn == 1 { "1 more frame has" } else { &format!("{undrawn} more frames have") };
             notes.push(format!("{frames} no picture in the golden; only states were compared"));
         }
         let mut pictures: Vec<Compared> = read
@@ -436,7 +436,7 @@ fn complete(picture: &mut Compared, label: Option<&Tags>, expected: &Side, diffe
 
 /// A message if pictures of one name show different frames or times.
 fn other_moments(pairs: &[Pair]) -> Option<String> {
-    let told = |pair: &Pair| {
+    let moment = |pair: &Pair| {
         let shown = |label: &Option<Tags>| match label.as_ref()?.shows {
             Shown::Frame { frame, time } => Some((frame, time)),
             Shown::Figure(_) => None,
@@ -453,7 +453,7 @@ fn other_moments(pairs: &[Pair]) -> Option<String> {
             format!("{name} shows frame {frame} at {is} s instead of {was} s")
         })
     };
-    let mut all = pairs.iter().filter_map(told);
+    let mut all = pairs.iter().filter_map(moment);
     let first = all.next()?;
     Some(match all.count() {
         0 => first,

@@ -224,7 +224,7 @@ fn pictures_in(folder: &Path) -> Result<BTreeMap<String, Source>, ComparisonErro
         let is_picture = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
         let Some(name) = name.to_str().map(str::to_owned) else {
             if is_picture {
-                let source = std::io::Error::new(std::io::ErrorKind::InvalidData, "its name is not UTF-8; rename it");
+                let source = std::io::Error::new(ErrorKind::InvalidData, "its name is not UTF-8; rename it");
                 return Err(ComparisonError::Read { path, source });
             }
             continue;

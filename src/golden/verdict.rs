@@ -235,7 +235,7 @@ mod tests {
             ..pixels("", "1", move |bytes| (0..count).for_each(|at| bytes[30 * at] = 0))
         };
         assert!(of(&few_untold(8)).passes() && !of(&few_untold(9)).passes());
-        // Where nobody says who drew, nothing excuses a difference.
+        // Without recorded adapters there is no tolerance.
         let foreign = |other: &Pixels| Verdict::new(&untold, other);
         assert!(foreign(&untold).passes());
         let hardly = |bytes: &mut [u8]| bytes[0] += 1;

@@ -1,4 +1,4 @@
-//! Resolves the look of a scene, and checks that its colours can be read and told apart.
+//! Resolves the look of a scene, and checks the contrast of text and the difference of colours.
 
 use super::file::{ShowFile, ViewFile};
 use super::palette::{Palette, Theme};

@@ -90,7 +90,7 @@ pub(crate) struct ViewFile {
     /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
     pub(crate) spring_colour: Option<SpringColourFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
-    pub(crate) light: LightFile,
+    pub(crate) light: Light,
     /// Whether bodies and obstacles cast shadows on the floor.
     pub(crate) shadow: bool,
     /// How floors are drawn. In the plane they never have a grid.
@@ -135,7 +135,7 @@ impl Default for ViewFile {
             opacity: 1.0,
             explode: 0.0,
             spring_colour: None,
-            light: LightFile::default(),
+            light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),
@@ -182,19 +182,6 @@ impl Default for SpringColourFile {
     }
 }
 
-/// Direction of the light, relative to the camera.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct LightFile {
-    /// Azimuth from straight behind the viewer to the left (rad); negative to the right. Default: 62°.
-    #[schemars(range(min = -3.15, max = 3.15))]
-    pub(crate) azimuth: f64,
-    /// Elevation above the horizon (rad). Default: 50°. The light is steeper for bodies that fly high, whose shadows would
-    /// otherwise leave the picture.
-    #[schemars(range(min = 0.2, max = 1.57))]
-    pub(crate) elevation: f64,
-}
-
 /// Which lines are drawn on surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -234,13 +221,6 @@ pub(crate) enum ShowFile {
     /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on the
     /// surface, in space only for those that face the viewer, and for at most 500.
     Displacements,
-}
-
-impl Default for LightFile {
-    fn default() -> Self {
-        let Light { azimuth, elevation } = Light::default();
-        Self { azimuth, elevation }
-    }
 }
 
 /// A scalar field and its colour map.

@@ -96,7 +96,7 @@ fn letters(_: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// The digest of what is in a file, which stands for its name in that of a scene.
+/// The digest of what is in a file, which replaces its name in that of a scene.
 pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

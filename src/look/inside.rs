@@ -1,4 +1,4 @@
-//! Whether a camera stands inside a body.
+//! Whether a point, such as that of a camera, lies inside a body.
 
 use crate::sim::body::Body;
 use glam::DVec3;
@@ -16,7 +16,7 @@ pub(crate) fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
 }
 
 /// The solid angle of a triangle seen from the origin, positive if its corners run counter-clockwise from outside (A. van
-/// Oosterom, J. Strackee, 1983).
+/// Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [x, y, z] = [a.length(), b.length(), c.length()];
     let above = a.dot(b.cross(c));

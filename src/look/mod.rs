@@ -18,6 +18,7 @@ mod view;
 
 pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
+pub(crate) use inside::is_inside;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub(crate) use ramp::SHADES;

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_takes_turned_over_elements_for_sound_ones() {
+    fn turned_over_elements_differ_from_others() {
         let mut least = [f64::INFINITY; 4];
         for theme in [LIGHT, DARK] {
             let [sound, flat, tally, alarm] = [theme.sound, theme.sound_flat, theme.tally, theme.alarm].map(linear);

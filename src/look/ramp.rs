@@ -12,8 +12,8 @@ pub(crate) const SHADES: usize = 64;
 /// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
 ///
 /// Why these: lightness alone falls evenly over the scale, so that it reads in grey and by colour-blind eyes; hue turns
-/// with it, so that mild shading is not taken for another value; nowhere is there more red than green or blue together,
-/// so that nothing is taken for vermilion, "turned over"; and the dark end is light enough for edges to show on it.
+/// with it, so that mild shading does not look like another value; nowhere is there more red than green or blue together,
+/// so that nothing looks like vermilion, "turned over"; and the dark end is light enough for edges to show on it.
 const POINTS: [[f64; 3]; 9] = [
     [0.9550, -0.0193, 0.0230],
     [0.8853, -0.0516, 0.0162],
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn lightness_tells_the_order_and_nothing_is_vermilion() {
+    fn lightness_shows_the_order_and_nothing_is_vermilion() {
         for (theme, sign) in [(Theme::Light, -1.0), (Theme::Dark, 1.0)] {
             let ramp = ramp(USUAL, theme);
             assert!(ramp.windows(3).all(|part| sign * (lightness(part[2]) - lightness(part[0])) > 0.005));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn scales_of_one_direction_tell_the_order_in_grey_and_the_other_has_its_middle_in_the_middle() {
+    fn scales_of_one_direction_show_the_order_in_grey_and_the_other_has_its_middle_in_the_middle() {
         for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Magma, ColourMap::Greys] {
             let ramp = ramp(map, Theme::Dark);
             assert!(ramp.windows(3).all(|part| lightness(part[2]) > lightness(part[0])), "{map:?}");
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn all_eyes_tell_shortened_springs_from_lengthened_ones() {
+    fn shortened_and_lengthened_springs_differ_for_any_colour_vision() {
         for theme in [Theme::Light, Theme::Dark] {
             let ramp = ramp(ColourMap::VioletGreen, theme);
             let [low, middle, high] = [0, SHADES / 2, SHADES - 1].map(|at| ramp[at]);
@@ -165,7 +165,7 @@ mod tests {
 
     /// `magma` is the one exception, and its description says so.
     #[test]
-    fn nothing_is_taken_for_turned_over() {
+    fn no_scale_looks_like_turned_over_elements() {
         use ColourMap::{Cividis, Greys, PurpleGreen, VioletGreen, Viridis};
         let maps = [USUAL, Viridis, Cividis, Greys, PurpleGreen, VioletGreen];
         for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {

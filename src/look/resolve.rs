@@ -5,7 +5,7 @@ use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, V
 use super::framing;
 use super::inside::is_inside;
 use super::subject::Subject;
-use super::view::{ColourScale, FontFiles, Labels, Light, StrainScale, View, Visible};
+use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
 use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
@@ -110,7 +110,7 @@ pub(crate) fn resolve(
         opacity: typed.opacity,
         explode: typed.explode,
         spring_strain,
-        light: Light { azimuth: typed.light.azimuth, elevation: typed.light.elevation },
+        light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,
         edges: match typed.edges {

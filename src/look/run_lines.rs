@@ -71,7 +71,7 @@ mod tests {
     use crate::look::Theme;
 
     #[test]
-    fn nobody_takes_a_run_for_another_or_for_what_has_turned_over() {
+    fn runs_differ_from_each_other_and_from_turned_over_elements() {
         for theme in [Theme::Light, Theme::Dark].map(Palette::of) {
             for (at, &colour) in theme.runs.iter().enumerate() {
                 let found = contrast(colour, theme.background);
@@ -84,7 +84,7 @@ mod tests {
                 }
             }
         }
-        // Without colours, dashes tell runs apart.
+        // Without colours, dashes distinguish runs.
         for (at, dash) in DASHES.iter().enumerate() {
             assert!(!DASHES[..at].contains(dash) && dash.len() % 2 == 0 && dash.len() <= 6, "{dash:?}");
         }

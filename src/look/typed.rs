@@ -2,17 +2,17 @@
 
 use crate::colour::{Colour, UnknownColour, names, parse, written};
 use crate::reading::words::{nearest, quoted};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::str::FromStr;
 
 /// What a colour may be, for messages.
 const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS such as \"steelblue\"";
 
 /// An opaque colour. It is written back as digits, so that a name and its digits mean the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
+#[schemars(extend("format" = "colour"))]
 pub(crate) struct TypedColour(pub(crate) Colour);
 
 impl TypedColour {
@@ -56,18 +56,10 @@ impl From<TypedColour> for String {
     }
 }
 
-impl JsonSchema for TypedColour {
-    fn schema_name() -> Cow<'static, str> {
-        "Colour".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string", "format": "colour" })
-    }
-}
-
 /// What is behind everything.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
+#[schemars(extend("format" = "colour-or-transparent"))]
 pub(crate) enum BackgroundFile {
     /// Nothing: whatever the picture is laid on.
     Transparent,
@@ -108,15 +100,6 @@ impl From<BackgroundFile> for String {
             BackgroundFile::Transparent => TRANSPARENT.to_owned(),
             BackgroundFile::Colour(colour) => colour.into(),
         }
-    }
-}
-
-impl JsonSchema for BackgroundFile {
-    fn schema_name() -> Cow<'static, str> {
-        "Background".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string", "format": "colour-or-transparent" })
     }
 }
 

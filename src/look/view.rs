@@ -123,12 +123,16 @@ pub struct Labels {
     pub number: bool,
 }
 
-/// Where the light comes from, seen from the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Direction of the light, relative to the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Light {
-    /// Turn around the vertical from straight behind the camera to its left (rad).
+    /// Azimuth from straight behind the viewer to the left (rad); negative to the right. Default: 62°.
+    #[schemars(range(min = -3.15, max = 3.15))]
     pub azimuth: f64,
-    /// Height above the horizon (rad).
+    /// Elevation above the horizon (rad). Default: 50°. The light is steeper for bodies that fly high, whose shadows would
+    /// otherwise leave the picture.
+    #[schemars(range(min = 0.2, max = 1.57))]
     pub elevation: f64,
 }
 

@@ -5,7 +5,7 @@ use super::axis::Axis;
 use super::caption::Writer;
 use super::chart::Chart;
 use super::narrow::narrow;
-use crate::history::Course;
+use crate::history::TimeSeries;
 use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
@@ -43,17 +43,17 @@ pub(super) struct Series {
 
 impl Series {
     /// A diagnostic of a run of a scene, in the colours of a picture.
-    pub(super) fn new(diagnostic: Diagnostic, course: &Course, scene: &Scene, palette: &Palette) -> Self {
-        let values = course.diagnostics.iter().map(|all| diagnostic.of(all));
-        let points = course.times.iter().zip(values).map(|(&time, value)| [time, value]);
-        let run = &scene.runs[course.run];
+    pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, palette: &Palette) -> Self {
+        let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
+        let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
+        let run = &scene.runs[of_run.run];
         Self {
-            run: course.run,
+            run: of_run.run,
             name: run.name.clone(),
             style: run.line(palette),
             is_count: diagnostic == Diagnostic::TurnedOver,
             points: points.filter(|[_, value]| value.is_finite()).collect(),
-            diverged: course.divergence.map(|divergence| divergence.time),
+            diverged: of_run.divergence.map(|divergence| divergence.time),
         }
     }
 

@@ -46,8 +46,8 @@ impl Strips {
     /// Prepares to show a diagnostic of all runs of a history.
     pub(super) fn new(diagnostic: Diagnostic, history: &History, scene: &Scene) -> Self {
         let palette = &scene.view.look.palette;
-        let one = |course| Series::new(diagnostic, course, scene, palette);
-        let series: Vec<_> = history.courses.iter().map(one).collect();
+        let one = |of_run| Series::new(diagnostic, of_run, scene, palette);
+        let series: Vec<_> = history.series.iter().map(one).collect();
         // Counts are bounded by the number of elements, so diverged runs are shown whole.
         let range = series::range(&series, diagnostic != Diagnostic::TurnedOver);
         let name = series::name(diagnostic, scene);

@@ -7,9 +7,10 @@ use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Scene, structure};
 use crate::reading::Mistakes;
+use crate::reading::beside::similar;
 use crate::reading::report::{Report, Way, mistake};
 use crate::reading::source::Source;
-use crate::reading::words::{nearest, quoted};
+use crate::reading::words::quoted;
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
@@ -200,7 +201,8 @@ fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
         Ok(_) if bytes.len() as u64 > limits.file => Err(SceneError::TooLong { path: path.into(), limit: limits.file }),
         Ok(_) => Ok(bytes),
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            Err(SceneError::Missing { path: path.into(), nearest: similar(path) })
+            let nearest = similar(path, &["toml"]).map(|name| path.with_file_name(name));
+            Err(SceneError::Missing { path: path.into(), nearest })
         }
         Err(source) => Err(SceneError::Unreadable { path: path.into(), source }),
     }
@@ -237,15 +239,4 @@ fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();
     scenes
-}
-
-/// The scene file in the same folder whose name, without extension, is most similar to a missing one.
-fn similar(path: &Path) -> Option<PathBuf> {
-    let wanted = stem(Path::new(path.file_name()?))?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let scenes = scenes_in(folder.unwrap_or(Path::new(".")));
-    let stems: Vec<Option<&str>> = scenes.iter().map(|scene| scene.file_stem()?.to_str()).collect();
-    let near = nearest(&wanted, &stems.iter().copied().flatten().collect::<Vec<_>>())?;
-    let scene = &scenes[stems.iter().position(|&stem| stem == Some(near))?];
-    folder.map_or_else(|| scene.file_name().map(PathBuf::from), |_| Some(scene.clone()))
 }

@@ -39,6 +39,7 @@ pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
+use crate::reading::words::{list, nearest};
 use crate::sim::body::Body;
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
@@ -117,6 +118,14 @@ impl Scene {
         let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();
         let places = self.view.look.palette.places(&chosen);
         self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
+    }
+
+    /// The message and help for a name that no run has.
+    pub(crate) fn no_run(&self, name: &str) -> (String, Option<String>) {
+        let names: Vec<_> = self.runs.iter().map(|run| run.name.as_str()).collect();
+        let all = list(&names, "and", |name| format!("“{name}”"));
+        let help = nearest(name, &names).map(|near| format!("did you mean “{near}”?"));
+        (format!("the scene “{}” has no run “{name}”; its runs are {all}", self.title), help)
     }
 
     /// The number of the last frame, `round(duration · frames_per_second)`; frame 0 is the start.

@@ -38,6 +38,7 @@ fn tidy(schema: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(tidy),
         Value::Object(table) => {
             drop_null(table);
+            share_keys(table);
             if let Some(Value::String(text)) = table.get_mut("description") {
                 *text = text.replace('\n', " ");
             }
@@ -76,6 +77,22 @@ fn drop_null(table: &mut Map<String, Value>) {
         }
         // The alternative may itself have been one with null.
         drop_null(table);
+    }
+}
+
+/// Gives each variant of a tagged table the keys and rules of the table in which the variants are flattened.
+fn share_keys(table: &mut Map<String, Value>) {
+    let is_variant = |branch: &Value| branch["properties"].is_object();
+    if !table.contains_key("properties") || !table.get("oneOf").is_some_and(|branches| is_variant(&branches[0])) {
+        return;
+    }
+    let [keys, rule] = ["properties", "not"].map(|key| table.shift_remove(key).unwrap_or_default());
+    table.shift_remove("type");
+    for branch in table.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
+        let own = branch["properties"].as_object_mut().into_iter();
+        own.zip(keys.as_object()).for_each(|(own, keys)| own.extend(keys.clone()));
+        branch["additionalProperties"] = false.into();
+        branch["not"] = rule.clone();
     }
 }
 

@@ -1,13 +1,12 @@
 //! The notation for time steps: a fraction of the cycle T.
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 /// A fraction of the cycle T, `"T/50"` or `"0.02 T"`. The two are kept apart because they may differ in the last bit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
 pub(super) enum FractionOfCycle {
     /// T over this number.
@@ -67,15 +66,6 @@ impl TryFrom<String> for FractionOfCycle {
 impl From<FractionOfCycle> for String {
     fn from(fraction: FractionOfCycle) -> Self {
         fraction.to_string()
-    }
-}
-
-impl JsonSchema for FractionOfCycle {
-    fn schema_name() -> Cow<'static, str> {
-        "FractionOfCycle".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string" })
     }
 }
 

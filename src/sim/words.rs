@@ -82,8 +82,14 @@ pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
 
 /// A quantity with three significant digits and a prefix of its unit: `315 mm`.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
-    let (factor, prefix) = prefix(value.abs());
-    format!("{} {prefix}{unit}", rounded(value / factor, 3))
+    match value.abs() {
+        0.0 => format!("0 {unit}"),
+        1e-9..1e12 => {
+            let (factor, prefix) = prefix(value.abs());
+            format!("{} {prefix}{unit}", rounded(value / factor, 3))
+        }
+        _ => format!("{value:.2e} {unit}"),
+    }
 }
 
 /// A number rounded to so many significant digits.
@@ -132,6 +138,15 @@ mod tests {
         assert_eq!(words(&[&[0, 1, 2, 3], &[0, 1, 2]]), [(1, "triangle"), (1, "square")]);
         let trapezium = [plane[0], plane[1], [0.9, 1.0, 0.0], plane[3]];
         assert_eq!(elements(&body(Dimension::Plane, &trapezium, &[&[0, 1, 2, 3]])), [(1, "quadrilateral")]);
+    }
+
+    #[test]
+    fn quantities_have_three_digits_and_a_prefix() {
+        let cases = [(0.0, "0 m"), (0.3149, "315 mm"), (-1234.0, "-1.23 km"), (1e-9, "1 nm"), (1e-17, "1.00e-17 m")];
+        for (value, text) in cases {
+            assert_eq!(quantity(value, "m"), text);
+        }
+        assert_eq!(quantity(f64::NAN, "m"), "NaN m");
     }
 
     #[test]

@@ -89,8 +89,8 @@ enum Time {
 impl Time {
     /// One kind of time for all turns, so that no ratio mixes two: processor time for one thread, if the system
     /// provides it.
-    fn of(threads: usize, told: bool) -> Self {
-        if threads == 1 && told { Self::Processor } else { Self::Wall }
+    fn of(threads: usize, has_processor_time: bool) -> Self {
+        if threads == 1 && has_processor_time { Self::Processor } else { Self::Wall }
     }
 
     fn name(self) -> &'static str {
@@ -290,7 +290,7 @@ mod tests {
         let quick = Protocol { sides: vec![1, 2], rounds: 2, turn: 8 };
         let turns = std::sync::atomic::AtomicU64::new(0);
         let count = |more| turns.fetch_add(more, std::sync::atomic::Ordering::Relaxed) < u64::MAX;
-        let ratios = measure(&quick, &count).expect("nobody stops it");
+        let ratios = measure(&quick, &count).expect("it is never stopped");
         assert_eq!(turns.into_inner(), quick.work());
         assert_eq!(ratios.comparisons.len(), 2 * SPRINGS.len());
         assert_eq!(ratios.comparisons[4].count, 28);
@@ -300,7 +300,8 @@ mod tests {
 
     #[test]
     fn the_clock_is_said() {
-        let times = [(1, true), (1, false), (2, true)].map(|(threads, told)| Time::of(threads, told));
+        let times = [(1, true), (1, false), (2, true)]
+            .map(|(threads, has_processor_time)| Time::of(threads, has_processor_time));
         assert_eq!(times, [Time::Processor, Time::Wall, Time::Wall]);
         let spent = Spent { wall: 2.0, cpu: Some(1.0) };
         assert_eq!(times.map(|time| time.of_spent(spent)), [1.0, 2.0, 2.0]);
@@ -313,7 +314,7 @@ mod tests {
 
     /// After a divergence steps would take no time.
     #[test]
-    fn no_block_blows_up_while_it_is_timed() {
+    fn no_block_diverges_while_it_is_timed() {
         let Protocol { sides, rounds, turn } = Protocol::default();
         let scene = block(sides[0]);
         for run in 0..scene.runs.len() {

@@ -151,7 +151,7 @@ impl Orientation {
 
 /// The result of one start in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Course {
+pub(crate) struct Statistics {
     /// Number of evaluations of α; fewer than planned if the simulation diverged. If zero, the numbers below are NaN.
     pub evaluations: u64,
     /// Its mean (rad/s²).
@@ -171,7 +171,7 @@ pub(crate) struct Table1 {
     pub(super) cases: Vec<Case>,
     pub(super) orientations: Vec<Orientation>,
     /// For each start, for each case.
-    pub(super) courses: Vec<Course>,
+    pub(super) statistics: Vec<Statistics>,
 }
 
 /// The results of all starts in one case.
@@ -202,14 +202,14 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> 
     tasks.sort_by_key(|at| Reverse(protocol.evaluations(&cases[at % cases.len()])));
     let of_crowds = tasks.into_iter().par_bridge().map(|at| {
         let (crowd, case) = (at / cases.len(), at % cases.len());
-        Some((at, courses(crowds[crowd], case, protocol.evaluations(&cases[case]), watch)?))
+        Some((at, measure_starts(crowds[crowd], case, protocol.evaluations(&cases[case]), watch)?))
     });
-    let mut of_crowds: Vec<(usize, Vec<Course>)> = of_crowds.collect::<Option<_>>()?;
+    let mut of_crowds: Vec<(usize, Vec<Statistics>)> = of_crowds.collect::<Option<_>>()?;
     of_crowds.sort_by_key(|&(at, _)| at);
     let start =
         |at: usize| of_crowds[at / CROWD * cases.len()..][..cases.len()].iter().map(move |(_, all)| all[at % CROWD]);
-    let courses = (0..starts.len()).flat_map(start).collect();
-    Some(Table1 { protocol: *protocol, cases, orientations, courses })
+    let statistics = (0..starts.len()).flat_map(start).collect();
+    Some(Table1 { protocol: *protocol, cases, orientations, statistics })
 }
 
 /// Number of cubes simulated together, as one body. With a single cube the overhead of a step would be as long as the
@@ -270,7 +270,7 @@ fn crowd<'a>(starts: impl Iterator<Item = &'a Scene>, first: &Scene) -> Scene {
 }
 
 /// Simulates one or more starts in one case.
-fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -> Option<Vec<Course>> {
+fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -> Option<Vec<Statistics>> {
     /// Number of steps between calls of the watch.
     const SLICE: u64 = 512;
     // Never one alone: that would be a lattice, whose kernel has different round-off.
@@ -279,7 +279,7 @@ fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -
     let mut has_landed = vec![false; starts.len()];
     let mut residuals = vec![Residuals::default(); starts.len()];
     let all = evaluations * starts.len() as u64;
-    let (mut taken, mut told) = (0, 0);
+    let (mut taken, mut reported) = (0, 0);
     let mut before = Vec::new();
     while taken < all {
         before.clone_from(&world.state().position);
@@ -300,24 +300,24 @@ fn courses(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -
             }
         }
         if world.steps() % SLICE == 0 {
-            if !watch(taken - told) {
+            if !watch(taken - reported) {
                 return None;
             }
-            told = taken;
+            reported = taken;
         }
     }
     let diverged = world.status() != Status::Ok;
     if diverged && starts.len() > 1 {
         // A divergence stops all cubes, so each start is repeated alone.
-        let alone = |start| courses(std::slice::from_ref(start), case, evaluations, &|_| watch(0));
-        let courses = starts.iter().map(alone).collect::<Option<Vec<_>>>()?.concat();
-        return watch(all - told).then_some(courses);
+        let alone = |start| measure_starts(std::slice::from_ref(start), case, evaluations, &|_| watch(0));
+        let statistics = starts.iter().map(alone).collect::<Option<Vec<_>>>()?.concat();
+        return watch(all - reported).then_some(statistics);
     }
     if diverged && has_landed[0] {
         // The rejected step had evaluated its forces in this state.
         residuals[0].add(world.report(0).residual(Report::ROTATION).unwrap_or(f64::NAN));
     }
-    watch(all - told).then(|| residuals.into_iter().map(|one| one.course(diverged)).collect())
+    watch(all - reported).then(|| residuals.into_iter().map(|one| one.statistics(diverged)).collect())
 }
 
 /// Running statistics of α.
@@ -344,9 +344,9 @@ impl Residuals {
     }
 
     /// The statistics; NaN if there are no values.
-    fn course(self, diverged: bool) -> Course {
+    fn statistics(self, diverged: bool) -> Statistics {
         let Self { taken, mean, squares, maximum } = self;
-        Course {
+        Statistics {
             evaluations: taken,
             mean: if taken > 0 { mean } else { f64::NAN },
             deviation: (squares / taken as f64).sqrt(),
@@ -360,13 +360,13 @@ impl Table1 {
     /// The results of all starts, case by case in the order of [`Protocol::cases`].
     pub(crate) fn summaries(&self) -> Vec<Summary> {
         let summary = |(at, &case): (usize, &Case)| {
-            let courses = || self.courses.iter().skip(at).step_by(self.cases.len());
+            let of_starts = || self.statistics.iter().skip(at).step_by(self.cases.len());
             Summary {
                 case,
-                mean: Spread::of(courses().map(|course| course.mean)),
-                deviation: Spread::of(courses().map(|course| course.deviation)),
-                maximum: Spread::of(courses().map(|course| course.maximum)),
-                diverged: courses().filter(|course| course.diverged).count(),
+                mean: Spread::of(of_starts().map(|one| one.mean)),
+                deviation: Spread::of(of_starts().map(|one| one.deviation)),
+                maximum: Spread::of(of_starts().map(|one| one.maximum)),
+                diverged: of_starts().filter(|one| one.diverged).count(),
             }
         };
         self.cases.iter().enumerate().map(summary).collect()
@@ -406,15 +406,15 @@ mod tests {
 
     #[test]
     fn what_was_not_taken_is_no_number() {
-        let course = |residuals: &[f64]| {
+        let one = |residuals: &[f64]| {
             let mut taken = Residuals::default();
             residuals.iter().for_each(|&residual| taken.add(residual));
-            taken.course(false)
+            taken.statistics(false)
         };
-        let Course { mean, deviation, maximum, .. } = course(&[1.0, 4.0, 1.0]);
+        let Statistics { mean, deviation, maximum, .. } = one(&[1.0, 4.0, 1.0]);
         assert_eq!((mean, deviation, maximum), (2.0, 2f64.sqrt(), 4.0));
         for bad in [&[][..], &[f64::NAN, 1.0], &[1.0, f64::NAN, 2.0]] {
-            let Course { evaluations, mean, deviation, maximum, .. } = course(bad);
+            let Statistics { evaluations, mean, deviation, maximum, .. } = one(bad);
             assert_eq!(evaluations, bad.len() as u64);
             assert!(mean.is_nan() && deviation.is_nan() && maximum.is_nan(), "{bad:?}");
         }

@@ -2,7 +2,7 @@
 
 use super::printed::as_printed;
 use super::sheet::figure;
-use super::table1::{Case, Course, Orientation, Protocol, Summary, Table1};
+use super::table1::{Case, Orientation, Protocol, Statistics, Summary, Table1};
 use super::{Sheet, Spread};
 use crate::output::exact;
 use serde_json::{Value, json};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 impl Table1 {
     /// The contents of [`FILES`](super::table1::FILES).
     pub(crate) fn files(&self) -> [String; 3] {
-        [self.markdown(), self.summary_sheet().csv(), self.course_sheet().csv()]
+        [self.markdown(), self.summary_sheet().csv(), self.start_sheet().csv()]
     }
 
     /// The table as Markdown.
@@ -71,7 +71,7 @@ impl Table1 {
         if diverged > 0 {
             text += &format!(
                 "\n{diverged} of {} simulations diverged; their values are those until then.\n",
-                self.courses.len()
+                self.statistics.len()
             );
         }
         text
@@ -106,8 +106,8 @@ impl Table1 {
     }
 
     /// Each start in each case, with all digits.
-    fn course_sheet(&self) -> Sheet {
-        let row = |case: &Case, number: usize, course: &Course| {
+    fn start_sheet(&self) -> Sheet {
+        let row = |case: &Case, number: usize, start: &Statistics| {
             let Orientation { axis, angle } = self.orientations[number];
             [
                 ("solver", case.solver.name.to_owned()),
@@ -120,16 +120,16 @@ impl Table1 {
                 ("axis_y", exact(axis.y)),
                 ("axis_z", exact(axis.z)),
                 ("angle", exact(angle)),
-                ("evaluations", course.evaluations.to_string()),
-                ("mean", exact(course.mean)),
-                ("deviation", exact(course.deviation)),
-                ("maximum", exact(course.maximum)),
-                ("status", if course.diverged { "diverged" } else { "ok" }.to_owned()),
+                ("evaluations", start.evaluations.to_string()),
+                ("mean", exact(start.mean)),
+                ("deviation", exact(start.deviation)),
+                ("maximum", exact(start.maximum)),
+                ("status", if start.diverged { "diverged" } else { "ok" }.to_owned()),
             ]
         };
         let rows = self.cases.iter().enumerate().flat_map(|(at, case)| {
-            let courses = self.courses.iter().skip(at).step_by(self.cases.len());
-            courses.enumerate().map(move |(number, course)| row(case, number, course))
+            let statistics = self.statistics.iter().skip(at).step_by(self.cases.len());
+            statistics.enumerate().map(move |(number, start)| row(case, number, start))
         });
         Sheet::of(rows)
     }

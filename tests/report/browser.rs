@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 /// So long anything may take, on a slow machine that has other things to do.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Conditions are asked for as often as this.
+/// Interval at which conditions are polled.
 const BETWEEN: Duration = Duration::from_millis(25);
 
 /// The names that a browser goes by, if `LOCALSHAPE_BROWSER` names none.
@@ -158,8 +158,8 @@ impl Browser {
 
     /// The value of an expression in the page.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
-        let asked = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
-        let answer = self.order("Runtime.evaluate", asked);
+        let call = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let answer = self.order("Runtime.evaluate", call);
         assert!(answer.get("exceptionDetails").is_none(), "{expression}: {}", answer["exceptionDetails"]);
         answer["result"]["value"].clone()
     }
@@ -277,14 +277,14 @@ impl Browser {
         })
     }
 
-    /// All that was asked for since the page was opened.
+    /// All requests since the page was opened.
     pub(crate) fn requests(&mut self) -> Vec<String> {
-        self.value("1"); // Whatever came before this has been told.
-        let asked = self.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
-        asked.map(|event| event["params"]["request"]["url"].as_str().unwrap_or_default().to_owned()).collect()
+        self.value("1"); // Earlier events have arrived before this answer.
+        let requests = self.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
+        requests.map(|event| event["params"]["request"]["url"].as_str().unwrap_or_default().to_owned()).collect()
     }
 
-    /// What went wrong in the page since it was opened: exceptions, errors that it or the browser told.
+    /// What went wrong in the page since it was opened: exceptions, errors that it or the browser reported.
     pub(crate) fn complaints(&mut self) -> Vec<String> {
         self.value("1");
         let is_complaint = |event: &&Value| match event["method"].as_str() {

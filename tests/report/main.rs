@@ -135,7 +135,7 @@ fn data(page: &str) -> Value {
 }
 
 #[test]
-fn a_page_needs_nothing_else_and_tells_its_verdict_without_scripts() {
+fn a_page_needs_nothing_else_and_shows_its_verdict_without_scripts() {
     let page = sequence().page();
     for outside in ["http:", "https:", "url(http", "@import", "//cdn", "src=\"", "<link rel=\"stylesheet"] {
         assert!(!page.contains(outside), "the page has {outside}");
@@ -192,7 +192,7 @@ fn nothing_is_fetched_and_nothing_hostile_runs() {
     }
     assert_eq!(browser.value("document.querySelectorAll('img[src=x]').length + Number('broken' in window)"), 0);
     let requests = browser.requests();
-    assert!(requests.contains(&address), "the page itself is seen to be asked for: {requests:?}");
+    assert!(requests.contains(&address), "the page itself is requested: {requests:?}");
     let foreign: Vec<_> = requests.iter().filter(|url| **url != address && !url.starts_with("data:")).collect();
     assert!(foreign.is_empty(), "{foreign:?}");
     assert_eq!(browser.complaints(), [""; 0]);
@@ -235,11 +235,11 @@ fn it_works_by_keys(browser: &mut Browser) {
     {
         browser.press(key, PLAIN);
         assert_eq!(browser.text(MODE), mode, "after {key}");
-        // The colours of the difference are told where it is shown.
+        // The colours of the difference are explained where it is shown.
         let room = browser.number("document.getElementById('difference-key').getBoundingClientRect().height");
         assert_eq!(room > 0.0, mode == "side", "after {key}");
     }
-    // Of pictures that a held key passes only the last is told to screen readers.
+    // Of pictures that a held key passes only the last is announced to screen readers.
     let told = browser.value(
         "new Promise((done) => { \
          new MutationObserver((records) => done(records.flatMap(({ addedNodes }) => [...addedNodes].map((node) => node.data)))) \
@@ -509,7 +509,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
 }
 
 #[test]
-fn without_scripts_the_verdict_is_told() {
+fn without_scripts_the_verdict_is_shown() {
     let Some((mut browser, _)) = browser_with(&sequence(), "") else { return };
     browser.order("Emulation.setScriptExecutionDisabled", json!({ "value": true }));
     browser.open(&sequence().page(), "");

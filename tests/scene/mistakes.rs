@@ -559,9 +559,9 @@ fn springs_beyond_the_limits_are_refused_before_they_are_made() {
 fn syntax_errors_have_their_place() {
     let error = bad(&PLANE.replace("duration = 3", "duration = = 3"));
     assert!(matches!(error, SceneError::Syntax(_)));
-    for value in ["", "    # a comment"] {
+    for (value, column) in [("", 8), ("    # a comment", 12)] {
         let empty = format!("mass = {value}");
-        case(PLANE, "mass = 1", &empty, &[(9, 8, "`mass` has no value write one after `=`, or remove the key")]);
+        case(PLANE, "mass = 1", &empty, &[(9, column, "`mass` has no value write one after `=`, or remove the key")]);
     }
     case(SPACE, "side = 0.1", "side = ", &[(5, 37, "`side` has no value")]);
     case(PLANE, "duration = 3", "duration = = 3", &[(3, 12, "this is not TOML: extra `=`")]);

@@ -3,7 +3,7 @@
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
 use super::{Column, Content, Figure, Forces, Row, Sheet, look};
 use crate::reading::report::{Report, Way};
-use crate::reading::words::{list, nearest};
+use crate::reading::words::list;
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use crate::sim::snapshot::Diagnostic;
@@ -26,7 +26,7 @@ pub(super) fn resolve(
     if report.total() > 0 {
         return Ok(None);
     }
-    let Ok(file) = FigureFile::deserialize(Value::Object(checked.sound)) else { return Ok(None) };
+    let Ok(file) = FigureFile::deserialize(Value::Object(checked.valid)) else { return Ok(None) };
     let scenes = Scenes { folder, read: scene, report, scenes: Vec::new(), places: HashMap::new() };
     let content = match (file.sheet, file.forces) {
         (Some(sheet), None) => scenes.sheet(sheet)?.map(Content::Sheet),
@@ -196,7 +196,7 @@ impl Scenes<'_, '_, '_> {
             let path = |key: &'static str| [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key(key)];
             for scene in &self.scenes {
                 if !scene.runs.iter().any(|run| run.name == row.run) {
-                    let (message, help) = no_run(scene, &row.run);
+                    let (message, help) = scene.no_run(&row.run);
                     self.report.at(&path("run"), message, help);
                 }
                 if row.time.is_some_and(|time| time > end(scene)) {
@@ -248,7 +248,7 @@ impl Scenes<'_, '_, '_> {
         let compare = file.compare.map(|name| {
             let place = runs.iter().position(|run| *run == name);
             if place.is_none() {
-                let (message, help) = no_run(&self.scenes[0], &name);
+                let (message, help) = self.scenes[0].no_run(&name);
                 self.report.at(&[Way::Key("forces"), Way::Key("compare")], message, help);
             }
             place
@@ -269,7 +269,7 @@ impl Scenes<'_, '_, '_> {
         for (index, scene) in self.scenes.iter().enumerate() {
             if scene.runs.iter().any(|run| run.model.stiffness() != stiffness) {
                 let message = format!(
-                    "a run has another stiffness than {stiffness} N/m, that of the first: forces would be told in two units"
+                    "a run has another stiffness than {stiffness} N/m, that of the first: forces would have two units"
                 );
                 self.report.at(&path(index), message, "give all runs the same stiffness".to_owned());
             }
@@ -333,11 +333,4 @@ fn end(scene: &Scene) -> f64 {
 
 fn too_late(scene: &Scene) -> String {
     format!("the scene “{}” ends at {} s; expected a moment up to then", scene.title, end(scene))
-}
-
-fn no_run(scene: &Scene, name: &str) -> (String, Option<String>) {
-    let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
-    let all = list(&names, "and", |name| format!("“{name}”"));
-    let help = nearest(name, &names).map(|near| format!("did you mean “{near}”?"));
-    (format!("the scene “{}” has no run “{name}”; its runs are {all}", scene.title), help)
 }

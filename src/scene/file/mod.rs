@@ -12,7 +12,7 @@ pub(in crate::scene) use body::{BarsFile, BodyFile, DiscFile, PolygonFile, SideF
 pub use body::{Cells, Lattice, Rotation, Start, StartShape};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
 pub use motion::{MotionPath, Swing};
-pub(in crate::scene) use obstacle::{BoxFile, CapsuleFile, FloorFile, ObstacleFile, PlateFile, SphereFile};
+pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
 use super::step::FractionOfCycle;
 use crate::look::file::ViewFile;

@@ -19,12 +19,12 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
-    let mut sound = !flawed;
+    let mut are_valid = !flawed;
     let mut distinct = Vec::new();
     let mut known = Alike::new(elements.len());
     for (at, element) in elements.iter().enumerate() {
         if !check_indices(source, "elements", at, element, node_count, report) {
-            sound = false;
+            are_valid = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
@@ -33,10 +33,10 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
         }
     }
     // If some indices are wrong, others may be, too.
-    if sound {
+    if are_valid {
         let mut disorder = Disorder::default();
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
-        disorder.tell(lists, report);
+        disorder.report(lists, report);
     }
     let springs = springs.as_deref().unwrap_or_default();
     let mut known = Alike::new(springs.len());
@@ -45,16 +45,16 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
             spring.iter().for_each(|&node| held[node as usize] = true);
             repeated(source, "springs", at, |at| &springs[at], &mut known, report);
         } else {
-            sound = false;
+            are_valid = false;
         }
     }
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
         check_indices(source, "faces", at, face, node_count, report);
     }
     // A wrong index leaves the right node without an element; that is not reported a second time.
-    for (node, _) in held.iter().enumerate().filter(|&(_, &held)| sound && !held) {
+    for (node, _) in held.iter().enumerate().filter(|&(_, &held)| are_valid && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        source.tell(report, "nodes", &[node], message, "remove it, or list it in an element".to_owned());
+        source.report(report, "nodes", &[node], message, "remove it, or list it in an element".to_owned());
     }
 }
 
@@ -72,10 +72,10 @@ impl Lists {
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
         let name = || self.source.name("elements", &[at]);
-        let mut tell = |message, help| self.source.tell(report, "elements", &[at], message, help);
+        let mut mistake = |message, help| self.source.report(report, "elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
-            return tell(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
+            return mistake(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
         }
         let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
@@ -89,9 +89,9 @@ impl Lists {
                         count(element.len() as u128),
                         count(MOST_IN_HULL as u128)
                     );
-                    tell(message, Some("divide it into smaller elements".into()));
+                    mistake(message, Some("divide it into smaller elements".into()));
                 } else if kind == ElementKind::Triangle && is_on_a_line(&corners, size) {
-                    tell(format!("`{}` has no area: its nodes are on a line", name()), None);
+                    mistake(format!("`{}` has no area: its nodes are on a line", name()), None);
                 }
                 return;
             }
@@ -109,7 +109,7 @@ impl Lists {
         } else if let Some([one, other]) = crossing(kind, &corners) {
             let side = |at: usize| format!("{}–{}", element[at], element[(at + 1) % element.len()]);
             let message = format!("the sides {} and {} of `{}` cross", side(one), side(other), name());
-            tell(message, Some("list its nodes in order around it, counter-clockwise".into()));
+            mistake(message, Some("list its nodes in order around it, counter-clockwise".into()));
         } else if measure < 0.0 {
             disorder.found.push((at, Wrong::Turned, kind));
         }
@@ -139,16 +139,16 @@ struct Disorder {
 
 impl Disorder {
     /// Reports each, or all in one message if all elements have the same mistake, which is then one of the program that wrote them.
-    fn tell(self, lists: &Lists, report: &mut Report<'_>) {
+    fn report(self, lists: &Lists, report: &mut Report<'_>) {
         let source = &lists.source;
         match self.common(lists) {
-            Some((message, help)) => source.tell(report, "elements", &[], message, help),
+            Some((message, help)) => source.report(report, "elements", &[], message, help),
             None => {
                 for (at, wrong, kind) in self.found {
                     // There may be millions.
                     if !report.only_counted() {
-                        let (message, help) = told(lists, at, wrong, kind);
-                        source.tell(report, "elements", &[at], message, help);
+                        let (message, help) = in_words(lists, at, wrong, kind);
+                        source.report(report, "elements", &[at], message, help);
                     }
                 }
             }
@@ -199,7 +199,7 @@ impl Disorder {
 }
 
 /// What is wrong with one element, and what helps.
-fn told(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
+fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
     let (name, element) = (lists.source.name("elements", &[at]), &lists.elements[at]);
     match (wrong, kind) {
         (Wrong::Flat, ElementKind::Polygon) => {
@@ -272,24 +272,24 @@ fn check_indices(
     if list.len() <= FEW && (0..list.len()).all(is_new) {
         return true;
     }
-    let mut sound = true;
+    let mut are_valid = true;
     // Positions in order of their node, so that long lists are compared quickly.
     let mut order: Vec<usize> = (0..list.len()).collect();
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
         let message = format!("node {} occurs twice in `{}`", list[pair[1]], source.name(key, &[at]));
-        source.tell(report, key, &[at, pair[1]], message, None);
-        sound = false;
+        source.report(report, key, &[at, pair[1]], message, None);
+        are_valid = false;
     }
     for (entry, &node) in list.iter().enumerate().filter(|&(_, &node)| node as usize >= nodes) {
         let message = match nodes {
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        source.tell(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
-        sound = false;
+        source.report(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
+        are_valid = false;
     }
-    sound
+    are_valid
 }
 
 /// Reports a list with the same nodes as an earlier one, in any order. Returns whether it is one.
@@ -308,7 +308,7 @@ fn repeated<'l>(
     if first != at {
         let [this, other] = [at, first].map(|at| source.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        source.tell(report, key, &[at], message, "remove one of them".to_owned());
+        source.report(report, key, &[at], message, "remove one of them".to_owned());
     }
     first != at
 }

@@ -33,7 +33,7 @@ impl ListSource {
     }
 
     /// Reports a mistake in an entry of a list.
-    pub(super) fn tell(
+    pub(super) fn report(
         &self,
         report: &mut Report<'_>,
         key: &str,
@@ -47,20 +47,20 @@ impl ListSource {
                 let path: Vec<_> = [Way::Key("body"), Way::Key(key)].into_iter().chain(indices).collect();
                 report.at(&path, message, help);
             }
-            Self::File(_) => self.tell_of_file(report, key, at, message, help.into()),
+            Self::File(_) => self.report_in_file(report, key, at, message, help.into()),
         }
     }
 
     /// Reports a mistake about a whole list.
-    pub(super) fn tell_key(&self, report: &mut Report<'_>, key: &str, message: String) {
+    pub(super) fn report_key(&self, report: &mut Report<'_>, key: &str, message: String) {
         match self {
             Self::Scene => report.at_key(&[Way::Key("body"), Way::Key(key)], message, None),
-            Self::File(_) => self.tell_of_file(report, key, &[], message, None),
+            Self::File(_) => self.report_in_file(report, key, &[], message, None),
         }
     }
 
     /// The position is that of the file's name in the scene, so the message names list and entry.
-    fn tell_of_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
+    fn report_in_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
         report.at(&[Way::Key("body"), Way::Key("file")], message, help);
@@ -196,7 +196,7 @@ fn beyond(number: f64) -> Option<String> {
 /// Reports of lists that were made in code what the schema says of those in files: numbers out of range, lists too short.
 pub(super) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
     let mut say = |key: &str, at: &[usize], message: String| {
-        ListSource::Scene.tell(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
+        ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
     };
     for (key, points) in [("nodes", &file.nodes), ("positions", &file.positions), ("velocities", &file.velocities)] {
         for (row, Coordinates(point)) in points.iter().flatten().enumerate() {
@@ -236,14 +236,14 @@ struct Reader<'a, 't> {
 }
 
 impl Reader<'_, '_> {
-    fn tell(&mut self, key: &str, at: &[usize], message: String, help: Option<String>) {
-        self.source.tell(self.report, key, at, message, help);
+    fn report(&mut self, key: &str, at: &[usize], message: String, help: Option<String>) {
+        self.source.report(self.report, key, at, message, help);
     }
 
     /// Reports a mistake whose message begins with the name of an array or entry.
     fn say(&mut self, key: &str, at: &[usize], message: &str) {
         let message = format!("`{}` {message}", self.source.name(key, at));
-        self.tell(key, at, message, None);
+        self.report(key, at, message, None);
     }
 
     fn lists(&mut self) -> Option<Lists> {
@@ -255,7 +255,7 @@ impl Reader<'_, '_> {
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
             let message = format!("`{}` is not an array of a body", self.source.name(name, &[]));
-            self.tell(name, &[], message, Some(help));
+            self.report(name, &[], message, Some(help));
         }
         let nodes = self.array("nodes").and_then(|array| match array.shape[..] {
             [_, 2 | 3] => self.values("nodes", &array),
@@ -324,7 +324,7 @@ impl Reader<'_, '_> {
         if length > limit {
             let (name, length, limit) = (self.source.name(key, &[]), count(length.into()), count(limit.into()));
             let message = format!("`{name}` has {length} {what}; the limit is {limit}");
-            self.tell(
+            self.report(
                 key,
                 &[],
                 message,
@@ -457,7 +457,7 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
     if length != nodes {
         let (name, entries) = (source.name(key, &[]), if length == 1 { "entry" } else { "entries" });
         let message = format!("`{name}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
-        source.tell_key(report, key, message);
+        source.report_key(report, key, message);
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) struct Parts {
 impl Parts {
     /// The valid parts of a checked file. A body's own file is searched in `folder`.
     pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
-        let file = &checked.sound;
+        let file = &checked.valid;
         let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
             // Together with a generator or a file, lists are mistakes, which have been reported.
             if body.file.is_some() || Generator::of(&body).is_some() {

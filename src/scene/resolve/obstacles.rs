@@ -3,9 +3,10 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
+use crate::look::is_inside;
 use crate::reading::report::{Report, Way};
-use crate::scene::file::{Coordinates, ObstacleFile};
-use crate::sim::body::{Dimension, IndexLists, bounds};
+use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
+use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
 use crate::sim::words::{quantity, rounded};
 use glam::{DQuat, DVec3};
@@ -32,49 +33,47 @@ pub(super) fn resolve(
 }
 
 fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Obstacle> {
-    let shape = shape(typed, dimension, path, report);
-    let common = typed.common();
-    let motion = match (common.path, common.swing) {
+    let shape = shape(&typed.shape, dimension, path, report);
+    let motion = match (&typed.path, &typed.swing) {
         (Some(typed), _) => motion::keys(typed, dimension, &[path, &[Way::Key("path")]].concat(), report),
         (None, Some(typed)) => motion::swing(typed, dimension, &[path, &[Way::Key("swing")]].concat(), report),
         (None, None) => Some(Motion::Still),
     };
-    let about = common.about.map(|typed| vector(typed, dimension, &[path, &[Way::Key("about")]].concat(), report));
+    let about =
+        typed.about.as_ref().map(|typed| vector(typed, dimension, &[path, &[Way::Key("about")]].concat(), report));
     let (shape, motion) = (shape?, motion?);
     let pivot = match about {
         Some(typed) => typed?,
         None => shape.middle(),
     };
-    Some(Obstacle { shape, motion, pivot, restitution: common.restitution, friction: common.friction })
+    Some(Obstacle { shape, motion, pivot, restitution: typed.restitution, friction: typed.friction })
 }
 
-fn shape(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {
+fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {
     let way = |key| [path, &[Way::Key(key)]].concat();
     let mut point = |typed: &Coordinates, key| vector(typed, dimension, &way(key), report);
     match typed {
-        ObstacleFile::Floor(floor) => {
-            let normal = match &floor.normal {
+        ShapeFile::Floor { normal, height } => {
+            let normal = match normal {
                 None => DVec3::Y,
                 Some(typed) => direction(point(typed, "normal")?, &way("normal"), report)?,
             };
-            Some(Shape::Floor { normal, height: floor.height })
+            Some(Shape::Floor { normal, height: *height })
         }
-        ObstacleFile::Plate(plate) => {
-            let [surface, normal] =
-                [(&plate.point, "point"), (&plate.normal, "normal")].map(|(typed, key)| point(typed, key));
+        ShapeFile::Plate { point: surface, normal } => {
+            let [surface, normal] = [(surface, "point"), (normal, "normal")].map(|(typed, key)| point(typed, key));
             Some(Shape::Plate { point: surface?, normal: direction(normal?, &way("normal"), report)? })
         }
-        ObstacleFile::Sphere(sphere) => {
-            Some(Shape::Sphere { centre: point(&sphere.centre, "centre")?, radius: sphere.radius })
+        ShapeFile::Sphere { centre, radius } => {
+            Some(Shape::Sphere { centre: point(centre, "centre")?, radius: *radius })
         }
-        ObstacleFile::Capsule(capsule) => {
-            let [from, to] = [(&capsule.from, "from"), (&capsule.to, "to")].map(|(typed, key)| point(typed, key));
-            Some(Shape::Capsule { from: from?, to: to?, radius: capsule.radius })
+        ShapeFile::Capsule { from, to, radius } => {
+            let [from, to] = [(from, "from"), (to, "to")].map(|(typed, key)| point(typed, key));
+            Some(Shape::Capsule { from: from?, to: to?, radius: *radius })
         }
-        ObstacleFile::Box(cuboid) => {
-            let [centre, size] =
-                [(&cuboid.centre, "centre"), (&cuboid.size, "size")].map(|(typed, key)| point(typed, key));
-            let rotation = match &cuboid.rotation {
+        ShapeFile::Box { centre, size, rotation } => {
+            let [centre, size] = [(centre, "centre"), (size, "size")].map(|(typed, key)| point(typed, key));
+            let rotation = match rotation {
                 Some(typed) => {
                     let axis = axis(typed.axis.as_ref(), dimension, &way("rotation"), report)?;
                     let (sine, cosine) = libm::sincos(0.5 * typed.angle);
@@ -172,12 +171,12 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
 /// Reports motions that are too fast for the time step: the obstacle would jump.
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
-        let Some(common) = obstacle.as_ref().map(ObstacleFile::common) else { continue };
+        let Some(obstacle) = obstacle else { continue };
         let path = [Way::Key("obstacle"), Way::Index(at)];
-        if let Some(typed) = common.path {
+        if let Some(typed) = &obstacle.path {
             motion::check_steps(typed, step, &[&path[..], &[Way::Key("path")]].concat(), report);
         }
-        if let Some(swing) = common.swing.filter(|swing| swing.period < LEAST_STEPS * step) {
+        if let Some(swing) = obstacle.swing.as_ref().filter(|swing| swing.period < LEAST_STEPS * step) {
             let message = format!("it would oscillate once in {} s, but a time step takes {step:.3e} s", swing.period);
             let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
             report.at(&[&path[..], &[Way::Key("swing"), Way::Key("period")]].concat(), message, help);
@@ -195,17 +194,7 @@ fn is_within(body: &ResolvedBody, point: DVec3) -> bool {
     if shape.dimension == Dimension::Plane {
         return shape.elements.iter().filter(|nodes| nodes.len() > 2).any(|nodes| winds_around(nodes, at));
     }
-    let faces: &IndexLists = &shape.faces.nodes;
-    let outside = faces.iter().zip(&shape.faces.outer).filter(|(_, outer)| outer.is_none());
-    // Van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
-    let angle = |[a, b, c]: [DVec3; 3]| {
-        let [la, lb, lc] = [a, b, c].map(DVec3::length);
-        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-        2.0 * libm::atan2(a.dot(b.cross(c)), below)
-    };
-    let angles = outside.flat_map(|(face, _)| (2..face.len()).map(|at| [face[0], face[at - 1], face[at]]));
-    let whole: f64 = angles.map(|corners| angle(corners.map(at))).sum();
-    whole.abs() > std::f64::consts::TAU
+    is_inside(point, shape, position)
 }
 
 /// Whether a polygon winds around the origin.

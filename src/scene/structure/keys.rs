@@ -2,7 +2,7 @@
 
 use super::Walk;
 use super::expect::first_sentence;
-use crate::reading::report::written;
+use crate::reading::report::{Way, written};
 use crate::reading::words::{list, nearest, quoted, shortened};
 use serde_json::Value as Json;
 use std::ops::Range;
@@ -110,7 +110,11 @@ impl Walk<'_, '_, '_> {
         let help = match nearest(name, &known).filter(|_| others.is_empty()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => {
-                others.extend(elsewhere(self.schema, name).iter().map(|other| format!("`{other}`")));
+                let keys = self.path.iter().filter_map(|way| if let Way::Key(key) = way { Some(*key) } else { None });
+                let here = keys.collect::<Vec<_>>().join(".");
+                let elsewhere = elsewhere(self.schema, name).into_iter();
+                let tables = elsewhere.filter(|table| here != format!("{table}.{name}"));
+                others.extend(tables.map(|table| format!("`{table}`")));
                 let others = list(&others, "or", str::to_owned);
                 let known = format!("known here: {}", known.join(", "));
                 if others.is_empty() { known } else { format!("`{name}` belongs to {others}; {known}") }

@@ -26,7 +26,7 @@ pub(super) const LARGEST: f64 = 1e30;
 pub(super) struct Checked {
     /// The file as JSON. Tables of the top level lack the keys with mistakes; an entry of a top-level array, or
     /// another value, that has one is null.
-    pub(super) sound: Map<String, Json>,
+    pub(super) valid: Map<String, Json>,
     /// Keys of the top level that had mistakes in or below them.
     pub(super) flawed: BTreeSet<String>,
 }
@@ -35,7 +35,7 @@ pub(super) struct Checked {
 pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Checked {
     let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
-    let (mut sound, mut flawed) = (Map::new(), BTreeSet::new());
+    let (mut valid, mut flawed) = (Map::new(), BTreeSet::new());
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
@@ -60,9 +60,9 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
         if walk.report.total() > before {
             flawed.insert(name.to_owned());
         }
-        sound.insert(name.to_owned(), part);
+        valid.insert(name.to_owned(), part);
     }
-    Checked { sound, flawed }
+    Checked { valid, flawed }
 }
 
 struct Walk<'r, 't, 'p> {

@@ -203,14 +203,14 @@ impl<'a> Charts<'a> {
 impl One {
     fn new(diagnostic: Diagnostic, history: &History, sheet: &Sheet, palette: &Palette) -> Self {
         let scene = &sheet.scenes[0];
-        let one = |course| {
-            let one = Series::new(diagnostic, course, scene, palette);
+        let one = |of_run| {
+            let one = Series::new(diagnostic, of_run, scene, palette);
             // A label shared by all rows of a run replaces its name.
             let mut labels = sheet.rows.iter().filter(|row| row.run == one.name).map(|row| &row.label);
             let label = labels.next().filter(|first| labels.all(|label| label == *first)).cloned();
             Series { name: label.unwrap_or(one.name.clone()), ..one }
         };
-        let series: Vec<_> = history.courses.iter().map(one).collect();
+        let series: Vec<_> = history.series.iter().map(one).collect();
         let is_count = diagnostic == Diagnostic::TurnedOver;
         let range = series::range(&series, !is_count);
         let mut name = series::name(diagnostic, scene).to_owned();
