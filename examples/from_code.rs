@@ -1,8 +1,10 @@
 //! A scene made in code, simulated and drawn: `cargo run --release --example from_code` writes `cubes.png`.
 
-use localshape::gpu::AdapterChoice;
+use localshape::picture::compose;
 use localshape::sim::model::{mass_spring, shape_based};
-use localshape::{BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene, picture};
+use localshape::{
+    AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.
@@ -18,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frame = Runner::new(&scene, &[0, 1]).frame(30);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
     let samples = 4; // of each pixel: 4 for smooth edges, 1 for speed
-    let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture::compose(&scene, &frame))?;
+    let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&compose(&scene, &frame))?;
     image.save("cubes.png")?;
     Ok(())
 }

@@ -8,9 +8,9 @@
 //!
 #![cfg_attr(feature = "render", doc = "```")]
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
-//! use localshape::gpu::AdapterChoice;
+//! use localshape::picture::compose;
 //! use localshape::sim::model::{mass_spring, shape_based};
-//! use localshape::{BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene, picture};
+//! use localshape::{AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! #     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
@@ -28,7 +28,7 @@
 //!     let frame = Runner::new(&scene, &[0, 1]).frame(30);
 //!     let gpu = Gpu::new(&AdapterChoice::Auto)?;
 //!     let samples = 4; // of each pixel: 4 for smooth edges, 1 for speed
-//!     let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&picture::compose(&scene, &frame))?;
+//!     let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&compose(&scene, &frame))?;
 //! #     let _ = r#"
 //!     image.save("cubes.png")?;
 //! #     "#; image.save(folder.path().join("cubes.png"))?;
@@ -73,11 +73,13 @@ pub use glam;
 extern crate self as localshape;
 
 #[cfg(feature = "render")]
-pub use gpu::Gpu;
+pub use gpu::{AdapterChoice, Gpu};
 #[cfg(feature = "render")]
 pub use render::Renderer;
 pub use runner::Runner;
-pub use scene::{BodyBuilder, Lattice, Limits, ObstacleBuilder, Rotation, Scene};
+pub use scene::{
+    BodyBuilder, Lattice, Limits, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene, SceneBuilder, SceneError,
+};
 
 #[cfg(feature = "render")]
 pub mod animation;

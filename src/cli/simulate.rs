@@ -16,7 +16,8 @@ The folder then has diagnostics.csv (energies, momenta, turned-over elements and
 (command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.
 
 Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
-another scene, or of another version of it, are replaced only with --overwrite; of the same scene the tables are replaced.";
+another scene, or of another version of it, are replaced only with --overwrite, as are tables of the same scene with frames, \
+runs or states that the command does not make.";
 
 /// Simulate scenes without drawing them; needs no graphics adapter
 #[derive(Args, Debug)]

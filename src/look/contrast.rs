@@ -4,7 +4,7 @@ use super::file::{ShowFile, ViewFile};
 use super::palette::{Palette, Theme};
 use super::ramp::ramp;
 use super::typed::{BackgroundFile, ColoursFile};
-use super::view::{FloorStyle, FontFiles, Look};
+use super::view::{FloorStyle, FontFiles, Style};
 use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
 use std::fmt;
@@ -13,7 +13,7 @@ use std::fmt;
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// The look, or `None` if there is a mistake in it.
-pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Look> {
+pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Style> {
     let background = match typed.background {
         Some(BackgroundFile::Colour(colour)) => Some(colour.0),
         Some(BackgroundFile::Transparent) | None => None,
@@ -29,7 +29,7 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     check_field(typed, theme, &palette, report);
     (report.total() == known).then(|| {
         let (text_scale, line_scale, margin) = (typed.text_scale, typed.line_scale, typed.margin);
-        Look { theme, palette, transparent, font, text_scale, line_scale, margin }
+        Style { theme, palette, transparent, font, text_scale, line_scale, margin }
     })
 }
 

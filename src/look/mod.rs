@@ -28,5 +28,5 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, View, Visible,
+    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, StrainScale, Style, View, Visible,
 };

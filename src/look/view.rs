@@ -16,7 +16,7 @@ pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
     /// Colours, type, lines and margins.
-    pub look: Look,
+    pub look: Style,
     /// From where; the same for all panels.
     pub camera: Camera,
     /// What the clock counts from, shown under the time, such as `after first contact`.
@@ -70,7 +70,7 @@ impl Default for View {
     fn default() -> Self {
         Self {
             size: [1280, 720],
-            look: Look::of(Theme::default()),
+            look: Style::of(Theme::default()),
             camera: Camera {
                 azimuth: 0.0,
                 elevation: 0.0,
@@ -214,7 +214,7 @@ pub enum ColourMap {
 
 /// The appearance of a picture apart from its content: colours, type, lines and margins.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct Style {
     /// The theme of the colours: the requested one, unless its text would be illegible on the background.
     pub theme: Theme,
     /// All colours.
@@ -231,7 +231,7 @@ pub struct Look {
     pub margin: f64,
 }
 
-impl Look {
+impl Style {
     /// What pictures of a theme look like where a scene says nothing else.
     pub fn of(theme: Theme) -> Self {
         Self {

@@ -388,7 +388,7 @@ pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::look::{Look, Theme};
+    use crate::look::{Style, Theme};
 
     #[test]
     fn panels_cover_the_picture_without_gaps() {
@@ -459,7 +459,7 @@ mod tests {
 
     #[test]
     fn type_and_lines_grow_by_themselves() {
-        let look = Look { text_scale: 2.0, line_scale: 3.0, ..Look::of(Theme::Light) };
+        let look = Style { text_scale: 2.0, line_scale: 3.0, ..Style::of(Theme::Light) };
         let view = View { look, ..View::default() };
         let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&view));
         assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));

@@ -46,8 +46,7 @@ impl<'s> Reference<'s> {
                 (false, false) => ("##", format!("[{path}]")),
             };
             self.text += &format!("\n{depth} `{heading}`\n");
-            // The list of keys above has the first sentence.
-            let more = description(table).strip_prefix(first_sentence(description(table))).unwrap_or_default().trim();
+            let (_, more) = split(description(table));
             let each = Some(description(&table["items"])).filter(|each| !description(table).starts_with(each));
             for text in [Some(more), each].into_iter().flatten().filter(|text| !text.is_empty()) {
                 self.text += &format!("\n{text}\n");
@@ -76,12 +75,12 @@ impl<'s> Reference<'s> {
         let required = table["required"].as_array();
         self.text.push('\n');
         for (key, value) in properties.iter().filter(|(key, value)| wanted(key, value)) {
-            let (mut kind, mut meaning) = (kind(value), description(value));
+            let (mut kind, mut meaning) = (kind(value), description(value).to_owned());
             if table_of(value).is_some() {
                 let (table, path) = self.section(value, path, key);
                 // The section has the rest, unless it was written for a key that means something else.
                 if description(table) == meaning {
-                    meaning = first_sentence(meaning);
+                    meaning = split(description(value)).0;
                 }
                 kind = format!("[{kind}](#{})", path.replace('.', ""));
             }
@@ -119,6 +118,16 @@ impl<'s> Reference<'s> {
 
 fn joined(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// The first sentence of a description with its default, for the list of keys, and what lies between, for a section.
+fn split(description: &str) -> (String, &str) {
+    let first = first_sentence(description);
+    let rest = description[first.len()..].trim();
+    match rest.find("Default: ") {
+        Some(at) => (format!("{first} {}", &rest[at..]), rest[..at].trim()),
+        None => (first.to_owned(), rest),
+    }
 }
 
 fn description(schema: &Value) -> &str {

@@ -1,7 +1,7 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
 use super::{fig4b, gpu, parse, renderer};
-use localshape::look::{ColourMap, ColourScale, Look, Theme, Visible};
+use localshape::look::{ColourMap, ColourScale, Style, Theme, Visible};
 use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
@@ -135,7 +135,7 @@ fn nothing_of_it_is_there_unless_it_is_asked_for() {
 fn the_bar_has_round_numbers_under_its_own_colours() {
     let (mut scene, frame) = with_field(Field::Displacement, [0.0, 0.05], 4);
     for theme in [Theme::Light, Theme::Dark] {
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         let picture = compose(&scene, &frame);
         let bar = marks(&picture, MarkShape::Blend);
         assert_eq!(bar.len(), SHADES - 1);
@@ -383,7 +383,7 @@ fn the_plane_shows_the_colours_of_the_bar() {
     let Some(gpu) = gpu("the_plane_shows_the_colours_of_the_bar") else { return };
     for theme in [Theme::Light, Theme::Dark] {
         let (mut scene, mut frame) = plane("show = ['surfaces']\ncolour = { by = 'strain', range = [0, 1] }");
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         scene.view.size = [320, 180];
         frame.runs[0].snapshot.turned_over = vec![false; 2];
         for at in [0, 20, SHADES - 1] {

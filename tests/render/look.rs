@@ -5,7 +5,7 @@ use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
-use localshape::look::{Follow, FontFiles, Look, Theme};
+use localshape::look::{Follow, FontFiles, Style, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
@@ -69,7 +69,7 @@ fn laid_on_a_page_a_picture_looks_as_drawn_on_it() {
     let Some(gpu) = gpu("laid_on_a_page_a_picture_looks_as_drawn_on_it") else { return };
     for (name, mut scene, frame) in scenes() {
         for theme in [Theme::Light, Theme::Dark] {
-            scene.view.look = Look { transparent: true, ..Look::of(theme) };
+            scene.view.look = Style { transparent: true, ..Style::of(theme) };
             let (white, black, transparent) = three(gpu, &scene, &frame);
             let on_white = apart(&white, &laid(&transparent, 255));
             let on_black = apart(&black, &laid(&transparent, 0));
@@ -87,7 +87,7 @@ fn nothing_is_nothing_bodies_are_opaque_and_shadows_are_between() {
     let Some(gpu) = gpu("nothing_is_nothing_bodies_are_opaque_and_shadows_are_between") else { return };
     for (name, mut scene, frame) in scenes() {
         for theme in [Theme::Light, Theme::Dark] {
-            scene.view.look = Look { transparent: true, ..Look::of(theme) };
+            scene.view.look = Style { transparent: true, ..Style::of(theme) };
             let (white, black, transparent) = three(gpu, &scene, &frame);
             let mut counts = [0_usize; 3];
             for ((pixel, white), black) in transparent.pixels().zip(white.pixels()).zip(black.pixels()) {

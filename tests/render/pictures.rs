@@ -2,7 +2,7 @@
 
 use super::{draw, fig4b, gpu, renderer};
 use image::RgbImage;
-use localshape::look::{Look, Theme};
+use localshape::look::{Style, Theme};
 use localshape::picture::compose;
 use localshape::render::{RenderError, Renderer};
 use localshape::scene::Scene;
@@ -36,7 +36,7 @@ fn turned_over_elements_show_only_where_there_are_any() {
     let Some(gpu) = gpu("turned_over_elements_show_only_where_there_are_any") else { return };
     for theme in [Theme::Light, Theme::Dark] {
         let (mut scene, frame) = fig4b(4);
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         let over: Vec<_> = frame.runs.iter().map(|run| run.snapshot.diagnostics.turned_over).collect();
         assert_eq!(over[0], 0, "this frame is known for it");
         assert!(over[1] > 0, "this frame is known for it");
@@ -90,7 +90,7 @@ fn the_corner_of_the_picture_is_the_ground() {
     let Some(gpu) = gpu("the_corner_of_the_picture_is_the_ground") else { return };
     let (mut scene, frame) = fig4b(0);
     for (theme, ground) in [(Theme::Light, [0xfb, 0xfb, 0xfa]), (Theme::Dark, [0x12, 0x16, 0x1c])] {
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         let image = draw(gpu, &compose(&scene, &frame), 1);
         for (x, y) in [(0, 0), (1279, 0), (0, 719), (1279, 719)] {
             assert_eq!(image.get_pixel(x, y).0, ground, "{theme:?} at {x}, {y}");

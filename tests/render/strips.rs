@@ -2,7 +2,7 @@
 
 use super::{assert_words_are_clear, fig4b, gpu, parse, renderer};
 use localshape::history::History;
-use localshape::look::{Look, Theme};
+use localshape::look::{Style, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
@@ -106,7 +106,7 @@ fn the_present_moment_is_at_its_pixel() {
     let Some(gpu) = gpu("the_present_moment_is_at_its_pixel") else { return };
     for theme in [Theme::Light, Theme::Dark] {
         let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         let [picture] = pictures(&scene, &frames);
         let mut renderer = renderer(gpu, scene.view.size, 4);
         let image = renderer.draw(&picture).expect("the device works");

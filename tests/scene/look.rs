@@ -3,7 +3,7 @@
 use super::mistakes::{PLANE, case};
 use super::{WORLD, good};
 use localshape::colour::{Vision, contrast, difference};
-use localshape::look::{ColourMap, Look, Palette, Theme};
+use localshape::look::{ColourMap, Palette, Style, Theme};
 use localshape::scene::{Limits, Scene, SceneError};
 
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
@@ -14,15 +14,15 @@ fn with(view: &str) -> String {
     format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[view]\n{view}\n")
 }
 
-fn look(view: &str) -> Look {
+fn look(view: &str) -> Style {
     good(&with(view)).view.look
 }
 
 #[test]
 fn a_scene_that_says_nothing_has_the_look_of_its_theme() {
-    assert_eq!(look(""), Look::of(Theme::Light));
-    assert_eq!(look("theme = 'dark'"), Look::of(Theme::Dark));
-    assert_eq!(look("theme = 'dark'\ncolours = {}\ntext_scale = 1"), Look::of(Theme::Dark));
+    assert_eq!(look(""), Style::of(Theme::Light));
+    assert_eq!(look("theme = 'dark'"), Style::of(Theme::Dark));
+    assert_eq!(look("theme = 'dark'\ncolours = {}\ntext_scale = 1"), Style::of(Theme::Dark));
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn a_background_takes_the_theme_whose_text_can_be_read_on_it() {
         }
     }
     let transparent = look("background = 'transparent'");
-    assert_eq!(transparent, Look { transparent: true, ..Look::of(Theme::Light) });
+    assert_eq!(transparent, Style { transparent: true, ..Style::of(Theme::Light) });
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn scales_have_named_colours_and_factors() {
     let scene =
         good(&with("colour = { by = 'speed', map = 'viridis' }\ntext_scale = 1.5\nline_scale = 0.5\nmargin = 0"));
     assert_eq!(scene.view.colour.map(|colour| colour.map), Some(ColourMap::Viridis));
-    let Look { text_scale, line_scale, margin, .. } = scene.view.look;
+    let Style { text_scale, line_scale, margin, .. } = scene.view.look;
     assert_eq!((text_scale, line_scale, margin), (1.5, 0.5, 0.0));
     let usual = good(&with("colour = { by = 'speed' }"));
     assert_eq!(usual.view.colour.map(|colour| colour.map), Some(ColourMap::MintIndigo));

@@ -12,7 +12,7 @@ use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
 use super::schema::schema_of;
-use crate::look::{Look, Theme};
+use crate::look::{Style, Theme};
 use crate::sim::snapshot::Diagnostic;
 use serde_json::Value;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub struct Figure {
     /// Width and height (px).
     pub size: [u32; 2],
     /// Colours, type and lines of the whole figure.
-    pub look: Look,
+    pub look: Style,
     /// What it shows.
     pub content: Content,
 }
@@ -170,13 +170,13 @@ static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<file::FigureFile>(
 
 /// The look of a figure: that of its first scene, in another theme and with larger type if it says so, and never without a
 /// background.
-fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Look {
+fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Style {
     let look = match theme {
         Some(theme) if theme != first.view.look.theme => {
-            let Look { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
-            Look { font, text_scale, line_scale, margin, ..Look::of(theme) }
+            let Style { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
+            Style { font, text_scale, line_scale, margin, ..Style::of(theme) }
         }
         _ => first.view.look.clone(),
     };
-    Look { transparent: false, text_scale: text_scale.unwrap_or(look.text_scale), ..look }
+    Style { transparent: false, text_scale: text_scale.unwrap_or(look.text_scale), ..look }
 }
