@@ -10,7 +10,9 @@
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
 //! use localshape::picture::compose;
 //! use localshape::sim::model::{mass_spring, shape_based};
-//! use localshape::{AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene};
+//! use localshape::{
+//!     AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+//! };
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! #     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }

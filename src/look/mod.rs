@@ -5,7 +5,6 @@ mod contrast;
 pub(crate) mod file;
 pub(crate) mod font;
 mod framing;
-mod inside;
 mod palette;
 pub(crate) mod ramp;
 mod reach;
@@ -18,7 +17,6 @@ mod view;
 
 pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
-pub(crate) use inside::is_inside;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub(crate) use ramp::SHADES;

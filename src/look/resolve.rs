@@ -3,12 +3,12 @@
 use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
-use super::inside::is_inside;
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
 use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
+use crate::sim::inside::is_inside;
 use crate::sim::words::rounded;
 
 /// How many panels stand beside each other unless the scene says so.

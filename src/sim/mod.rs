@@ -14,6 +14,7 @@ pub(crate) mod field;
 mod gather;
 pub(crate) mod grip;
 pub(crate) mod hull;
+pub(crate) mod inside;
 pub(crate) mod integrate;
 mod kernel;
 mod lanes;

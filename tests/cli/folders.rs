@@ -135,7 +135,7 @@ fn results_of_the_same_scene_are_not_lost_unasked() {
             ("--states --only Mass-spring", "out holds diagnostics of 7 frames of “Local shape” of this scene"),
             ("", "out holds states.npz (written with --states) of this scene"),
         ] {
-            let ran = place.run(&format!("{command} small.toml -o out {options}"));
+            let ran = place.run(format!("{command} small.toml -o out {options}").trim_end());
             ran.bad(2, &[words, "choose another folder with -o, or replace", "--overwrite"]);
             assert!(files(&place) == before, "{command} {options}");
         }

@@ -300,11 +300,11 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     let early = place.run("compare early small.toml");
     assert_eq!(early.status, Some(1), "{early:?}");
     assert!(early.out.contains("frame_00001.png: identical\n"), "{early:?}");
-    assert!(early.out.contains("the golden goes on to frame 6, the scene ends with frame 3\n"), "{early:?}");
+    assert!(early.out.contains("the golden continues to frame 6, the scene ends with frame 3\n"), "{early:?}");
     place.run("compare --bless early small.toml").bad(1, &["the state moved", "--bless-state early small.toml"]);
     let shorter = place.run("compare golden small.toml");
     assert_eq!(shorter.status, Some(1));
-    assert!(shorter.out.contains("the golden goes on to frame 6, the scene ends with frame 3"), "{shorter:?}");
+    assert!(shorter.out.contains("the golden continues to frame 6, the scene ends with frame 3"), "{shorter:?}");
     assert!(shorter.out.contains("frame_00006.png: missing"), "{shorter:?}");
     assert!(shorter.out.contains("missing: 2 of 3 pictures are not as expected"), "{shorter:?}");
     // Fewer states count as changed states.
@@ -313,7 +313,7 @@ fn scenes_that_end_earlier_and_frames_that_are_not_there() {
     place.run("compare golden small.toml").good();
     place.write("small.toml", SMALL);
     let longer = place.run("compare golden small.toml").good();
-    assert!(longer.out.contains("the golden ends with frame 3, the scene goes on to frame 6"), "{longer:?}");
+    assert!(longer.out.contains("the golden ends with frame 3, the scene continues to frame 6"), "{longer:?}");
     place.write("small.toml", &SMALL.replace("duration = 0.1", "duration = 0.05"));
     place.run("compare golden small.toml --frames 9").bad(2, &["there is no frame 9; the last one is 3"]);
     place.run("compare golden absent.toml").bad(2, &["absent.toml: there is no such file"]);

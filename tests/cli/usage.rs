@@ -47,7 +47,7 @@ fn unknown_run() {
     place.run("simulate small.toml --only Mass-sprin").bad(2, &["did you mean “Mass-spring”?", "“Local shape”"]);
     let ran = place
         .run("simulate small.toml --only xyz")
-        .bad(2, &["no run “xyz”. Its runs are “Local shape”, “Mass-spring”"]);
+        .bad(2, &["no run “xyz”; its runs are “Local shape” and “Mass-spring”"]);
     assert!(!ran.err.contains("did you mean"), "{}", ran.err);
     assert_eq!(place.names("."), ["small.toml"]);
 }

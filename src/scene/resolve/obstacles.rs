@@ -3,11 +3,11 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
-use crate::look::is_inside;
 use crate::reading::report::{Report, Way};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::inside::is_inside;
 use crate::sim::words::{quantity, rounded};
 use glam::{DQuat, DVec3};
 

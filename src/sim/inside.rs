@@ -1,6 +1,6 @@
 //! Whether a point, such as that of a camera, lies inside a body.
 
-use crate::sim::body::Body;
+use super::body::Body;
 use glam::DVec3;
 use std::f64::consts::PI;
 
