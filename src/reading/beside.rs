@@ -9,9 +9,9 @@ pub(crate) fn missing(path: &Path) -> String {
     format!("is not there (looked for {})", full.display())
 }
 
-/// The file in the same folder, with one of several endings, whose name is most like that of a missing one.
+/// The file in the same folder, with one of several endings, whose name without it is most like that of a missing one.
 pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
-    let wanted = path.file_name()?.to_str()?;
+    let stem = |name: &Path| name.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
@@ -19,7 +19,10 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
         let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_lowercase());
         ending.is_some_and(|ending| endings.contains(&ending.as_str()))
     };
-    let mut similar: Vec<String> = names.filter(has_ending).collect();
+    let mut similar: Vec<(String, String)> =
+        names.filter(has_ending).filter_map(|name| Some((stem(Path::new(&name))?, name))).collect();
     similar.sort();
-    nearest(wanted, &similar.iter().map(String::as_str).collect::<Vec<_>>()).map(str::to_owned)
+    let stems: Vec<&str> = similar.iter().map(|(stem, _)| stem.as_str()).collect();
+    let near = nearest(&stem(path)?, &stems)?;
+    Some(similar[stems.iter().position(|&stem| stem == near)?].1.clone())
 }

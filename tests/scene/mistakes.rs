@@ -563,7 +563,7 @@ fn syntax_errors_have_their_place() {
         let empty = format!("mass = {value}");
         case(PLANE, "mass = 1", &empty, &[(9, column, "`mass` has no value write one after `=`, or remove the key")]);
     }
-    case(SPACE, "side = 0.1", "side = ", &[(5, 37, "`side` has no value")]);
+    case(SPACE, "side = 0.1", "side = ", &[(5, 40, "`side` has no value")]);
     case(PLANE, "duration = 3", "duration = = 3", &[(3, 12, "this is not TOML: extra `=`")]);
     case(PLANE, "duration = 3", "duration = 3\nduration = 4", &[(4, 1, "`duration` is given a second time")]);
     case(PLANE, "[0, -9.8]", "[0, -9.8", &[(2, 1, "is an array before this not closed with `]`?")]);
