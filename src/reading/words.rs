@@ -46,7 +46,8 @@ pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
         distance(&name) * 3 <= name.chars().count().max(typed.chars().count()).max(3)
     };
     let contained = |name: &&&str| typed.len() >= 4 && plain(name).contains(&typed);
-    let initials = |name: &&&str| plain(name).split('-').filter_map(|word| word.chars().next()).eq(typed.chars());
+    let first_letters = |name: &&&str| plain(name).split('-').filter_map(|word| word.chars().next()).eq(typed.chars());
+    let initials = |name: &&&str| typed.len() > 1 && first_letters(name);
     let others = || known.iter().find(contained).or_else(|| known.iter().find(initials));
     known.iter().filter(near).min_by_key(|name| distance(name)).or_else(others).copied()
 }
@@ -130,6 +131,7 @@ mod tests {
         assert_eq!(nearest("ratio", &known), Some("damping_ratio"));
         assert_eq!(nearest("colour", &known), None);
         assert_eq!(nearest("", &known), None);
+        assert_eq!(nearest("s", &known), None);
         assert_eq!(nearest("fps", &["duration", "frames_per_second"]), Some("frames_per_second"));
     }
 
