@@ -181,8 +181,10 @@ fn draw_scene(
         Some(strip) => runner.with_course(std::slice::from_ref(strip)),
         None => runner,
     };
+    let ahead = artist.is_some() && (course.is_some() || scene.view.difference.is_some());
+    let runner = if ahead { runner.with_difference() } else { runner };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, course.is_some(), &std::env::temp_dir());
+    let mut frames = Frames::new(runner, &frames, ahead, &std::env::temp_dir());
     loop {
         if !go_on() {
             return Ok(None);

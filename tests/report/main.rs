@@ -64,7 +64,7 @@ fn courses(frames: u64) -> Vec<RunDifference> {
             let moved = frame >= moved_from;
             let far = 1e-10 * 1.6_f64.powi(frame.saturating_sub(moved_from) as i32);
             let is_known = moved && frame < 38;
-            let displacement = is_known.then_some(Displacement { frame, node: 12, distance: far, precision: 1e-9 });
+            let displacement = is_known.then_some(Displacement { frame, node: 12, distance: far, of_shape: 0.5 * far, precision: 1e-9 });
             FrameDifference { frame, time: Some(frame as f64 / 60.0), moved, displacement }
         };
         RunDifference { run: run.into(), precision: 1e-9, moments: (0..frames).map(moment).collect() }
@@ -86,6 +86,7 @@ fn sequence() -> Report {
         drawn_by: [Some("one adapter".into()), None],
         courses: courses(41),
         pictures: pictures.into(),
+        first: 2,
     }
 }
 
@@ -214,7 +215,7 @@ fn it_works_by_keys_and_by_pointer() {
 }
 
 fn it_works_by_keys(browser: &mut Browser) {
-    assert_eq!(browser.text(NAME), "020.png", "the first failure is shown first");
+    assert_eq!(browser.text(NAME), "020.png", "what the report says is shown first");
     for (key, held, name) in [
         ("ArrowRight", PLAIN, "030.png"),
         ("ArrowLeft", PLAIN, "020.png"),
@@ -478,7 +479,7 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     assert!(browser.number(lines) < 2.0);
 
     // Any number of pictures on any screen.
-    let single = Report { courses: vec![], pictures: vec![sheet("only.png", None, false)], ..sequence() };
+    let single = Report { courses: vec![], pictures: vec![sheet("only.png", None, false)], first: 0, ..sequence() };
     let nothing = Report { courses: vec![], pictures: vec![], ..sequence() };
     let states_only = Report { pictures: vec![], ..sequence() };
     let mut many = Report { courses: courses(2000), ..sequence() };

@@ -391,7 +391,7 @@
     list.size = clamp(sheets.length, 2, 12);
     buildList();
     setMode(mode);
-    go(Math.max(sheets.findIndex((sheet) => !sheet.passes), 0));
+    go(report.first);
     recall();
     addEventListener("hashchange", recall);
   }

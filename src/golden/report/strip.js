@@ -60,7 +60,11 @@ function showSequence(report, go) {
       same: () => "same state",
       unknown: () => "moved, nobody knows how far",
       below: () => (precision > 0 ? `moved by less than ${length(precision)}` : "another state, no node displaced"),
-      known: () => `moved by ${length(moment.displacement.distance)} (node ${moment.displacement.node})`,
+      known: () => {
+        const { distance, node, of_shape: left } = moment.displacement;
+        const fitted = left <= precision ? "nothing" : length(left);
+        return `moved by ${length(distance)} (node ${node}), ${fitted} of it after the best rigid fit`;
+      },
     };
     return words[kind(moment, precision)]();
   }
@@ -98,8 +102,8 @@ function showSequence(report, go) {
   /** Room for ticks at the left, and how high the rows of the charts and one line of them are (px). */
   const [GUTTER, TALL, LINE] = [84, 110, 22];
   let cell = 1; // The width of a station (px).
-  /** How a run is drawn: four colours and three kinds of lines make twelve runs of their own look. */
-  const look = (run) => `run-${(run % 4) + 1} dash-${(run % 3) + 1}`;
+  /** How a run is drawn: as in pictures, which have so many looks. */
+  const look = (run) => `run run-${(run % 64) + 1}`;
 
   function draw(svg, name, attributes, text) {
     const element = document.createElementNS(svg.namespaceURI, name);
@@ -191,7 +195,7 @@ function showSequence(report, go) {
       return line;
     });
     draw(svg, "path", { d: area, class: "alarm-area" });
-    lines.forEach((line, run) => draw(svg, "path", { d: line, class: `run ${look(run)}` }));
+    lines.forEach((line, run) => draw(svg, "path", { d: line, class: look(run) }));
     return y;
   }
 
@@ -267,8 +271,10 @@ function showSequence(report, go) {
   strip.max = stations.length - 1;
   report.courses.forEach(({ run }, index) => {
     const item = the("runs").appendChild(document.createElement("li"));
-    item.className = look(index);
-    item.textContent = run;
+    const sample = item.appendChild(document.createElementNS("http://www.w3.org/2000/svg", "svg"));
+    sample.setAttribute("aria-hidden", "true");
+    draw(sample, "line", { x1: 0, x2: 40, y1: 4, y2: 4, class: look(index) });
+    item.append(run);
   });
   point(null);
   new ResizeObserver(() => requestAnimationFrame(drawCharts)).observe(the("charts"));
