@@ -209,6 +209,7 @@ impl Recording<'_> {
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
         let course = pictures.as_ref().and_then(|pictures| pictures.course());
+        let ahead = course.is_some() || needs_field && self.scene.view.difference.is_some();
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
@@ -217,10 +218,13 @@ impl Recording<'_> {
             if let Some(diagnostic) = course {
                 runner = runner.with_course(&[diagnostic]);
             }
-            Frames::new(runner, &self.frames, course.is_some(), self.folder)
+            if ahead {
+                runner = runner.with_difference();
+            }
+            Frames::new(runner, &self.frames, ahead, self.folder)
         });
         let bar = telling.progress(&self.scene.title, frames.steps()[1]);
-        if course.is_some() {
+        if ahead {
             bar.set_message("simulating ahead for the strips");
         }
         let slice = slice(&self.scene.body);

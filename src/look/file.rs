@@ -88,6 +88,18 @@ pub(crate) struct ViewFile {
     /// Colours springs by their strain, the change of length over the length at rest: `{}` for shortened springs in violet and
     /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
     pub(crate) spring_colour: Option<SpringColourFile>,
+    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
+    /// same moment, in the colour of that run. All runs then have the time step of that one. Not in an exploded view. Default:
+    /// none.
+    #[schemars(length(min = 1, max = 80))]
+    pub(crate) ghost: Option<String>,
+    /// Two runs, such as `["Local shape", "Mass-spring"]`, whose difference has a panel of its own: the body of the first,
+    /// coloured by the distance of each node from the same node of the second, whose outline is dashed. Below it, the largest of
+    /// these distances is plotted over the whole time of the scene, which is simulated before the first frame is drawn; the
+    /// colour bar ends at its maximum. Both runs have the same time step. Not in an exploded view. Default: none.
+    pub(crate) difference: Option<[String; 2]>,
+    /// How these distances are measured. Default: `"positions"`.
+    pub(crate) difference_of: Option<DifferenceOfFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: LightFile,
     /// Whether bodies and obstacles cast shadows on the floor.
@@ -134,6 +146,9 @@ impl Default for ViewFile {
             opacity: 1.0,
             explode: 0.0,
             spring_colour: None,
+            ghost: None,
+            difference: None,
+            difference_of: None,
             light: LightFile::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -179,6 +194,16 @@ impl Default for SpringColourFile {
     fn default() -> Self {
         Self { range: None, map: ColourMap::VioletGreen }
     }
+}
+
+/// How the difference of two bodies is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum DifferenceOfFile {
+    /// Between the nodes where they are.
+    Positions,
+    /// After the second body has been moved and turned as a rigid body to where it is nearest to the first (least squares).
+    Shapes,
 }
 
 /// Direction of the light, relative to the camera.

@@ -1,6 +1,7 @@
 //! What pictures look like: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from its
 //! `[view]` table and from the body, models and surroundings that it shows. Nothing here draws.
 
+mod compared;
 mod contrast;
 pub(crate) mod file;
 pub(crate) mod font;
@@ -27,5 +28,6 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, View, Visible,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, Follow, FontFiles, Ghost, Labels, Light, Look, StrainScale, View,
+    Visible,
 };

@@ -1,5 +1,6 @@
 //! Resolves a `[view]` table for the body, the runs and the surroundings that it shows.
 
+use super::compared;
 use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
@@ -22,7 +23,7 @@ pub(crate) fn resolve(
     report: &mut Report<'_>,
 ) -> Option<View> {
     let body = scene.body;
-    let runs = scene.models.len();
+    let panels = scene.models.len() + usize::from(typed.difference.is_some());
     let dimension = body.dimension;
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
@@ -43,12 +44,12 @@ pub(crate) fn resolve(
     }
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
-        (None, Some(ArrangementFile::Row)) => runs,
+        (None, Some(ArrangementFile::Row)) => panels,
         (None, Some(ArrangementFile::Column)) => 1,
-        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
-        (None, None) => columns(runs),
+        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, panels),
+        (None, None) => columns(panels),
     };
-    let columns = columns.clamp(1, runs.max(1));
+    let columns = columns.clamp(1, panels.max(1));
     let colour = match &typed.colour {
         Some(typed) => Some(colour(typed, scene, report)?),
         None => None,
@@ -63,6 +64,7 @@ pub(crate) fn resolve(
         None => Visible::usual(dimension, body.len()),
     };
     let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
+    let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -107,6 +109,8 @@ pub(crate) fn resolve(
         opacity: typed.opacity,
         explode: typed.explode,
         spring_strain,
+        ghost,
+        difference,
         light: Light { azimuth: typed.light.azimuth, elevation: typed.light.elevation },
         shadow: typed.shadow,
         floor: typed.floor,

@@ -51,6 +51,10 @@ pub struct View {
     pub explode: f64,
     /// The colours of the strain of springs, if it is shown.
     pub spring_strain: Option<StrainScale>,
+    /// What is outlined over each body, if anything.
+    pub ghost: Option<Ghost>,
+    /// The runs whose difference has a panel of its own, if it is shown.
+    pub difference: Option<Difference>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -96,6 +100,8 @@ impl Default for View {
             opacity: 1.0,
             explode: 0.0,
             spring_strain: None,
+            ghost: None,
+            difference: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -268,6 +274,24 @@ pub struct StrainScale {
     pub range: [f64; 2],
     /// Its colours.
     pub map: ColourMap,
+}
+
+/// What is outlined over each body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ghost {
+    /// The rest shape, in its best rigid fit.
+    Rest,
+    /// The body of a run of the scene, by its index, at the same moment.
+    Run(usize),
+}
+
+/// Two runs of a scene, by their indices, and how the distances of their nodes are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The run whose body is drawn, and the one that it is compared with.
+    pub runs: [usize; 2],
+    /// Whether the second body is first moved and turned to where it is nearest to the first.
+    pub after_fit: bool,
 }
 
 /// A perspective camera that looks at a point.

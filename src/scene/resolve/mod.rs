@@ -245,6 +245,7 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
         obstacles,
         grips: grips.as_deref().unwrap_or_default(),
         duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
+        runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
         models: runs.iter().flatten().map(|run| &*run.model).collect(),
     };
     let view = look::resolve(parts.view.as_ref()?, &around, parts.font.clone(), report)?;
