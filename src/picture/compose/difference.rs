@@ -124,14 +124,13 @@ impl Composer<'_> {
         let (viewport, strip) = self.rooms(place, writer.scale);
         let taken = if time.is_some() { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
         let [one, other] = [compared.one.run, compared.other].map(|run| &self.scene.runs[run].name[..]);
-        let is_fitted = view.difference.is_some_and(|difference| difference.after_fit);
-        let second = match is_fitted {
-            true => format!("{one} to {other} (dashed), after the best rigid fit"),
-            false => format!("{one} to {other} (dashed)"),
+        let (name, second) = match view.difference.is_some_and(|difference| difference.after_fit) {
+            true => ("Difference of shapes", format!("{one} to {other}, fitted (dashed)")),
+            false => ("Difference", format!("{one} to {other} (dashed)")),
         };
         let heading = Heading {
             letter: if labels.letter { caption::letter(at) } else { String::new() },
-            name: if labels.name { "Difference" } else { "" },
+            name: if labels.name { name } else { "" },
             sample: None,
             second: if labels.model { &second } else { "" },
         };
@@ -162,7 +161,7 @@ impl Composer<'_> {
         draft.viewport = self.rooms(place, scale).0;
         draft.colour_by(&self.distance_scale(), &compared.distances);
         let colour = self.scene.runs[compared.other].line(&self.palette).colour;
-        draft.outline(&compared.outlined, colour, curves);
+        draft.outline(&compared.outlined, colour, draft.between_words(), curves);
         draft.panel(under, above)
     }
 }

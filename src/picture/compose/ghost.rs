@@ -6,6 +6,7 @@ use crate::colour::Colour;
 use crate::look::Ghost;
 use crate::picture::Curve;
 use crate::picture::ghost;
+use crate::picture::layout::Rectangle;
 use crate::sim::snapshot::{RunFrame, Status};
 use glam::DVec3;
 
@@ -20,19 +21,19 @@ impl Composer<'_> {
 }
 
 impl Draft<'_> {
-    /// The ghost that the scene asks for. `others` are runs at the same moment.
-    pub(super) fn ghost(&self, others: &[RunFrame], curves: &mut Vec<Curve>) {
+    /// The ghost that the scene asks for, inside a part of the picture. `others` are runs at the same moment.
+    pub(super) fn ghost(&self, others: &[RunFrame], room: Rectangle, curves: &mut Vec<Curve>) {
         let Some((_, colour)) = self.composer.ghost() else { return };
         match self.scene.view.ghost {
             Some(Ghost::Rest) => {
                 let placement = &self.run.snapshot.placement;
                 let position: Vec<_> = self.body.rest.iter().map(|&rest| placement.place(rest)).collect();
-                self.outline(&position, colour, curves);
+                self.outline(&position, colour, room, curves);
             }
             Some(Ghost::Run(run)) if run != self.run.run => {
                 let other = others.iter().find(|other| other.run == run);
                 if let Some(other) = other.filter(|other| other.snapshot.status == Status::Ok) {
-                    self.outline(&other.snapshot.position, colour, curves);
+                    self.outline(&other.snapshot.position, colour, room, curves);
                 }
             }
             _ => {}
@@ -40,7 +41,7 @@ impl Draft<'_> {
     }
 
     /// The outline of the body with its nodes elsewhere (m).
-    pub(super) fn outline(&self, position: &[DVec3], colour: Colour, curves: &mut Vec<Curve>) {
+    pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Curve>) {
         if self.diverged || position.len() != self.body.len() {
             return;
         }
@@ -50,7 +51,7 @@ impl Draft<'_> {
             position,
             nodes: &skin.nodes,
             triangles: &skin.triangles,
-            room: self.clear_of_words(),
+            room,
         };
         ghost.draw(self.scale, colour, self.composer.palette.halo, curves);
     }

@@ -222,7 +222,7 @@ impl<'a> Composer<'a> {
         let mut ghosts = Vec::new();
         let draft = |(place, run)| {
             let draft = Draft::new(self, place, run, &framing, scale);
-            draft.ghost(&frame.runs, &mut ghosts);
+            draft.ghost(&frame.runs, draft.between_words(), &mut ghosts);
             draft.panel(&mut under, &mut marks)
         };
         let viewports = layout.panels.iter().map(|place| place.viewport);

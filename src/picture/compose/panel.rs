@@ -326,6 +326,12 @@ impl<'a> Draft<'a> {
         layout::clear_of_words(self.viewport, self.scale, layout::rooms(view))
     }
 
+    /// The same as wide as the panel.
+    pub(super) fn between_words(&self) -> Rectangle {
+        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear_of_words());
+        [left, top, width, height]
+    }
+
     /// A point (m) as the panel has it.
     pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()

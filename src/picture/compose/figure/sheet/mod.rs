@@ -103,7 +103,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         for (column, run) in cells.iter().enumerate() {
             let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
             let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
-            draft.ghost(moments.others[row][column].as_slice(), &mut curves);
+            draft.ghost(moments.others[row][column].as_slice(), draft.viewport, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width do not show.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
