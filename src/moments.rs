@@ -143,7 +143,8 @@ impl<'a> Taking<'a> {
             Some(Ghost::Run(other)) if other != run => Some((scene, other, time)),
             _ => None,
         };
-        let others = cells.clone().map(|cell| ghost(cell).map(|(scene, run, time)| (part([scene, run]), Moment::at(time))));
+        let others =
+            cells.clone().map(|cell| ghost(cell).map(|(scene, run, time)| (part([scene, run]), Moment::at(time))));
         let others: Vec<_> = others.collect();
         let shown = shown.into_iter().map(Some).chain(others).enumerate();
         for (at, (part, moment)) in shown.filter_map(|(at, shown)| Some((at, shown?))) {

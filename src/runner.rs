@@ -2,8 +2,10 @@
 //! All other code simulates through this one.
 
 pub use crate::history::{Course, History};
+use crate::look::Traced;
 use crate::scene::Scene;
 use crate::sim::apart;
+use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
@@ -13,6 +15,7 @@ use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Simulates runs of a scene and returns frames in rising order.
 ///
@@ -44,6 +47,9 @@ struct Running {
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
+    /// The points whose paths it has.
+    traced: Vec<Traced>,
+    body: Arc<Body>,
     course: Course,
 }
 
@@ -70,6 +76,8 @@ impl<'a> Runner<'a> {
                 step: scene.runs[run].step,
                 notes: Vec::new(),
                 wanted: Vec::new(),
+                traced: Vec::new(),
+                body: Arc::clone(&scene.body),
                 course: Course::new(run),
             }
         };
@@ -92,6 +100,8 @@ impl<'a> Runner<'a> {
     pub(crate) fn with_closer_course(mut self, wanted: &[Diagnostic], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
         for running in &mut self.runs {
             running.wanted = wanted.to_vec();
+            running.traced = self.scene.view.paths.clone();
+            running.course.paths = vec![Vec::new(); running.traced.len()];
             running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
         }
         self
@@ -240,6 +250,9 @@ impl Running {
     fn note(&mut self, step: u64) {
         self.course.times.push(step as f64 * self.step);
         self.course.diagnostics.push(self.world.some_diagnostics(&self.wanted));
+        for (traced, path) in self.traced.iter().zip(&mut self.course.paths) {
+            path.push(traced.of(&self.body, &self.world.state().position));
+        }
     }
 }
 

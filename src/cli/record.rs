@@ -209,17 +209,14 @@ impl Recording<'_> {
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
         let course = pictures.as_ref().and_then(|pictures| pictures.course());
-        let ahead = course.is_some() || needs_field && self.scene.view.difference.is_some();
+        let ahead = course.is_some() || needs_field && self.scene.view.looks_ahead();
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_field();
             }
-            if let Some(diagnostic) = course {
-                runner = runner.with_course(&[diagnostic]);
-            }
             if ahead {
-                runner = runner.with_difference();
+                runner = runner.with_course(course.as_slice()).with_difference();
             }
             Frames::new(runner, &self.frames, ahead, self.folder)
         });

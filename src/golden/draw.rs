@@ -177,12 +177,8 @@ fn draw_scene(
     let mut stopped = BTreeMap::new();
     let course = scene.view.strip.filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let runner = match &course {
-        Some(strip) => runner.with_course(std::slice::from_ref(strip)),
-        None => runner,
-    };
-    let ahead = artist.is_some() && (course.is_some() || scene.view.difference.is_some());
-    let runner = if ahead { runner.with_difference() } else { runner };
+    let ahead = artist.is_some() && (course.is_some() || scene.view.looks_ahead());
+    let runner = if ahead { runner.with_course(course.as_slice()).with_difference() } else { runner };
     let frames: Vec<_> = plan.frames().into_iter().collect();
     let mut frames = Frames::new(runner, &frames, ahead, &std::env::temp_dir());
     loop {

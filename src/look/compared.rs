@@ -1,10 +1,12 @@
-//! Resolves what bodies are compared with: ghosts and differences.
+//! Resolves what bodies are compared with: ghosts, differences, their own paths, and points measured elsewhere.
 
-use super::file::{DifferenceOfFile, ViewFile};
+use super::file::{DifferenceOfFile, PathFile, PathPointFile, PointsFile, ViewFile};
+use super::points::PointsRead;
 use super::subject::Subject;
-use super::view::{Difference, Ghost};
+use super::view::{Difference, Ghost, Points, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
+use crate::sim::body::Dimension;
 
 /// What a ghost of the rest shape is called.
 const REST: &str = "rest";
@@ -62,10 +64,67 @@ pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Rep
     Some(Difference { runs, after_fit: typed.difference_of == Some(DifferenceOfFile::Shapes) })
 }
 
+/// What leaves a path; empty also after a mistake.
+pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
+    let Some(paths) = &typed.paths else { return Vec::new() };
+    check_whole(typed, "paths", report);
+    let nodes = scene.body.len();
+    let one = |(at, path): (usize, &PathFile)| match *path {
+        PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
+        PathFile::Node(node) if (node as usize) < nodes => Some(Traced::Node(node)),
+        PathFile::Node(node) => {
+            let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
+            let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
+            report.at(&path, message, None);
+            None
+        }
+    };
+    paths.iter().enumerate().filter_map(one).collect()
+}
+
+/// Points that were measured elsewhere, if they fit the scene.
+pub(super) fn points(
+    typed: &ViewFile,
+    read: PointsRead,
+    scene: &Subject<'_>,
+    report: &mut Report<'_>,
+) -> Option<Points> {
+    let PointsFile { file, run } = typed.points.as_ref()?;
+    let at = |key| [Way::Key("view"), Way::Key("points"), Way::Key(key)];
+    match (scene.body.dimension, read.has_z) {
+        (Dimension::Space, false) => {
+            let message = format!("`{file}` has no column `z`, but the body is in space");
+            report.at(&at("file"), message, "add the third coordinate".to_owned());
+        }
+        (Dimension::Plane, true) => {
+            let message = format!("`{file}` has a column `z`, but the body is in the plane");
+            report.at(&at("file"), message, "remove it".to_owned());
+        }
+        _ => {}
+    }
+    if let (Some((first, _)), Some((last, _))) = (read.samples.first(), read.samples.last())
+        && (*first > scene.duration || *last < 0.0)
+    {
+        let [first, last, end] = [*first, *last, scene.duration].map(short);
+        let message = format!(
+            "the points of `{file}` were measured from {first} s to {last} s, the scene goes from 0 to {end} s"
+        );
+        report.at(&at("file"), message, "let their times count from the start of the scene".to_owned());
+    }
+    let run = match run {
+        None => None,
+        Some(name) => {
+            let known = scene.runs.iter().position(|(known, _)| known == name);
+            Some(known.or_else(|| unknown(name, &[], &at("run"), scene, report))?)
+        }
+    };
+    Some(Points { run, samples: read.samples })
+}
+
 /// Reports that a key is used where elements are drawn apart.
 fn check_whole(typed: &ViewFile, key: &'static str, report: &mut Report<'_>) {
     if typed.explode > 0.0 {
-        let message = format!("`view.explode` draws elements apart, so a {key} cannot be shown");
+        let message = format!("`view.explode` draws elements apart, so `{key}` cannot be shown");
         report.at_key(&[Way::Key("view"), Way::Key(key)], message, format!("remove `explode` or `{key}`"));
     }
 }

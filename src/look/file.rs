@@ -100,6 +100,14 @@ pub(crate) struct ViewFile {
     pub(crate) difference: Option<[String; 2]>,
     /// How these distances are measured. Default: `"positions"`.
     pub(crate) difference_of: Option<DifferenceOfFile>,
+    /// Points of the body whose paths are drawn up to the present moment, in the colours of runs: `"centre"` for the centre of mass,
+    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Not in
+    /// an exploded view. Default: none.
+    #[schemars(length(min = 1, max = 64))]
+    pub(crate) paths: Option<Vec<PathFile>>,
+    /// Points that were measured elsewhere, such as `{ file = "camera.csv" }`: rings where they are now, dots where they were.
+    /// Default: none.
+    pub(crate) points: Option<PointsFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: LightFile,
     /// Whether bodies and obstacles cast shadows on the floor.
@@ -149,6 +157,8 @@ impl Default for ViewFile {
             ghost: None,
             difference: None,
             difference_of: None,
+            paths: None,
+            points: None,
             light: LightFile::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -204,6 +214,37 @@ pub(crate) enum DifferenceOfFile {
     Positions,
     /// After the second body has been moved and turned as a rigid body to where it is nearest to the first (least squares).
     Shapes,
+}
+
+/// A point of the body that leaves a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum PathFile {
+    /// A node, counted from 0.
+    Node(u32),
+    /// A point that is no node.
+    Point(PathPointFile),
+}
+
+/// A point of the body that is no node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PathPointFile {
+    /// The centre of mass.
+    Centre,
+}
+
+/// Points that were measured elsewhere.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PointsFile {
+    /// A file of comma-separated values beside the scene file. Its first line names the columns: `time` (s), `x`, `y` and, in
+    /// space, `z` (m); other columns are not read. Times may occur several times, for several points.
+    #[schemars(length(min = 1))]
+    pub(crate) file: String,
+    /// The name of the run over which they are drawn. Default: all runs.
+    #[schemars(length(min = 1, max = 80))]
+    pub(crate) run: Option<String>,
 }
 
 /// Direction of the light, relative to the camera.

@@ -8,6 +8,7 @@ pub(crate) mod font;
 mod framing;
 mod inside;
 mod palette;
+pub(crate) mod points;
 pub(crate) mod ramp;
 mod reach;
 mod resolve;
@@ -22,12 +23,12 @@ pub(crate) use contrast::check_runs;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub(crate) use ramp::SHADES;
-pub(crate) use resolve::resolve;
+pub(crate) use resolve::{colour, resolve};
 pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, Difference, FloorStyle, Follow, FontFiles, Ghost, Labels, Light, Look, StrainScale, View,
-    Visible,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, Follow, FontFiles, Ghost, Labels, Light, Look, Points,
+    StrainScale, Traced, View, Visible,
 };

@@ -5,6 +5,7 @@ use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
 use super::inside::is_inside;
+use super::points::PointsRead;
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, Light, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
@@ -20,6 +21,7 @@ pub(crate) fn resolve(
     typed: &ViewFile,
     scene: &Subject<'_>,
     font: Option<FontFiles>,
+    points: Option<PointsRead>,
     report: &mut Report<'_>,
 ) -> Option<View> {
     let body = scene.body;
@@ -51,7 +53,10 @@ pub(crate) fn resolve(
     };
     let columns = columns.clamp(1, panels.max(1));
     let colour = match &typed.colour {
-        Some(typed) => Some(colour(typed, scene, report)?),
+        Some(typed) => {
+            let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
+            Some(colour(typed, std::slice::from_ref(scene), &way, report)?)
+        }
         None => None,
     };
     let visible = match &typed.show {
@@ -65,6 +70,8 @@ pub(crate) fn resolve(
     };
     let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
     let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
+    let paths = compared::paths(typed, scene, report);
+    let points = points.and_then(|points| compared::points(typed, points, scene, report));
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -111,6 +118,8 @@ pub(crate) fn resolve(
         spring_strain,
         ghost,
         difference,
+        paths,
+        points,
         light: Light { azimuth: typed.light.azimuth, elevation: typed.light.elevation },
         shadow: typed.shadow,
         floor: typed.floor,
@@ -145,12 +154,16 @@ const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
 
-/// The colours of a field, over a range that follows from the scene if none is typed.
-fn colour(typed: &ColourFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
-    let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
+/// The colours of a field, over a range that is typed somewhere or else follows from the scenes.
+pub(crate) fn colour(
+    typed: &ColourFile,
+    scenes: &[Subject<'_>],
+    way: &[Way<'_>; 3],
+    report: &mut Report<'_>,
+) -> Option<ColourScale> {
     let range = match typed.range {
-        Some(range) => rising(range, &way, report)?,
-        None => [0.0, scene.largest(typed.by)],
+        Some(range) => rising(range, way, report)?,
+        None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
     Some(ColourScale { field: typed.by, range, map: typed.map })
 }

@@ -360,7 +360,12 @@ pub(super) fn divergence(divergence: &Divergence) -> Number {
 /// The largest distance of two bodies, of all distances up to another one (m), where bodies have a size (m).
 pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
     let words = ["largest distance", "distance"].map(str::to_owned);
-    Number { value: number::length(metres, extent), widest: number::length(most, extent), wordings: words, is_loud: false }
+    Number {
+        value: number::length(metres, extent),
+        widest: number::length(most, extent),
+        wordings: words,
+        is_loud: false,
+    }
 }
 
 /// The number at the lower right of a run that has not diverged.

@@ -1,10 +1,10 @@
 //! The outline of a body that is not drawn itself: dashed curves along the border of its projection.
 
+use super::Curve;
 use super::camera::Lens;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::plane::{clipped, sides};
-use super::Curve;
 use crate::colour::Colour;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -72,7 +72,11 @@ impl Ghost<'_> {
                 edges.entry([from.min(to), from.max(to)]).or_default()[faces_away] += 1;
             }
         }
-        edges.into_iter().filter(|(_, [towards, away])| towards + away == 1 || towards * away > 0).map(|(edge, _)| edge).collect()
+        edges
+            .into_iter()
+            .filter(|(_, [towards, away])| towards + away == 1 || towards * away > 0)
+            .map(|(edge, _)| edge)
+            .collect()
     }
 }
 
@@ -250,17 +254,18 @@ mod tests {
     #[test]
     fn a_body_in_the_plane_is_outlined_without_its_inner_edges() {
         let lens = lens(Dimension::Plane);
-        let position: Vec<_> = (0..6).map(|at| DVec3::new(f64::from(at % 3), f64::from(at / 3), 0.0)).collect();
+        let position: Vec<_> = (0..6).map(|at| DVec3::new(f64::from(at % 3) - 1.0, f64::from(at / 3), 0.0)).collect();
         let triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
         let lines = outline(&lens, &position, &triangles, ROOM);
         assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [7]);
         // Of what leaves the room nothing is drawn outside.
-        let room = [300, 250, 60, 60];
+        let room = [380, 250, 200, 200];
         let lines = outline(&lens, &position, &triangles, room);
         let [left, top, right, bottom] = sides(room.map(f64::from));
         assert!(!lines.is_empty());
         for point in lines.iter().flatten() {
-            let inside = (left - 1e-9..=right + 1e-9).contains(&point.x) && (top - 1e-9..=bottom + 1e-9).contains(&point.y);
+            let inside =
+                (left - 1e-9..=right + 1e-9).contains(&point.x) && (top - 1e-9..=bottom + 1e-9).contains(&point.y);
             assert!(inside, "{point}");
         }
     }

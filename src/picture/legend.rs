@@ -12,6 +12,7 @@ use super::text::Weight;
 use super::{Curve, Mark, MarkShape};
 use crate::colour::Colour;
 use glam::DVec2;
+use std::borrow::Cow;
 
 /// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
 const HEIGHT: f64 = 50.0;
@@ -19,10 +20,10 @@ const ABOVE: f64 = 4.0;
 /// Its type is no smaller than this part of the reference, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
 const MOST_HEIGHT: f64 = 0.1;
-/// The room that the arrow with its words, the ghost with its name and the bar with its name take at least (px in the reference
+/// The room that the arrow with its words, a sample with its name and the bar with its name take at least (px in the reference
 /// picture).
 const ARROW_ROOM: f64 = 250.0;
-const GHOST_ROOM: f64 = 220.0;
+const SAMPLE_ROOM: f64 = 220.0;
 const BAR_ROOM: f64 = 390.0;
 /// Size of the numbers at the ticks (px in the reference picture).
 const NUMBERS: f64 = 14.0;
@@ -36,8 +37,9 @@ const TICK: f64 = 5.0;
 const MOST_TICKS: usize = 5;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
-/// The length and the width of the sample of a ghost's outline (px in the reference picture).
+/// The length and the width of the sample of a line, and the radius of a ring (px in the reference picture).
 const SAMPLE: [f64; 2] = [48.0, 2.0];
+const RING: f64 = 5.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
 /// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
@@ -69,6 +71,23 @@ impl<'a> Bar<'a> {
     }
 }
 
+/// A line or a mark with its meaning.
+pub(super) struct Sample<'a> {
+    pub(super) name: Cow<'a, str>,
+    pub(super) colour: Colour,
+    pub(super) kind: SampleKind,
+}
+
+/// What a sample looks like.
+pub(super) enum SampleKind {
+    /// The dashed outline of a ghost.
+    Ghost,
+    /// A path.
+    Path,
+    /// A measured point.
+    Ring,
+}
+
 /// Sizes of the key of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Legend {
@@ -79,14 +98,14 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow and a ghost, and with a number of
+    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow, and with numbers of samples and
     /// bars; `None` where it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, ghost]: [bool; 2], bars: usize) -> Option<Self> {
+    pub(super) fn new(size: [u32; 2], scale: Scale, arrow: bool, samples: usize, bars: usize) -> Option<Self> {
         let [width, height] = size.map(f64::from);
-        let parts = usize::from(arrow) + usize::from(ghost) + bars;
+        let parts = usize::from(arrow) + samples + bars;
         let apart = APART * parts.saturating_sub(1) as f64;
-        let rooms = [(arrow, ARROW_ROOM), (ghost, GHOST_ROOM)].map(|(is_shown, room)| if is_shown { room } else { 0.0 });
-        let needed = apart + rooms[0] + rooms[1] + BAR_ROOM * bars as f64;
+        let arrow = if arrow { ARROW_ROOM } else { 0.0 };
+        let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
         let made_up = scale.made_up() * scale.type_unit();
@@ -95,15 +114,14 @@ impl Legend {
     }
 
     /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that
-    /// the arrow stands for (m), its own (px), and how large it is beside those of the reference picture; `ghost` the name and the
-    /// colour of dashed outlines.
+    /// the arrow stands for (m), its own (px), and how large it is beside those of the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
         picture_width: f64,
         ground: f64,
         arrow: Option<[f64; 3]>,
-        ghost: Option<(&str, Colour)>,
+        samples: &[Sample<'_>],
         bars: &[Bar<'_>],
     ) {
         let unit = self.unit;
@@ -119,8 +137,8 @@ impl Legend {
             let size = size.min(most.max(size / writer.scale.line_factor));
             left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
         }
-        if let Some((name, colour)) = ghost {
-            left = self.ghost(writer, [left, middle], name, colour) + APART * unit;
+        for sample in samples {
+            left = self.sample(writer, [left, middle], sample) + APART * unit;
         }
         // Bars share what is left evenly.
         let right = picture_width - margin;
@@ -151,20 +169,37 @@ impl Legend {
         )
     }
 
-    /// A sample of a dashed outline with its name; returns where that ends (px).
-    fn ghost(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], name: &str, colour: Colour) -> f64 {
-        let (unit, palette) = (self.unit, writer.palette);
+    /// A sample with its name; returns where that ends (px).
+    fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], sample: &Sample<'_>) -> f64 {
+        let (unit, palette, colour) = (self.unit, writer.palette, sample.colour);
         let [length, width] = SAMPLE.map(|length| length * unit);
         let line = unit * writer.scale.line_factor;
-        writer.curves.push(Curve {
+        let curve = |dash: Vec<f32>| Curve {
             points: [left, left + length].map(|x| [x, middle].map(narrow)).to_vec(),
             width: narrow(width * writer.scale.line_factor),
-            dash: ghost::DASH.map(|length| narrow(length * line)).to_vec(),
+            dash,
             colour,
             alpha: 1.0,
-        });
+        };
+        let length = match sample.kind {
+            SampleKind::Ghost => {
+                writer.curves.push(curve(ghost::DASH.map(|length| narrow(length * line)).to_vec()));
+                length
+            }
+            SampleKind::Path => {
+                writer.curves.push(curve(Vec::new()));
+                length
+            }
+            SampleKind::Ring => {
+                let ring =
+                    Mark::around(DVec2::new(left + RING * line, middle), RING * line, MarkShape::Node, palette.halo);
+                writer.marks.push(Mark { second: colour, ..ring });
+                2.0 * RING * line
+            }
+        };
         let before = length + 12.0 * unit;
-        let name = writer.fonts.shortened(name, Weight::Regular, 16.0 * unit, GHOST_ROOM * unit - before);
+        let room = SAMPLE_ROOM * unit - before;
+        let name = writer.fonts.shortened(&sample.name, Weight::Regular, 16.0 * unit, room);
         self.write(writer, &name, Weight::Regular, 16.0, palette.second_text, left + before, middle + 5.5 * unit)
     }
 

@@ -200,7 +200,8 @@ impl Flat<'_> {
             self.sound_arrow(place, &turned_over, marks);
         }
         let disc = RING[1] * self.scale.line();
-        let (covered, roomy): (Vec<_>, Vec<_>) = turned_over.iter().map(|(_, place)| *place).partition(|place| place.1 < disc);
+        let (covered, roomy): (Vec<_>, Vec<_>) =
+            turned_over.iter().map(|(_, place)| *place).partition(|place| place.1 < disc);
         for left in self.callouts(covered, marks).into_iter().chain(roomy) {
             self.alarm_arrow(left, 1.0, marks);
         }
@@ -272,7 +273,10 @@ impl Flat<'_> {
                 let unit = self.scale.line();
                 let colour = self.palette.alarm_text;
                 let leader = Mark::line([middle, end], LEADER * unit, colour);
-                let dot = Mark { second: self.palette.halo, ..Mark::around(middle, LEADER_DOT * unit, MarkShape::Node, colour) };
+                let dot = Mark {
+                    second: self.palette.halo,
+                    ..Mark::around(middle, LEADER_DOT * unit, MarkShape::Node, colour)
+                };
                 marks.extend([leader, dot].into_iter().filter_map(|mark| mark.faded(grown)));
                 self.alarm_arrow((sign, disc), grown, marks);
             }
@@ -303,7 +307,10 @@ impl Flat<'_> {
     /// Whether a circle lies inside the panel (px).
     fn holds(&self, middle: DVec2, radius: f64) -> bool {
         let [left, top, right, bottom] = sides(self.viewport.map(f64::from));
-        left + radius <= middle.x && middle.x <= right - radius && top + radius <= middle.y && middle.y <= bottom - radius
+        left + radius <= middle.x
+            && middle.x <= right - radius
+            && top + radius <= middle.y
+            && middle.y <= bottom - radius
     }
 
     fn pixel(&self, point: DVec3) -> Option<DVec2> {

@@ -210,7 +210,7 @@ fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// A curve with fewer points, none of those left out farther from it than a distance (Douglas and Peucker).
-fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
+pub(super) fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     let mut kept = vec![false; points.len()];
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
     (kept[0], kept[last]) = (true, true);

@@ -32,7 +32,8 @@ mod tests {
 
     #[test]
     fn a_rigid_motion_is_no_difference_after_the_fit() {
-        let one: Vec<_> = (0..8).map(|at| DVec3::new(f64::from(at & 1), f64::from(at >> 1 & 1), f64::from(at >> 2))).collect();
+        let one: Vec<_> =
+            (0..8).map(|at| DVec3::new(f64::from(at & 1), f64::from(at >> 1 & 1), f64::from(at >> 2))).collect();
         let turn = DQuat::from_xyzw(0.3, -0.4, 0.1, 0.8).normalize();
         let moved: Vec<_> = one.iter().map(|&at| DVec3::new(3.0, -1.0, 2.0) + turn * at).collect();
         let apart = |other: &[DVec3], after_fit| largest(Dimension::Space, [&one, other], after_fit);

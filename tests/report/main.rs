@@ -64,7 +64,13 @@ fn courses(frames: u64) -> Vec<RunDifference> {
             let moved = frame >= moved_from;
             let far = 1e-10 * 1.6_f64.powi(frame.saturating_sub(moved_from) as i32);
             let is_known = moved && frame < 38;
-            let displacement = is_known.then_some(Displacement { frame, node: 12, distance: far, of_shape: 0.5 * far, precision: 1e-9 });
+            let displacement = is_known.then_some(Displacement {
+                frame,
+                node: 12,
+                distance: far,
+                of_shape: 0.5 * far,
+                precision: 1e-9,
+            });
             FrameDifference { frame, time: Some(frame as f64 / 60.0), moved, displacement }
         };
         RunDifference { run: run.into(), precision: 1e-9, moments: (0..frames).map(moment).collect() }
@@ -486,10 +492,22 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     let unseen = PicturePair { expected: None, actual: None, difference: None, ..sheet("", None, false) };
     let named = |frame| PicturePair { name: format!("frame-{frame:05}.png"), frame: Some(frame), ..unseen.clone() };
     many.pictures = (0..2000).map(named).collect();
-    for (report, width) in [(&single, 360), (&nothing, 360), (&states_only, 360), (&many, 360)] {
+    let whole = sequence();
+    for (report, width) in
+        [(&single, 360), (&nothing, 360), (&states_only, 360), (&many, 360), (&whole, 360), (&whole, 420)]
+    {
         browser.resize([width, 900]);
         browser.open(&report.page(), "");
         browser.until("the pictures", LOADED);
+        // No words of the charts lie over others, or over a button.
+        let collisions = "(() => { const boxes = [...document.querySelectorAll('#charts text, #runs li, #reading, button')]
+            .map((one) => one.getBoundingClientRect()).filter(({ width }) => width > 0);
+            const apart = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+            return boxes.flatMap((a, at) => boxes.slice(at + 1).filter((b) => !apart(a, b))).length; })()";
+        if !report.courses.is_empty() {
+            browser.until("the charts", CHARTS);
+            assert_eq!(browser.value(collisions), 0, "{} pictures in {width} px", report.pictures.len());
+        }
         let too_wide = "document.documentElement.scrollWidth - innerWidth";
         assert!(browser.number(too_wide) <= 0.0, "{} pictures in {width} px", report.pictures.len());
         for key in ["End", "ArrowRight", "2", "3", "f", "+", "]"] {

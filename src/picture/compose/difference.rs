@@ -70,9 +70,7 @@ impl Composer<'_> {
         let [one, other] = difference.runs.map(|run| frame.runs.iter().find(|shown| shown.run == run));
         let (one, other) = (one?, other?);
         let body = &*self.scene.body;
-        let is_whole = |run: &RunFrame| {
-            run.snapshot.status == Status::Ok && run.snapshot.position.len() == body.len()
-        };
+        let is_whole = |run: &RunFrame| run.snapshot.status == Status::Ok && run.snapshot.position.len() == body.len();
         let [here, there] = [one, other].map(|run| &run.snapshot.position[..]);
         let outlined = match is_whole(one) && is_whole(other) {
             true if difference.after_fit => apart::fitted(body.dimension, there, here),

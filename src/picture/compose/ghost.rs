@@ -46,13 +46,7 @@ impl Draft<'_> {
             return;
         }
         let skin = &self.composer.skin;
-        let ghost = ghost::Ghost {
-            lens: &self.lens,
-            position,
-            nodes: &skin.nodes,
-            triangles: &skin.triangles,
-            room,
-        };
+        let ghost = ghost::Ghost { lens: &self.lens, position, nodes: &skin.nodes, triangles: &skin.triangles, room };
         ghost.draw(self.scale, colour, self.composer.palette.halo, curves);
     }
 }

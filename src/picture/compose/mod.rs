@@ -6,6 +6,7 @@ mod figure;
 mod ghost;
 mod ground;
 mod panel;
+mod paths;
 mod region;
 
 use super::arrows;
@@ -14,7 +15,7 @@ use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
-use super::legend::{Bar, Legend};
+use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::plane::LEVEL;
 use super::shell::Shell;
 use super::skin::Skin;
@@ -24,7 +25,7 @@ use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
-use crate::history::History;
+use crate::history::{Course, History};
 use crate::look::ramp::ramp;
 use crate::look::{ColourMap, Ghost, LineStyle, Palette, StrainScale};
 use crate::scene::Scene;
@@ -90,8 +91,9 @@ pub struct Composer<'a> {
     soft: f64,
     /// The curves below the panels, once the time series are set.
     strips: Option<Strips>,
-    /// The difference of two runs over time, likewise.
+    /// The difference of two runs over time, and the paths of all runs, likewise.
     course: Option<difference::Course>,
+    traced: Vec<Course>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -169,6 +171,7 @@ impl<'a> Composer<'a> {
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             strips: None,
             course: None,
+            traced: Vec::new(),
             grips,
             exploded,
         }
@@ -179,6 +182,7 @@ impl<'a> Composer<'a> {
     pub fn set_history(&mut self, history: &History) {
         self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
         self.course = self.scene.view.difference.map(|_| difference::Course::new(history));
+        self.traced = if self.scene.view.paths.is_empty() { Vec::new() } else { history.courses.clone() };
     }
 
     /// Composes one frame.
@@ -215,15 +219,19 @@ impl<'a> Composer<'a> {
         if let Some((legend, place)) = legend.zip(layout.panels.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
-            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, self.ghost(), &bars);
+            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
         let Writer { marks: above, curves, mut words, .. } = writer;
         let (mut under, mut marks) = (Vec::new(), hairlines);
         let mut ghosts = Vec::new();
         let draft = |(place, run)| {
             let draft = Draft::new(self, place, run, &framing, scale);
-            draft.ghost(&frame.runs, draft.between_words(), &mut ghosts);
-            draft.panel(&mut under, &mut marks)
+            let room = draft.between_words();
+            draft.ghost(&frame.runs, room, &mut ghosts);
+            draft.paths(&self.traced, room, &mut ghosts);
+            let panel = draft.panel(&mut under, &mut marks);
+            draft.points(room, &mut marks);
+            panel
         };
         let viewports = layout.panels.iter().map(|place| place.viewport);
         let mut panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
@@ -312,7 +320,8 @@ impl<'a> Composer<'a> {
     fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
         let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_ghost = matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some();
+        let has_ghost =
+            matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
         (view.legend && (has_strip || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
             let line = run.line(&self.palette);
             // Arrows are solid.
@@ -343,11 +352,22 @@ impl<'a> Composer<'a> {
         let view = &self.scene.view;
         let bars = [view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()];
         let bars = bars.into_iter().filter(|&is_shown| is_shown).count();
-        let parts = [view.visible.displacements, view.ghost.is_some()];
-        if !view.legend || parts == [false; 2] && bars == 0 {
+        let (arrow, samples) = (view.visible.displacements, self.samples().len());
+        if !view.legend || !arrow && samples + bars == 0 {
             return None;
         }
-        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), parts, bars)
+        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), arrow, samples, bars)
+    }
+
+    /// What lines and marks mean.
+    fn samples(&self) -> Vec<Sample<'_>> {
+        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), colour, kind: SampleKind::Ghost });
+        let path = Some(self.path_name()).filter(|name| !name.is_empty());
+        let colour = self.palette.text;
+        let path = path.map(|name| Sample { name: name.into(), colour, kind: SampleKind::Path });
+        let points = self.scene.view.points.as_ref();
+        let points = points.map(|_| Sample { name: "measured".into(), colour, kind: SampleKind::Ring });
+        ghost.into_iter().chain(path).chain(points).collect()
     }
 
     /// The scales of colours in a frame.

@@ -2,9 +2,9 @@
 
 use crate::colour::{Colour, mixed};
 use crate::look::Palette;
+use crate::picture::Mark;
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::layout::Scale;
-use crate::picture::Mark;
 use glam::DVec2;
 
 /// Opacity of the rest shape, and of the inside and the outline of arrows to compare with.

@@ -94,7 +94,14 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let bars = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, first.ghost(), &first.bars(&bars, None));
+        legend.draw(
+            &mut writer,
+            f64::from(size[0]),
+            f64::from(bottom),
+            arrow,
+            &first.samples(),
+            &first.bars(&bars, None),
+        );
     }
 
     let Writer { marks: above, mut curves, mut words, .. } = writer;
@@ -133,6 +140,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.labels = Labels::default();
         view.scale_bar = false;
         (view.strip, view.difference) = (None, None);
+        (view.paths, view.points) = (Vec::new(), None);
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         view.spring_strain = view.spring_strain.filter(|_| is_shared);
@@ -164,7 +172,7 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
 fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
     let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-    let parts = [view.visible.displacements, view.ghost.is_some()];
-    let any = view.legend && (parts != [false; 2] || bars > 0);
-    any.then(|| Legend::new(size, scale, parts, bars)).flatten()
+    let (arrow, samples) = (view.visible.displacements, usize::from(view.ghost.is_some()));
+    let any = view.legend && (arrow || samples + bars > 0);
+    any.then(|| Legend::new(size, scale, arrow, samples, bars)).flatten()
 }
