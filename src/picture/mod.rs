@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
-//! the scene and that frame only. Strips ([`crate::look::View::strip`]) show time series of the whole scene, which the
-//! composer gets beforehand; they depend on the scene only, too.
+//! the scene and that frame only. Strips ([`crate::look::View::strip`]), paths and the panel of a difference show time series of
+//! the whole scene, which the composer gets beforehand; they depend on the scene only, too.
 
 mod arrows;
 mod axis;

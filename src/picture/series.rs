@@ -16,7 +16,7 @@ pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
 /// Curves are simplified as long as no point moves by more than this (px).
-const EXACT: f64 = 0.08;
+pub(super) const EXACT: f64 = 0.08;
 
 /// Values of a diverged run above this many times the largest value of the other runs do not set the scale.
 const BEYOND: f64 = 3.0;

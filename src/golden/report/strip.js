@@ -63,7 +63,7 @@ function showSequence(report, go) {
       known: () => {
         const { distance, node, of_shape: left } = moment.displacement;
         const fitted = left <= precision ? "nothing" : length(left);
-        return `moved by ${length(distance)} (node ${node}), ${fitted} of it after the best rigid fit`;
+        return `moved by ${length(distance)} (node ${node}), after the best rigid fit by ${fitted}`;
       },
     };
     return words[kind(moment, precision)]();

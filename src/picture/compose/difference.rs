@@ -4,12 +4,13 @@
 use super::Composer;
 use super::panel::Draft;
 use crate::history::History;
-use crate::look::{ColourScale, LineStyle};
+use crate::look::ColourScale;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::chart::{BELOW, Chart, GAP, MOST_TICKS, ROWS_APART, dot, wide};
-use crate::picture::layout::{LEAST_STRIP_UNIT, PanelRoom, Rectangle, Scale};
-use crate::picture::series::{OWN, Series};
+use crate::picture::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
+use crate::picture::narrow::narrow;
+use crate::picture::series::{EXACT, OWN, simplified};
 use crate::picture::text::Weight;
 use crate::picture::{Curve, Framing, Mark, Panel};
 use crate::sim::apart;
@@ -31,6 +32,9 @@ const DOT: f64 = 4.5;
 const HALO: f64 = 2.2;
 /// The lowest and the narrowest chart (px).
 const LEAST: [f64; 2] = [14.0, 40.0];
+
+/// The room of the panel, and that below it for a chart, if there is any.
+type Place = (Rectangle, Option<Rectangle>);
 
 /// The largest distance over the time of a scene.
 #[derive(Debug)]
@@ -96,12 +100,12 @@ impl Composer<'_> {
     }
 
     /// The part of a panel's room for the body, and that for the chart, if there is one.
-    fn rooms(&self, place: &PanelRoom, scale: Scale) -> (Rectangle, Option<Rectangle>) {
-        let [left, top, width, height] = place.viewport;
+    fn rooms(&self, (viewport, strip): Place, scale: Scale) -> (Rectangle, Option<Rectangle>) {
+        let [left, top, width, height] = viewport;
         let unit = scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
         let taken = ((STRIP + BELOW_STRIP) * unit).round() as u32;
-        if place.strip.is_some() || f64::from(taken) > MOST * f64::from(height) {
-            return (place.viewport, place.strip);
+        if strip.is_some() || f64::from(taken) > MOST * f64::from(height) {
+            return (viewport, strip);
         }
         let margin = scale.margin().min(f64::from(width) / 2.0).round() as u32;
         let strip = [left + margin, top + height - taken, width - 2 * margin, (STRIP * unit).round() as u32];
@@ -112,7 +116,7 @@ impl Composer<'_> {
     pub(super) fn write_difference(
         &self,
         compared: &Compared<'_>,
-        place: &PanelRoom,
+        place: Place,
         at: usize,
         time: Option<f64>,
         writer: &mut Writer<'_>,
@@ -122,10 +126,9 @@ impl Composer<'_> {
         let (viewport, strip) = self.rooms(place, writer.scale);
         let taken = if time.is_some() { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
         let [one, other] = [compared.one.run, compared.other].map(|run| &self.scene.runs[run].name[..]);
-        let (name, second) = match view.difference.is_some_and(|difference| difference.after_fit) {
-            true => ("Difference of shapes", format!("{one} to {other}, fitted (dashed)")),
-            false => ("Difference", format!("{one} to {other} (dashed)")),
-        };
+        let is_fitted = view.difference.is_some_and(|difference| difference.after_fit);
+        let name = if is_fitted { "Difference of shapes" } else { "Difference" };
+        let second = format!("{one} to {other} (dashed)");
         let heading = Heading {
             letter: if labels.letter { caption::letter(at) } else { String::new() },
             name: if labels.name { name } else { "" },
@@ -148,14 +151,14 @@ impl Composer<'_> {
     pub(super) fn draw_difference(
         &self,
         compared: &Compared<'_>,
-        place: &PanelRoom,
+        place: Place,
         framing: &Framing,
         scale: Scale,
         [under, above]: [&mut Vec<Mark>; 2],
         curves: &mut Vec<Curve>,
     ) -> Panel {
         // The body is as large as in all panels, however much room the chart takes.
-        let mut draft = Draft::new(self, place.viewport, compared.one, framing, scale);
+        let mut draft = Draft::new(self, place.0, compared.one, framing, scale);
         draft.viewport = self.rooms(place, scale).0;
         draft.colour_by(&self.distance_scale(), &compared.distances);
         let colour = self.scene.runs[compared.other].line(&self.palette).colour;
@@ -192,15 +195,15 @@ impl Course {
         chart.columns(writer, &times, false, f64::NEG_INFINITY);
         let now = chart.x(&times, time);
         writer.curves.push(chart.moment(now, palette.text));
-        let series = Series {
-            run: usize::MAX,
-            name: String::new(),
-            style: LineStyle { colour: palette.text, dash: &[] },
-            is_count: false,
-            points: self.points.clone(),
-            diverged: None,
-        };
-        series.draw(writer, chart, [&times, &values], [OWN, 1.0]);
+        let points = self.points.iter().map(|&[time, value]| [chart.x(&times, time), chart.y(&values, value)]);
+        let points = simplified(&points.collect::<Vec<_>>(), EXACT);
+        writer.curves.push(Curve {
+            points: points.into_iter().map(|point| point.map(narrow)).collect(),
+            width: narrow(OWN * chart.thickness()),
+            dash: Vec::new(),
+            colour: palette.text,
+            alpha: 1.0,
+        });
         if let Some(distance) = distance {
             for (radius, colour) in [(DOT + HALO, palette.background), (DOT, palette.text)] {
                 writer.curves.push(dot([now, chart.y(&values, distance)], radius * chart.thickness(), colour));

@@ -107,8 +107,8 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
-    /// places stay empty.
+    /// A scene with strips ([`crate::look::View::strip`]), paths or a difference needs [`Composer::set_history`], too; without it
+    /// their places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
     }
@@ -177,8 +177,8 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Sets the time series for the strips below the panels: those of all runs to be shown, over the whole scene. Scenes
-    /// without strips do not need them.
+    /// Sets the time series for the strips below the panels, for paths and for a difference: those of all runs to be shown, over
+    /// the whole scene. Other scenes do not need them.
     pub fn set_history(&mut self, history: &History) {
         self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
         self.course = self.scene.view.difference.map(|_| difference::Course::new(history));
@@ -201,7 +201,8 @@ impl<'a> Composer<'a> {
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, &layout, &framing, &mut writer);
-        let compared = compared.as_ref().zip(layout.panels.get(frame.runs.len()));
+        let place = layout.panels.get(frame.runs.len()).map(|place| (place.viewport, place.strip));
+        let compared = compared.as_ref().zip(place);
         if let Some((compared, place)) = compared {
             let has_clock = view.labels.clock && self.clock(&layout) == frame.runs.len();
             let time = has_clock.then_some(frame.time);

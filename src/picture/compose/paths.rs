@@ -8,7 +8,7 @@ use crate::picture::chart::dot;
 use crate::picture::layout::Rectangle;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::{clipped, sides};
-use crate::picture::series::simplified;
+use crate::picture::series::{EXACT, simplified};
 use crate::picture::{Curve, Mark, MarkShape};
 use crate::sim::snapshot::Snapshot;
 use glam::{DVec2, DVec3};
@@ -21,8 +21,6 @@ const HALO: f64 = 2.0;
 const HALO_ALPHA: f64 = 0.6;
 /// Radius of the dot at the end of a path, in widths.
 const DOT: f64 = 1.7;
-/// Paths are simplified as long as no point moves by more than this (px).
-const EXACT: f64 = 0.1;
 /// Radius of a measured point of the present moment and of earlier ones (px in the reference picture), and their opacity.
 const RING: f64 = 5.0;
 const PAST: f64 = 2.0;
@@ -38,7 +36,7 @@ impl Composer<'_> {
             (true, 0) => "path of the centre".to_owned(),
             (false, 1) => "path of a node".to_owned(),
             (false, _) => "paths of nodes".to_owned(),
-            (true, _) => "paths of centre and nodes".to_owned(),
+            (true, _) => "paths".to_owned(),
         }
     }
 }
@@ -57,17 +55,18 @@ impl Draft<'_> {
             let now = traced.of(&self.scene.body, &snapshot.position);
             let way = path.iter().take(past).copied().chain([now]);
             let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
+            let pieces: Vec<_> = lines.iter().flat_map(|line| parted(simplified(line, EXACT))).collect();
             let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
             for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {
-                let width = (width + more) * self.scale.line();
-                curves.extend(lines.iter().map(|line| Curve {
-                    points: simplified(line, EXACT).into_iter().map(|point| point.map(narrow)).collect(),
-                    width: narrow(width),
+                let line = self.scale.line();
+                curves.extend(pieces.iter().map(|piece| Curve {
+                    points: piece.iter().map(|point| point.map(narrow)).collect(),
+                    width: narrow((width + more) * line),
                     dash: Vec::new(),
                     colour,
                     alpha: narrow(alpha),
                 }));
-                curves.extend(last.map(|pixel| dot(pixel, DOT * width, colour)));
+                curves.extend(last.map(|pixel| dot(pixel, (DOT * width + 0.75 * more) * line, colour)));
             }
         }
     }
@@ -105,12 +104,29 @@ fn present(samples: &[(f64, DVec3)], snapshot: &Snapshot, half_frame: f64) -> (O
     let Some(last) = past.checked_sub(1) else { return (None, now) };
     let before = last.checked_sub(1).map_or(2.0 * half_frame, |before| known[last] - known[before]);
     let until = known.get(past).copied().unwrap_or(known[last] + before);
-    ((now < until + half_frame).then_some(known[last]), now)
+    ((snapshot.time < until).then_some(known[last]), now)
 }
 
 fn holds(room: Rectangle, pixel: DVec2) -> bool {
     let [left, top, right, bottom] = sides(room.map(f64::from));
     (left..=right).contains(&pixel.x) && (top..=bottom).contains(&pixel.y)
+}
+
+/// A line, parted where it turns back on itself: the shader of curves joins pieces that go on in about the same direction.
+fn parted(line: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+    let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
+    for two in line.windows(2) {
+        let [from, to] = [two[0], two[1]].map(DVec2::from);
+        let turns_back = |piece: &[[f64; 2]]| {
+            let [.., before, last] = piece else { return false };
+            (DVec2::from(*last) - DVec2::from(*before)).normalize_or_zero().dot((to - from).normalize_or_zero()) < -0.5
+        };
+        match pieces.last_mut().filter(|piece| !turns_back(piece)) {
+            Some(piece) => piece.push(two[1]),
+            None => pieces.push(two.to_vec()),
+        }
+    }
+    pieces
 }
 
 /// The parts of a line in a rectangle (px). Points that no camera sees part it.
@@ -119,6 +135,10 @@ fn within(points: impl Iterator<Item = Option<DVec2>>, room: Rectangle) -> Vec<V
     let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
     let (mut before, mut is_open): (Option<DVec2>, bool) = (None, false);
     for point in points {
+        // A body that rests stays where it is.
+        if before == point {
+            continue;
+        }
         if let (Some(from), Some(to)) = (before, point) {
             match clipped(from, to - from, edges, [0.0, 1.0]) {
                 Some([begin, end]) => {
@@ -129,8 +149,7 @@ fn within(points: impl Iterator<Item = Option<DVec2>>, room: Rectangle) -> Vec<V
                     }
                     is_open = end == 1.0;
                 }
-                // A body that rests stays where it is.
-                None => is_open &= from == to,
+                None => is_open = false,
             }
         } else {
             is_open = false;
@@ -150,6 +169,13 @@ mod tests {
         let lines = within(points.into_iter(), [0, 0, 10, 10]);
         assert_eq!(lines, [vec![[5.0, 5.0], [10.0, 5.0]], vec![[10.0, 6.5], [5.0, 8.0], [6.0, 9.0]]]);
         assert_eq!(within([points[0], None, points[4], points[3]].into_iter(), [0, 0, 10, 10]).len(), 1);
+    }
+
+    #[test]
+    fn lines_are_parted_where_they_turn_back() {
+        let line = vec![[5.0, 5.0], [5.0, 9.0], [5.001, 1.0], [9.0, 1.0]];
+        assert_eq!(parted(line), [vec![[5.0, 5.0], [5.0, 9.0]], vec![[5.0, 9.0], [5.001, 1.0], [9.0, 1.0]]]);
+        assert!(parted(vec![[1.0, 1.0]]).is_empty());
     }
 
     #[test]

@@ -110,7 +110,9 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         for (column, run) in cells.iter().enumerate() {
             let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
             let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
-            draft.ghost(moments.others[row][column].as_slice(), draft.viewport, &mut curves);
+            let [left, top, width, height] = draft.viewport;
+            let room = [left, top, width, height - (plan.below_body.ceil() as u32).min(height)];
+            draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width do not show.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
