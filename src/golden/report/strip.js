@@ -271,7 +271,7 @@ function showSequence(report, go) {
   strip.max = stations.length - 1;
   report.courses.forEach(({ run }, index) => {
     const item = the("runs").appendChild(document.createElement("li"));
-    const sample = item.appendChild(document.createElementNS("http://www.w3.org/2000/svg", "svg"));
+    const sample = item.appendChild(document.createElementNS(the("charts").namespaceURI, "svg"));
     sample.setAttribute("aria-hidden", "true");
     draw(sample, "line", { x1: 0, x2: 40, y1: 4, y2: 4, class: look(index) });
     item.append(run);
