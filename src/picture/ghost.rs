@@ -26,6 +26,8 @@ pub(super) struct Ghost<'a> {
     pub(super) position: &'a [DVec3],
     pub(super) nodes: &'a [u32],
     pub(super) triangles: &'a [[u32; 3]],
+    /// The ends of the edges of elements without faces, as nodes.
+    pub(super) bars: &'a [[u32; 2]],
     /// Nothing is drawn outside of it.
     pub(super) room: Rectangle,
 }
@@ -33,7 +35,7 @@ pub(super) struct Ghost<'a> {
 impl Ghost<'_> {
     /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
-        let lines = self.outline();
+        let lines = [self.outline(), self.bars()].concat();
         for (width, colour, alpha) in [(HALO, halo, HALO_ALPHA), (WIDTH, colour, 1.0)] {
             let curve = |line: &Vec<DVec2>| Curve {
                 points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
@@ -44,6 +46,17 @@ impl Ghost<'_> {
             };
             curves.extend(lines.iter().map(curve));
         }
+    }
+
+    /// The elements without faces (px).
+    fn bars(&self) -> Vec<Vec<DVec2>> {
+        let line = |ends: &[u32; 2]| {
+            let [from, to] = ends.map(|node| self.lens.project(self.position[node as usize]));
+            let [from, to] = [from?, to?].map(|(pixel, _)| DVec2::from(pixel));
+            let shares = clipped(from, to - from, sides(self.room.map(f64::from)), [0.0, 1.0])?;
+            Some(shares.map(|share| from.lerp(to, share)).to_vec())
+        };
+        self.bars.iter().filter_map(line).collect()
     }
 
     /// The border of the projection as lines, as long as possible (px). A closed line ends where it begins.
@@ -213,7 +226,7 @@ mod tests {
 
     fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
         let nodes: Vec<u32> = (0..position.len() as u32).collect();
-        Ghost { lens, position, nodes: &nodes, triangles, room }.outline()
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room }.outline()
     }
 
     /// A cube with outward triangles.

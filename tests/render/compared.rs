@@ -245,3 +245,17 @@ fn measured_points_are_rings_now_and_dots_before() {
         assert!(picture.words.iter().any(|run| run.text == "measured"));
     }
 }
+
+/// Bars have no faces: each is a dashed line.
+#[test]
+fn bodies_of_bars_have_ghosts() {
+    let text = include_str!("../../scenes/chain.toml");
+    let mut scene = Scene::parse(text, "chain.toml", &Limits::default()).expect("the shipped scene is sound");
+    scene.view.ghost = Some(Ghost::Rest);
+    let frame = Runner::new(&scene, &[0]).frame(0);
+    let picture = Composer::new(&scene).compose(&frame);
+    let is_ghost = |curve: &&Curve| curve.colour == picture.palette.second_text && curve.dash.len() == 2;
+    // Eight bars, as far as they are in the panel, the weight at their end, and the sample of the key.
+    let count = picture.curves.iter().filter(is_ghost).count();
+    assert!((5..=10).contains(&count), "{count}");
+}

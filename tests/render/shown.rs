@@ -412,16 +412,17 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
         };
         let corners = |mesh: &Mesh| mesh.vertices.iter().map(|vertex| pixel(vertex.position)).collect::<Vec<_>>();
         let [sound, over] = [&panel.sound, &panel.turned_over].map(corners);
-        let (low, high) = sound.iter().chain(&over).fold(
-            (glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY),
-            |(low, high), &at| (low.min(at), high.max(at)),
-        );
+        let (low, high) = sound
+            .iter()
+            .chain(&over)
+            .fold((glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
         let signs: Vec<_> = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Clockwise).collect();
         let [sign] = signs[..] else { panic!("one sign: {signs:?}") };
         let [x, _, width, _] = sign.rectangle;
         assert!(x + width < low.x || x > high.x, "frame {index}: {x} is between {low} and {high}");
         // The leader goes from its disc into the triangle.
-        let leaders = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Smooth && mark.along != Mark::UPRIGHT);
+        let leaders =
+            picture.marks.iter().filter(|mark| mark.shape == MarkShape::Smooth && mark.along != Mark::UPRIGHT);
         let leader = leaders.last().expect("a leader");
         let start = glam::Vec2::new(leader.rectangle[0], leader.rectangle[1]);
         let (low, high) = over.iter().fold((over[0], over[0]), |(low, high), &at| (low.min(at), high.max(at)));

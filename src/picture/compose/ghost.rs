@@ -46,7 +46,16 @@ impl Draft<'_> {
             return;
         }
         let skin = &self.composer.skin;
-        let ghost = ghost::Ghost { lens: &self.lens, position, nodes: &skin.nodes, triangles: &skin.triangles, room };
+        let bars = self.composer.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
+        let bars: Vec<_> = bars.collect();
+        let ghost = ghost::Ghost {
+            lens: &self.lens,
+            position,
+            nodes: &skin.nodes,
+            triangles: &skin.triangles,
+            bars: &bars,
+            room,
+        };
         ghost.draw(self.scale, colour, self.composer.palette.halo, curves);
     }
 }
