@@ -62,7 +62,7 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
             let name = if let Ghost::Run(run) = ghost { &scene.runs[run].name } else { "rest shape" };
             let straight = picture.curves.iter().filter(|curve| curve.points.len() == 2 && curve.colour == colour);
             let height = straight.map(|curve| curve.points[0][1]).fold(0.0, f32::max);
-            let mut words = picture.words.iter().filter(|run| (run.baseline as f32 - height).abs() < 8.0);
+            let mut words = picture.words.iter().filter(|run| (run.baseline - height).abs() < 8.0);
             assert!(words.any(|run| run.text.starts_with(name)), "{ghost:?}");
         }
     }

@@ -421,9 +421,9 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
         let [x, _, width, _] = sign.rectangle;
         assert!(x + width < low.x || x > high.x, "frame {index}: {x} is between {low} and {high}");
         // The leader goes from its disc into the triangle.
-        let leaders =
+        let mut leaders =
             picture.marks.iter().filter(|mark| mark.shape == MarkShape::Smooth && mark.along != Mark::UPRIGHT);
-        let leader = leaders.last().expect("a leader");
+        let leader = leaders.next_back().expect("a leader");
         let start = glam::Vec2::new(leader.rectangle[0], leader.rectangle[1]);
         let (low, high) = over.iter().fold((over[0], over[0]), |(low, high), &at| (low.min(at), high.max(at)));
         assert!(start.cmpge(low - 2.0).all() && start.cmple(high + 2.0).all(), "frame {index}: {start}");
