@@ -4,6 +4,7 @@
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
+use glam::DVec3;
 
 /// Least number of moments, if there are as many steps: a curve as wide as a picture then looks smooth.
 const FEWEST_MOMENTS: u64 = 600;
@@ -17,6 +18,9 @@ pub struct History {
     pub end: f64,
     /// The requested runs, in that order.
     pub series: Vec<TimeSeries>,
+    /// The largest distance of the nodes of the two runs that the scene compares ([`crate::look::View::difference`]): times (s)
+    /// and distances (m), up to the first divergence of one of them; empty unless both runs were requested.
+    pub difference: Vec<[f64; 2]>,
 }
 
 /// The time series of one run.
@@ -29,6 +33,8 @@ pub struct TimeSeries {
     pub times: Vec<f64>,
     /// The diagnostics at each of these times: those that were requested; the others are zero.
     pub diagnostics: Vec<Diagnostics>,
+    /// For each point of the body that leaves a path ([`crate::look::View::paths`]), where it was at each of these times (m).
+    pub paths: Vec<Vec<DVec3>>,
     /// Where the run diverged, if it did.
     pub divergence: Option<Divergence>,
 }
@@ -36,7 +42,7 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
-        Self { run, times: Vec::new(), diagnostics: Vec::new(), divergence: None }
+        Self { run, times: Vec::new(), diagnostics: Vec::new(), paths: Vec::new(), divergence: None }
     }
 }
 

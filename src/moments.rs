@@ -1,6 +1,7 @@
 //! The simulations of figures: states of runs at chosen moments, and the time series of a scene for strips.
 
 use crate::history::History;
+use crate::look::Ghost;
 use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
@@ -14,6 +15,8 @@ use rayon::prelude::*;
 pub struct Moments {
     /// The cells of a contact sheet, row by row; empty for other figures. The run index is that in its scene.
     pub cells: Vec<Vec<RunFrame>>,
+    /// For each of them the run that is outlined over it, at the same moment, if there is one.
+    pub others: Vec<Vec<Option<RunFrame>>>,
     /// The time series of the first scene, if strips are shown.
     pub history: Option<History>,
     /// The forces of each run of each scene, for a diagram of forces; empty for other figures.
@@ -127,7 +130,7 @@ impl<'a> Taking<'a> {
         };
         let (rows, columns) = (sheet.rows.len(), sheet.columns.len());
         let cells = (0..rows * columns).map(|at| sheet.cell(at / columns, at % columns));
-        let shown: Vec<_> = cells.map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
+        let shown: Vec<_> = cells.clone().map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
         let scene = &sheet.scenes[0];
         let series = (!sheet.strips.is_empty()).then(|| {
             // The runs shown, in the order of the scene.
@@ -135,7 +138,16 @@ impl<'a> Taking<'a> {
                 (0..scene.runs.len()).filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name));
             runs.map(|run| part([0, run])).collect::<Vec<_>>()
         });
-        for (at, (part, moment)) in shown.into_iter().enumerate() {
+        // After the cells come the runs outlined over them.
+        let ghost = |(scene, run, time): (usize, usize, f64)| match sheet.scenes[scene].view.ghost {
+            Some(Ghost::Run(other)) if other != run => Some((scene, other, time)),
+            _ => None,
+        };
+        let others =
+            cells.clone().map(|cell| ghost(cell).map(|(scene, run, time)| (part([scene, run]), Moment::at(time))));
+        let others: Vec<_> = others.collect();
+        let shown = shown.into_iter().map(Some).chain(others).enumerate();
+        for (at, (part, moment)) in shown.filter_map(|(at, shown)| Some((at, shown?))) {
             let Part { runner, stops, end, .. } = &mut parts[part];
             let steps = runner.steps_at(moment);
             match stops.binary_search_by_key(&steps, |stop| runner.steps_at(stop.0)) {
@@ -180,22 +192,25 @@ impl<'a> Taking<'a> {
     pub(crate) fn finish(mut self) -> Moments {
         match &self.figure.content {
             Content::Sheet(sheet) => {
-                let mut cells: Vec<Option<RunFrame>> = vec![None; sheet.rows.len() * sheet.columns.len()];
+                let mut cells: Vec<Option<RunFrame>> = vec![None; 2 * sheet.rows.len() * sheet.columns.len()];
                 for part in &self.parts {
                     assert_eq!(part.taken.len(), part.stops.len(), "finished when all moments are taken");
                     for ((_, places), taken) in part.stops.iter().zip(&part.taken) {
                         places.iter().for_each(|&place| cells[place] = Some(taken.clone()));
                     }
                 }
+                let columns = sheet.columns.len().max(1);
+                let others = cells.split_off(cells.len() / 2);
+                let others = others.chunks(columns).map(<[_]>::to_vec).collect();
                 let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
-                let rows = cells.chunks(sheet.columns.len().max(1)).map(<[RunFrame]>::to_vec).collect();
+                let rows = cells.chunks(columns).map(<[RunFrame]>::to_vec).collect();
                 let history = self.series.map(|series| {
                     let mut all = series.into_iter().map(|part| self.parts[part].runner.take_history());
                     let mut history = all.next().unwrap_or_default();
                     history.series.extend(all.flat_map(|one| one.series));
                     history
                 });
-                Moments { cells: rows, history, forces: Vec::new() }
+                Moments { cells: rows, others, history, forces: Vec::new() }
             }
             Content::Forces(forces) => {
                 let of_run = |scene: &Scene, run: usize| Forces {

@@ -2,7 +2,10 @@
 //! All other code simulates through this one.
 
 pub use crate::history::{History, TimeSeries};
+use crate::look::Traced;
 use crate::scene::Scene;
+use crate::sim::apart;
+use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
@@ -12,6 +15,7 @@ use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Simulates runs of a scene and returns frames in rising order.
 ///
@@ -19,6 +23,18 @@ use std::path::{Path, PathBuf};
 pub struct Runner<'a> {
     scene: &'a Scene,
     runs: Vec<Running>,
+    apart: Option<Apart>,
+}
+
+/// The time series of the difference of two runs.
+struct Apart {
+    /// The places of the runs among those that are simulated.
+    runs: [usize; 2],
+    after_fit: bool,
+    /// Its moments, rising.
+    notes: Vec<Moment>,
+    /// Times (s) and distances (m).
+    course: Vec<[f64; 2]>,
 }
 
 /// One run with its world and time series.
@@ -31,6 +47,9 @@ struct Running {
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
+    /// The points whose paths it has.
+    traced: Vec<Traced>,
+    body: Arc<Body>,
     series: TimeSeries,
 }
 
@@ -57,10 +76,12 @@ impl<'a> Runner<'a> {
                 step: scene.runs[run].step,
                 notes: Vec::new(),
                 wanted: Vec::new(),
+                traced: Vec::new(),
+                body: Arc::clone(&scene.body),
                 series: TimeSeries::new(run),
             }
         };
-        Self { scene, runs: runs.iter().map(running).collect() }
+        Self { scene, runs: runs.iter().map(running).collect(), apart: None }
     }
 
     /// The same without computing the field by which the scene is coloured, if nothing is drawn.
@@ -84,7 +105,21 @@ impl<'a> Runner<'a> {
     ) -> Self {
         for running in &mut self.runs {
             running.wanted = wanted.to_vec();
+            running.traced = self.scene.view.paths.clone();
+            running.series.paths = vec![Vec::new(); running.traced.len()];
             running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
+        }
+        self
+    }
+
+    /// The same, recording the difference of the two runs that the scene compares, if both are simulated.
+    pub(crate) fn with_difference(mut self) -> Self {
+        let place = |run: usize| self.runs.iter().position(|running| running.run == run);
+        let places = self.scene.view.difference.map(|difference| (difference, difference.runs.map(place)));
+        if let Some((difference, [Some(one), Some(other)])) = places {
+            let notes = crate::history::moments(self.scene, &self.runs[one].world, None, &[]);
+            let after_fit = difference.after_fit;
+            self.apart = Some(Apart { runs: [one, other], after_fit, notes, course: Vec::new() });
         }
         self
     }
@@ -95,8 +130,43 @@ impl<'a> Runner<'a> {
     /// # Panics
     /// If the moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let mut left = most_steps;
+        while let Some(note) = self.next_difference(moment) {
+            let before: Vec<_> = self.runs.iter().map(|running| running.world.steps()).collect();
+            if !self.advance_runs(note, left) {
+                return false;
+            }
+            let taken = self.runs.iter().zip(before).map(|(running, before)| running.world.steps() - before);
+            left -= taken.max().unwrap_or(0).min(left);
+            self.note_difference();
+        }
+        self.advance_runs(moment, left)
+    }
+
+    fn advance_runs(&mut self, moment: Moment, most_steps: u64) -> bool {
         let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
+    }
+
+    /// The next moment of the time series of the difference, if it is not after another one.
+    fn next_difference(&self, moment: Moment) -> Option<Moment> {
+        let apart = self.apart.as_ref()?;
+        let note = apart.notes.get(apart.course.len()).copied()?;
+        let are_sound = apart.runs.iter().all(|&at| self.runs[at].world.status() == Status::Ok);
+        (are_sound && note.count * moment.rate <= moment.count * note.rate).then_some(note)
+    }
+
+    /// Records the difference of the present states, unless a run has just diverged.
+    fn note_difference(&mut self) {
+        let Some(apart) = &mut self.apart else { return };
+        let worlds = apart.runs.map(|at| &self.runs[at].world);
+        if worlds.iter().any(|world| world.status() != Status::Ok) {
+            return;
+        }
+        let positions = worlds.map(|world| &world.state().position[..]);
+        let distance = apart::largest(self.scene.body.dimension, positions, apart.after_fit);
+        let first = &self.runs[apart.runs[0]];
+        apart.course.push([first.world.steps() as f64 * first.step, distance]);
     }
 
     /// Steps taken so far, summed over all runs.
@@ -150,7 +220,8 @@ impl<'a> Runner<'a> {
             std::mem::replace(&mut running.series, TimeSeries::new(run))
         };
         let series = self.runs.iter_mut().map(take).collect();
-        History { end: self.scene.frame_time(self.scene.last_frame()), series }
+        let difference = self.apart.take().map_or_else(Vec::new, |apart| apart.course);
+        History { end: self.scene.frame_time(self.scene.last_frame()), series, difference }
     }
 }
 
@@ -184,6 +255,9 @@ impl Running {
     fn note(&mut self, step: u64) {
         self.series.times.push(step as f64 * self.step);
         self.series.diagnostics.push(self.world.some_diagnostics(&self.wanted));
+        for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {
+            path.push(traced.of(&self.body, &self.world.state().position));
+        }
     }
 }
 
@@ -346,7 +420,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_time_series(Diagnostic::ALL);
+        let mut runner = Runner::new(scene, runs).without_field().with_time_series(Diagnostic::ALL).with_difference();
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }

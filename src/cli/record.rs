@@ -209,18 +209,19 @@ impl Recording<'_> {
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
         let strip = pictures.as_ref().and_then(|pictures| pictures.strip());
+        let ahead = strip.is_some() || needs_field && self.scene.view.looks_ahead();
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_field();
             }
-            if let Some(diagnostic) = strip {
-                runner = runner.with_time_series(&[diagnostic]);
+            if ahead {
+                runner = runner.with_time_series(strip.as_slice()).with_difference();
             }
-            Frames::new(runner, &self.frames, strip.is_some(), self.folder)
+            Frames::new(runner, &self.frames, ahead, self.folder)
         });
         let bar = printing.progress(&self.scene.title, frames.steps()[1]);
-        if strip.is_some() {
+        if ahead {
             bar.set_message("simulating ahead for the strips");
         }
         let slice = slice(&self.scene.body);

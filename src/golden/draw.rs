@@ -178,12 +178,10 @@ fn draw_scene(
     // Strips show the whole time series, which is simulated before the first frame is drawn.
     let strip = scene.view.strip.filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let runner = match &strip {
-        Some(strip) => runner.with_time_series(std::slice::from_ref(strip)),
-        None => runner,
-    };
+    let ahead = artist.is_some() && (strip.is_some() || scene.view.looks_ahead());
+    let runner = if ahead { runner.with_time_series(strip.as_slice()).with_difference() } else { runner };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, strip.is_some(), &std::env::temp_dir());
+    let mut frames = Frames::new(runner, &frames, ahead, &std::env::temp_dir());
     loop {
         if !go_on() {
             return Ok(None);

@@ -19,6 +19,7 @@ impl Comparison {
     pub(crate) fn report(&self) -> Report {
         let [expected, actual] = &self.sides;
         let shown = self.shown();
+        let first = self.worst().unwrap_or(0);
         let pairs: Vec<(PicturePair, [Option<String>; 2])> =
             self.pictures.par_iter().enumerate().map(|(at, picture)| self.pair(picture, shown.contains(&at))).collect();
         let adapters = [0, 1].map(|side| pairs.iter().find_map(|(_, adapters)| adapters[side].clone()));
@@ -54,6 +55,7 @@ impl Comparison {
             accept: self.command_to_accept(),
             drawn_by: adapters,
             runs: self.differences.clone(),
+            first,
             pictures: pairs.into_iter().map(|(pair, _)| pair).collect(),
         }
     }
@@ -68,7 +70,21 @@ impl Comparison {
             }
             (0..most).map(|at| all[at * (all.len() - 1) / (most - 1)]).collect()
         };
-        chosen(false, MOST_FAILED).into_iter().chain(chosen(true, MOST_PASSED)).collect()
+        chosen(false, MOST_FAILED).into_iter().chain(chosen(true, MOST_PASSED)).chain(self.worst()).collect()
+    }
+
+    /// The picture that failed with the largest displacement of a node at its frame, or else with most pixels that differ.
+    fn worst(&self) -> Option<usize> {
+        let failed = self.pictures.iter().enumerate().filter(|(_, picture)| !picture.verdict.passes());
+        let how_bad = |picture: &Compared| {
+            let moments = self.differences.iter().flat_map(|run| &run.moments);
+            let here = moments.filter(|moment| picture.frame == Some(moment.frame));
+            let distances = here.filter_map(|moment| Some(moment.displacement?.distance));
+            let pixels = picture.verdict.distance().map_or(0, |distance| distance.nearest_to_limit().visible);
+            (distances.fold(0.0, f64::max), pixels)
+        };
+        let worse = |one: (usize, (f64, u64)), other: (usize, (f64, u64))| if other.1 > one.1 { other } else { one };
+        failed.map(|(at, picture)| (at, how_bad(picture))).reduce(worse).map(|(at, _)| at)
     }
 
     /// A picture on the page, and the adapters that drew both sides.

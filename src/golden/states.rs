@@ -1,6 +1,8 @@
 //! Known states, exact or rounded, and their differences between two sides.
 
 use crate::output::state_digest;
+use crate::sim::apart::{distances, largest};
+use crate::sim::body::Dimension;
 use crate::sim::diagnostics::{Chosen, Diagnostic, Reach};
 use crate::sim::snapshot::Snapshot;
 use crate::sim::words::{quantity, rounded};
@@ -123,7 +125,10 @@ pub struct Displacement {
     pub node: usize,
     /// The distance (m).
     pub distance: f64,
-    /// The precision of the distance (m); 0 if it is exact.
+    /// The largest distance that is left after the best rigid fit of the nodes to where they were expected (m): the
+    /// difference in shape.
+    pub of_shape: f64,
+    /// The precision of the distances (m); 0 if they are exact.
     pub precision: f64,
 }
 
@@ -286,10 +291,15 @@ fn displacement(frame: u64, before: &State, after: &State) -> Option<Displacemen
     // Rounding moves each coordinate by half a quantum at most.
     let precision = 0.5 * 3_f64.sqrt() * (before.quantum + after.quantum);
     let nodes = (0..before.nodes).step_by(before.every).filter(|node| node % after.every == 0);
-    let distance = |node: usize| before.at[node / before.every].distance(after.at[node / after.every]);
-    let farthest = nodes.map(|node| (node, distance(node)));
+    let known: Vec<usize> = nodes.collect();
+    let at = |places: &Positions| known.iter().map(|node| places.at[node / places.every]).collect::<Vec<_>>();
+    let [before, after] = [at(before), at(after)];
+    let farthest = known.iter().copied().zip(distances(&before, &after));
     let (node, distance) = farthest.reduce(|one, other| if other.1 > one.1 { other } else { one })?;
-    Some(Displacement { frame, node, distance, precision })
+    let is_flat = before.iter().chain(&after).all(|at| at.z == 0.0);
+    let dimension = if is_flat { Dimension::Plane } else { Dimension::Space };
+    let of_shape = largest(dimension, [&before, &after], true);
+    Some(Displacement { frame, node, distance, of_shape, precision })
 }
 
 impl Displacement {
@@ -427,6 +437,9 @@ mod tests {
         let positions = golden.positions.as_mut().expect("known");
         (positions.every, positions.nodes) = (2, 4);
         let after = state("bb", 0.0, &[0.0, 9.0, 2.5, 9.0]);
-        assert_eq!(displacement(7, &golden, &after).map(|found| (found.node, found.distance)), Some((2, 0.5)));
+        let found = displacement(7, &golden, &after).expect("known on both sides");
+        assert_eq!((found.node, found.distance), (2, 0.5));
+        // Two nodes half a metre nearer to or farther from each other: each is off by half of that.
+        assert!((found.of_shape - 0.25).abs() < 1e-15, "{}", found.of_shape);
     }
 }

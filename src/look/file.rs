@@ -89,6 +89,26 @@ pub(crate) struct ViewFile {
     /// Colours springs by their strain, the change of length over the length at rest: `{}` for shortened springs in violet and
     /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
     pub(crate) spring_colour: Option<SpringColourFile>,
+    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
+    /// same moment, in the colour of that run. All runs then have the time step of that one. Not in an exploded view. Default:
+    /// none.
+    #[schemars(length(min = 1, max = 80))]
+    pub(crate) ghost: Option<String>,
+    /// Two runs, such as `["Local shape", "Mass-spring"]`, whose difference has a panel of its own: the body of the first,
+    /// coloured by the distance of each node from the same node of the second, whose outline is dashed. Below it, the largest of
+    /// these distances is plotted over the whole time of the scene, which is simulated before the first frame is drawn; the
+    /// colour bar ends at its maximum. Both runs have the same time step. Not in an exploded view. Default: none.
+    pub(crate) difference: Option<[String; 2]>,
+    /// How these distances are measured. Default: `"positions"`.
+    pub(crate) difference_of: Option<DifferenceOfFile>,
+    /// Points of the body whose paths are drawn up to the present moment, in the colours of runs: `"centre"` for the centre of mass,
+    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Not in
+    /// an exploded view. Default: none.
+    #[schemars(length(min = 1, max = 64))]
+    pub(crate) paths: Option<Vec<PathFile>>,
+    /// Points that were measured elsewhere, such as `{ file = "camera.csv" }`: rings where they are now, dots where they were.
+    /// Default: none.
+    pub(crate) points: Option<PointsFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: Light,
     /// Whether bodies and obstacles cast shadows on the floor.
@@ -135,6 +155,11 @@ impl Default for ViewFile {
             opacity: 1.0,
             explode: 0.0,
             spring_colour: None,
+            ghost: None,
+            difference: None,
+            difference_of: None,
+            paths: None,
+            points: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -180,6 +205,47 @@ impl Default for SpringColourFile {
     fn default() -> Self {
         Self { range: None, map: ColourMap::VioletGreen }
     }
+}
+
+/// How the difference of two bodies is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum DifferenceOfFile {
+    /// Between the nodes where they are.
+    Positions,
+    /// After the second body has been moved and turned as a rigid body to where it is nearest to the first (least squares).
+    Shapes,
+}
+
+/// A point of the body that leaves a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum PathFile {
+    /// A node, counted from 0.
+    Node(u32),
+    /// A point that is no node.
+    Point(PathPointFile),
+}
+
+/// A point of the body that is no node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PathPointFile {
+    /// The centre of mass.
+    Centre,
+}
+
+/// Points that were measured elsewhere.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PointsFile {
+    /// A file of comma-separated values beside the scene file. Its first line names the columns: `time` (s), `x`, `y` and, in
+    /// space, `z` (m); other columns are not read. Times may occur several times, for several points.
+    #[schemars(length(min = 1))]
+    pub(crate) file: String,
+    /// The name of the run over which they are drawn. Default: all runs.
+    #[schemars(length(min = 1, max = 80))]
+    pub(crate) run: Option<String>,
 }
 
 /// Which lines are drawn on surfaces.

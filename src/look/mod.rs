@@ -1,11 +1,13 @@
 //! What pictures look like: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from its
 //! `[view]` table and from the body, models and surroundings that it shows. Nothing here draws.
 
+mod compared;
 mod contrast;
 pub(crate) mod file;
 pub(crate) mod font;
 mod framing;
 mod palette;
+pub(crate) mod points;
 pub(crate) mod ramp;
 mod reach;
 mod resolve;
@@ -20,11 +22,12 @@ pub(crate) use contrast::check_runs;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub(crate) use ramp::SHADES;
-pub(crate) use resolve::resolve;
+pub(crate) use resolve::{colour, resolve};
 pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, StrainScale, Style, View, Visible,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, Follow, FontFiles, Ghost, Labels, Light, Points,
+    StrainScale, Style, Traced, View, Visible,
 };

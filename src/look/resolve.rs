@@ -1,8 +1,10 @@
 //! Resolves a `[view]` table for the body, the runs and the surroundings that it shows.
 
+use super::compared;
 use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
+use super::points::PointsRead;
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
@@ -19,10 +21,11 @@ pub(crate) fn resolve(
     typed: &ViewFile,
     scene: &Subject<'_>,
     font: Option<FontFiles>,
+    points: Option<PointsRead>,
     report: &mut Report<'_>,
 ) -> Option<View> {
     let body = scene.body;
-    let runs = scene.models.len();
+    let panels = scene.models.len() + usize::from(typed.difference.is_some());
     let dimension = body.dimension;
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
@@ -43,14 +46,17 @@ pub(crate) fn resolve(
     }
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
-        (None, Some(ArrangementFile::Row)) => runs,
+        (None, Some(ArrangementFile::Row)) => panels,
         (None, Some(ArrangementFile::Column)) => 1,
-        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
-        (None, None) => columns(runs),
+        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, panels),
+        (None, None) => columns(panels),
     };
-    let columns = columns.clamp(1, runs.max(1));
+    let columns = columns.clamp(1, panels.max(1));
     let colour = match &typed.colour {
-        Some(typed) => Some(colour(typed, scene, report)?),
+        Some(typed) => {
+            let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
+            Some(colour(typed, std::slice::from_ref(scene), &way, report)?)
+        }
         None => None,
     };
     let visible = match &typed.show {
@@ -63,6 +69,9 @@ pub(crate) fn resolve(
         None => Visible::usual(dimension, body.len()),
     };
     let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
+    let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
+    let paths = compared::paths(typed, scene, report);
+    let points = points.and_then(|points| compared::points(typed, points, scene, report));
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -110,6 +119,10 @@ pub(crate) fn resolve(
         opacity: typed.opacity,
         explode: typed.explode,
         spring_strain,
+        ghost,
+        difference,
+        paths,
+        points,
         light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,
@@ -144,12 +157,16 @@ const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
 
-/// The colours of a field, over a range that follows from the scene if none is typed.
-fn colour(typed: &ColourFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<ColourScale> {
-    let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
+/// The colours of a field, over a range that is typed somewhere or else follows from the scenes.
+pub(crate) fn colour(
+    typed: &ColourFile,
+    scenes: &[Subject<'_>],
+    way: &[Way<'_>; 3],
+    report: &mut Report<'_>,
+) -> Option<ColourScale> {
     let range = match typed.range {
-        Some(range) => rising(range, &way, report)?,
-        None => [0.0, scene.largest(typed.by)],
+        Some(range) => rising(range, way, report)?,
+        None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
     Some(ColourScale { field: typed.by, range, map: typed.map })
 }

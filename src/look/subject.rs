@@ -22,6 +22,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) grips: &'a [Grip],
     /// Simulated time (s).
     pub(crate) duration: f64,
+    /// The name and the time step (s) of each run.
+    pub(crate) runs: Vec<(&'a str, f64)>,
     /// The model of each run.
     pub(crate) models: Vec<&'a dyn ElasticModel>,
 }

@@ -1,7 +1,7 @@
 //! How a scene is looked at, resolved.
 
 use super::palette::{Palette, Theme};
-use crate::sim::body::Dimension;
+use crate::sim::body::{Body, Dimension};
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
 use glam::DVec3;
@@ -51,6 +51,14 @@ pub struct View {
     pub explode: f64,
     /// The colours of the strain of springs, if it is shown.
     pub spring_strain: Option<StrainScale>,
+    /// What is outlined over each body, if anything.
+    pub ghost: Option<Ghost>,
+    /// The runs whose difference has a panel of its own, if it is shown.
+    pub difference: Option<Difference>,
+    /// What leaves a path behind it.
+    pub paths: Vec<Traced>,
+    /// Points that were measured elsewhere, if they are shown.
+    pub points: Option<Points>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -63,6 +71,13 @@ pub struct View {
     pub outline: bool,
     /// Whether turned-over elements are hatched, besides having a colour of their own.
     pub hatch: bool,
+}
+
+impl View {
+    /// Whether frames show something of the whole course of the scene besides strips.
+    pub(crate) fn looks_ahead(&self) -> bool {
+        self.difference.is_some() || !self.paths.is_empty()
+    }
 }
 
 impl Default for View {
@@ -96,6 +111,10 @@ impl Default for View {
             opacity: 1.0,
             explode: 0.0,
             spring_strain: None,
+            ghost: None,
+            difference: None,
+            paths: Vec::new(),
+            points: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -272,6 +291,55 @@ pub struct StrainScale {
     pub range: [f64; 2],
     /// Its colours.
     pub map: ColourMap,
+}
+
+/// What is outlined over each body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ghost {
+    /// The rest shape, in its best rigid fit.
+    Rest,
+    /// The body of a run of the scene, by its index, at the same moment.
+    Run(usize),
+}
+
+/// Two runs of a scene, by their indices, and how the distances of their nodes are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The run whose body is drawn, and the one that it is compared with.
+    pub runs: [usize; 2],
+    /// Whether the second body is first moved and turned to where it is nearest to the first.
+    pub after_fit: bool,
+}
+
+/// A point of a body whose path is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Traced {
+    /// The centre of mass.
+    Centre,
+    /// A node.
+    Node(u32),
+}
+
+impl Traced {
+    /// Where it is on a body with its nodes at given positions (m).
+    pub(crate) fn of(self, body: &Body, position: &[DVec3]) -> DVec3 {
+        match self {
+            Self::Centre => {
+                let weighed = position.iter().zip(&body.mass).map(|(&at, &mass)| mass * at);
+                weighed.sum::<DVec3>() / body.mass.iter().sum::<f64>()
+            }
+            Self::Node(node) => position[node as usize],
+        }
+    }
+}
+
+/// Points that were measured elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    /// The run over which they are drawn, by its index; none for all runs.
+    pub run: Option<usize>,
+    /// Times (s), rising, and places (m).
+    pub samples: Arc<[(f64, DVec3)]>,
 }
 
 /// A perspective camera that looks at a point.

@@ -357,6 +357,17 @@ pub(super) fn divergence(divergence: &Divergence) -> Number {
     Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true }
 }
 
+/// The largest distance of two bodies, of all distances up to another one (m), where bodies have a size (m).
+pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
+    let words = ["largest distance", "distance"].map(str::to_owned);
+    Number {
+        value: number::length(metres, extent),
+        widest: number::length(most, extent),
+        wordings: words,
+        is_loud: false,
+    }
+}
+
 /// The number at the lower right of a run that has not diverged.
 pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
     let words = |long: &str, short: &str| [long.to_owned(), short.to_owned()];

@@ -4,12 +4,15 @@ use super::arrows;
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::filled;
+use super::ghost;
 use super::layout::Scale;
+use super::narrow::narrow;
 use super::number;
 use super::text::Weight;
-use super::{Mark, MarkShape};
+use super::{Curve, Mark, MarkShape};
 use crate::colour::Colour;
 use glam::DVec2;
+use std::borrow::Cow;
 
 /// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
 const HEIGHT: f64 = 50.0;
@@ -17,8 +20,10 @@ const ABOVE: f64 = 4.0;
 /// Its type is no smaller than this part of the reference, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
 const MOST_HEIGHT: f64 = 0.1;
-/// The room that the arrow with its words and the bar with its name take at least (px in the reference picture).
+/// The room that the arrow with its words, a sample with its name and the bar with its name take at least (px in the reference
+/// picture).
 const ARROW_ROOM: f64 = 250.0;
+const SAMPLE_ROOM: f64 = 220.0;
 const BAR_ROOM: f64 = 390.0;
 /// Size of the numbers at the ticks (px in the reference picture).
 const NUMBERS: f64 = 14.0;
@@ -32,6 +37,9 @@ const TICK: f64 = 5.0;
 const MOST_TICKS: usize = 5;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
+/// The length and the width of the sample of a line, and the radius of a ring (px in the reference picture).
+const SAMPLE: [f64; 2] = [48.0, 2.0];
+const RING: f64 = 5.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
 /// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
@@ -63,6 +71,23 @@ impl<'a> Bar<'a> {
     }
 }
 
+/// A line or a mark with its meaning.
+pub(super) struct Sample<'a> {
+    pub(super) name: Cow<'a, str>,
+    pub(super) colour: Colour,
+    pub(super) kind: SampleKind,
+}
+
+/// What a sample looks like.
+pub(super) enum SampleKind {
+    /// The dashed outline of a ghost.
+    Ghost,
+    /// A path.
+    Path,
+    /// A measured point.
+    Ring,
+}
+
 /// Sizes of the key of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Legend {
@@ -73,13 +98,14 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow, and with a number of
+    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow, and with numbers of samples and
     /// bars; `None` where it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale, arrow: bool, bars: usize) -> Option<Self> {
+    pub(super) fn new(size: [u32; 2], scale: Scale, arrow: bool, samples: usize, bars: usize) -> Option<Self> {
         let [width, height] = size.map(f64::from);
-        let parts = usize::from(arrow) + bars;
+        let parts = usize::from(arrow) + samples + bars;
         let apart = APART * parts.saturating_sub(1) as f64;
-        let needed = apart + if arrow { ARROW_ROOM } else { 0.0 } + BAR_ROOM * bars as f64;
+        let arrow = if arrow { ARROW_ROOM } else { 0.0 };
+        let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
         let made_up = scale.made_up() * scale.type_unit();
@@ -95,6 +121,7 @@ impl Legend {
         picture_width: f64,
         ground: f64,
         arrow: Option<[f64; 3]>,
+        samples: &[Sample<'_>],
         bars: &[Bar<'_>],
     ) {
         let unit = self.unit;
@@ -109,6 +136,9 @@ impl Legend {
             let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
             let size = size.min(most.max(size / writer.scale.line_factor));
             left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
+        }
+        for sample in samples {
+            left = self.sample(writer, [left, middle], sample) + APART * unit;
         }
         // Bars share what is left evenly.
         let right = picture_width - margin;
@@ -137,6 +167,40 @@ impl Legend {
             left,
             middle + 5.5 * unit,
         )
+    }
+
+    /// A sample with its name; returns where that ends (px).
+    fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], sample: &Sample<'_>) -> f64 {
+        let (unit, palette, colour) = (self.unit, writer.palette, sample.colour);
+        let [length, width] = SAMPLE.map(|length| length * unit);
+        let line = unit * writer.scale.line_factor;
+        let curve = |dash: Vec<f32>| Curve {
+            points: [left, left + length].map(|x| [x, middle].map(narrow)).to_vec(),
+            width: narrow(width * writer.scale.line_factor),
+            dash,
+            colour,
+            alpha: 1.0,
+        };
+        let length = match sample.kind {
+            SampleKind::Ghost => {
+                writer.curves.push(curve(ghost::DASH.map(|length| narrow(length * line)).to_vec()));
+                length
+            }
+            SampleKind::Path => {
+                writer.curves.push(curve(Vec::new()));
+                length
+            }
+            SampleKind::Ring => {
+                let ring =
+                    Mark::around(DVec2::new(left + RING * line, middle), RING * line, MarkShape::Node, palette.halo);
+                writer.marks.push(Mark { second: colour, ..ring });
+                2.0 * RING * line
+            }
+        };
+        let before = length + 12.0 * unit;
+        let room = SAMPLE_ROOM * unit - before;
+        let name = writer.fonts.shortened(&sample.name, Weight::Regular, 16.0 * unit, room);
+        self.write(writer, &name, Weight::Regular, 16.0, palette.second_text, left + before, middle + 5.5 * unit)
     }
 
     /// A bar of colours between two places, with its name before it and its numbers below; it stands in the given middle

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
-//! the scene and that frame only. Strips ([`crate::look::View::strip`]) show time series of the whole scene, which the
-//! composer gets beforehand; they depend on the scene only, too.
+//! the scene and that frame only. Strips ([`crate::look::View::strip`]), paths and the panel of a difference show time series of
+//! the whole scene, which the composer gets beforehand; they depend on the scene only, too.
 
 mod arrows;
 mod axis;
@@ -19,6 +19,7 @@ mod ears;
 mod ends;
 mod exploded;
 mod field;
+mod ghost;
 mod grip;
 mod layout;
 mod legend;
@@ -59,7 +60,7 @@ pub struct Picture {
     pub(crate) palette: Palette,
     /// The fonts of its text.
     pub(crate) fonts: Fonts,
-    /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if none is shown.
+    /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if no panel shows one.
     pub(crate) ramp: Vec<Colour>,
     /// One for each run shown.
     pub(crate) panels: Vec<Panel>,
@@ -380,6 +381,15 @@ impl Mark {
     fn around(middle: DVec2, radius: f64, shape: MarkShape, colour: Colour) -> Self {
         let DVec2 { x, y } = middle;
         Self::upright([x - radius, y - radius, 2.0 * radius, 2.0 * radius], shape, colour)
+    }
+
+    /// A straight line with smooth borders.
+    fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Self {
+        let along = (to - from).try_normalize().unwrap_or(DVec2::X);
+        // The border of the mark is a pixel wide, half of it outside.
+        let corner = from - 0.5 * along - 0.5 * (thickness + 1.0) * along.perp();
+        let rectangle = [corner.x, corner.y, from.distance(to) + 1.0, thickness + 1.0];
+        Self { along: along.to_array().map(narrow), ..Self::upright(rectangle, MarkShape::Smooth, colour) }
     }
 
     /// The mark with a part of its opacity, from 0 to 1; `None` if nothing of it would be seen.

@@ -2,6 +2,7 @@
 
 use super::camera::Lens;
 use super::ears::Ears;
+use super::ends::spread;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;
@@ -29,6 +30,13 @@ const FADING_SIGN: f64 = 0.2;
 /// What is covered by the disc of another, or by an element that has turned over, fades over this distance beside it (px in
 /// the reference picture).
 const FADING_BESIDE: f64 = 6.0;
+/// A sign that would cover its turned-over element stands beside the body instead, at this distance from it; its leader has
+/// this width and ends in a dot of this radius (px in the reference picture).
+const BESIDE: f64 = 20.0;
+const LEADER: f64 = 1.3;
+const LEADER_DOT: f64 = 2.6;
+/// It fades in over this part of a disc's radius, of the circle inside its element.
+const FADING_LEADER: [f64; 2] = [0.04, 0.12];
 /// Bodies of more elements than this have no signs, which would hide what they stand for.
 const MOST_SIGNS: usize = 16;
 /// Nodes have at most this part of an element's edge for a radius, and at least this radius (px).
@@ -191,8 +199,11 @@ impl Flat<'_> {
         for &place in &sound {
             self.sound_arrow(place, &turned_over, marks);
         }
-        for &(_, place) in &turned_over {
-            self.alarm_arrow(place, marks);
+        let disc = RING[1] * self.scale.line();
+        let (covered, roomy): (Vec<_>, Vec<_>) =
+            turned_over.iter().map(|(_, place)| *place).partition(|place| place.1 < disc);
+        for left in self.callouts(covered, marks).into_iter().chain(roomy) {
+            self.alarm_arrow(left, 1.0, marks);
         }
     }
 
@@ -232,12 +243,53 @@ impl Flat<'_> {
         }
     }
 
-    /// The arrow of a turned-over element, on a disc of its own.
-    fn alarm_arrow(&self, (middle, room): Circle, marks: &mut Vec<Mark>) {
+    /// Signs of elements that these would cover, left or right of the body, with leaders to the elements. Returns the elements
+    /// for whose signs there is no room.
+    fn callouts(&self, mut places: Vec<Circle>, marks: &mut Vec<Mark>) -> Vec<Circle> {
+        let disc = RING[1] * self.scale.line();
+        let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
+        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
+        let [_, top, _, bottom] = sides(self.viewport.map(f64::from));
+        let away = BESIDE * self.scale.line() + disc;
+        // Each on the nearer side, above each other where they would touch, and none below the body, on the floor.
+        places.sort_by(|one, other| one.0.y.total_cmp(&other.0.y));
+        let is_right = |place: &Circle| place.0.x >= low.x.midpoint(high.x);
+        let (right, left): (Vec<_>, Vec<_>) = places.into_iter().partition(is_right);
+        let mut without_room = Vec::new();
+        for (places, x) in [(left, low.x - away), (right, high.x + away)] {
+            let heights: Vec<_> = places.iter().map(|(middle, _)| middle.y).collect();
+            let ends = [(low.y - disc).max(top + disc), (high.y - disc).min(bottom - disc)];
+            for (place, y) in places.into_iter().zip(spread(&heights, 2.2 * disc, ends)) {
+                let sign = DVec2::new(x, y);
+                if !self.holds(sign, disc) {
+                    without_room.push(place);
+                    continue;
+                }
+                let (middle, room) = place;
+                let [from, to] = FADING_LEADER.map(|part| part * disc);
+                let grown = (room - from) / (to - from);
+                let end = sign + disc * (middle - sign).normalize_or_zero();
+                let unit = self.scale.line();
+                let colour = self.palette.alarm_text;
+                let leader = Mark::line([middle, end], LEADER * unit, colour);
+                let dot = Mark {
+                    second: self.palette.halo,
+                    ..Mark::around(middle, LEADER_DOT * unit, MarkShape::Node, colour)
+                };
+                marks.extend([leader, dot].into_iter().filter_map(|mark| mark.faded(grown)));
+                self.alarm_arrow((sign, disc), grown, marks);
+            }
+        }
+        without_room
+    }
+
+    /// The arrow of a turned-over element, on a disc of its own, at most with a part of its opacity.
+    fn alarm_arrow(&self, (middle, room): Circle, most: f64, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
         // A disc must not hide the element that it stands on.
         let size = (room / (0.55 * disc)).min(1.0);
-        let grown = (size - SMALLEST_ALARM) / FADING_SIGN;
+        let grown = ((size - SMALLEST_ALARM) / FADING_SIGN).min(most);
         let ground = (size * disc, MarkShape::Node, [255; 3]);
         let sign = (size * ring, MarkShape::Clockwise, self.palette.alarm_on_white);
         for (radius, shape, colour) in [ground, sign] {
@@ -249,12 +301,16 @@ impl Flat<'_> {
 
     /// Adds a mark of a radius around a pixel (px), unless it would reach into a neighbouring panel.
     fn add(&self, mark: Mark, middle: DVec2, radius: f64, marks: &mut Vec<Mark>) {
-        let [left, top, width, height] = self.viewport.map(f64::from);
-        let inside = left + radius <= middle.x
-            && middle.x <= left + width - radius
+        marks.extend(self.holds(middle, radius).then_some(mark));
+    }
+
+    /// Whether a circle lies inside the panel (px).
+    fn holds(&self, middle: DVec2, radius: f64) -> bool {
+        let [left, top, right, bottom] = sides(self.viewport.map(f64::from));
+        left + radius <= middle.x
+            && middle.x <= right - radius
             && top + radius <= middle.y
-            && middle.y <= top + height - radius;
-        marks.extend(inside.then_some(mark));
+            && middle.y <= bottom - radius
     }
 
     fn pixel(&self, point: DVec3) -> Option<DVec2> {

@@ -16,7 +16,7 @@ pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
 /// Curves are simplified as long as no point moves by more than this (px).
-const EXACT: f64 = 0.08;
+pub(super) const EXACT: f64 = 0.08;
 
 /// Values of a diverged run above this many times the largest value of the other runs do not set the scale.
 const BEYOND: f64 = 3.0;
@@ -210,7 +210,7 @@ fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// A curve with fewer points, none of those left out farther from it than a distance (Douglas and Peucker).
-fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
+pub(super) fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     let mut kept = vec![false; points.len()];
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
     (kept[0], kept[last]) = (true, true);

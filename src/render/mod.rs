@@ -240,16 +240,18 @@ impl Renderer {
         let solids = self.solids.as_ref().filter(|_| with_solids);
         let slabs = self.slabs.as_ref().filter(|_| with_slabs);
         let occluders = surface::occluders(picture);
-        let colouring = if picture.ramp.is_empty() {
+        let is_coloured = |panel| !panel::is_plain(picture, panel);
+        let plain = picture.panels.iter().any(|panel| panel::is_plain(picture, panel)).then(|| {
             self.surfaces.prepare(&gpu, &self.panels, picture);
-            self.surfaces.plain(occluders)
-        } else {
+        });
+        let coloured = picture.panels.iter().any(is_coloured).then(|| {
             let made = || tint::Tint::new(&gpu, &bodies, self.samples);
             let tint = self.tint.get_or_insert_with(made);
             tint.prepare(&gpu, &self.panels, picture);
             tint.write(&gpu, picture);
             tint.colouring(occluders)
-        };
+        });
+        let colourings = [plain.map(|()| self.surfaces.plain(occluders)), coloured];
         if stroke::Strokes::are_in(picture) {
             let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies, self.samples);
             self.strokes.get_or_insert_with(made).write(&gpu, picture);
@@ -259,14 +261,14 @@ impl Renderer {
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if has_behind {
             let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places, colouring);
+            self.surfaces.draw_behind(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids.filter(|_| with_clear) {
                 solids.draw_behind(&mut pass, &self.panels, &places);
             }
         }
         {
             let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places, colouring);
+            self.surfaces.draw_all(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }

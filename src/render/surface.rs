@@ -1,6 +1,6 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
 
-use super::panel::Panels;
+use super::panel::{Panels, is_plain};
 use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -58,7 +58,7 @@ pub(super) struct Pipelines {
 const SOUND: usize = 0;
 const TURNED_OVER: usize = 1;
 
-/// The pipelines and bindings for the surfaces of a picture, plain or coloured by a field.
+/// The pipelines and bindings for the surfaces of panels, plain or coloured by a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Colouring<'a> {
     pub(super) pipelines: &'a Pipelines,
@@ -85,6 +85,8 @@ pub(super) struct Surfaces {
     indices: GrowingBuffer<u32>,
     /// The indices of each panel's two sets.
     ranges: Vec<[Range<u32>; 2]>,
+    /// Whether a panel's surfaces are coloured by a field.
+    are_coloured: Vec<bool>,
 }
 
 impl Surfaces {
@@ -98,6 +100,7 @@ impl Surfaces {
             vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
             indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
             ranges: Vec::new(),
+            are_coloured: Vec::new(),
         }
     }
 
@@ -132,6 +135,7 @@ impl Surfaces {
             start..indices.len() as u32
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
+        self.are_coloured = picture.panels.iter().map(|panel| !is_plain(picture, panel)).collect();
         self.vertices.write(gpu, &vertices);
         self.indices.write(gpu, &indices);
     }
@@ -154,9 +158,9 @@ impl Surfaces {
         pass: &mut wgpu::RenderPass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colouring: Colouring<'_>,
+        colourings: [Option<Colouring<'_>>; 2],
     ) {
-        self.draw(pass, panels, places, colouring, &colouring.pipelines.alarm_behind, TURNED_OVER);
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm_behind, TURNED_OVER);
     }
 
     /// Draws everything.
@@ -165,10 +169,10 @@ impl Surfaces {
         pass: &mut wgpu::RenderPass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colouring: Colouring<'_>,
+        colourings: [Option<Colouring<'_>>; 2],
     ) {
-        self.draw(pass, panels, places, colouring, &colouring.pipelines.alarm, TURNED_OVER);
-        self.draw(pass, panels, places, colouring, &colouring.pipelines.sound, SOUND);
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, TURNED_OVER);
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, SOUND);
     }
 
     fn draw(
@@ -176,21 +180,28 @@ impl Surfaces {
         pass: &mut wgpu::RenderPass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colouring: Colouring<'_>,
-        pipeline: &wgpu::RenderPipeline,
+        colourings: [Option<Colouring<'_>>; 2],
+        pipeline: fn(&Pipelines) -> &wgpu::RenderPipeline,
         set: usize,
     ) {
-        pass.set_pipeline(pipeline);
-        if let Some(group) = colouring.groups[set] {
-            pass.set_bind_group(1, group, &[]);
-        }
-        if let Some(shades) = colouring.shades {
-            pass.set_vertex_buffer(1, shades.slice(..));
-        }
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
-        panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-            pass.draw_indexed(self.ranges[panel][set].clone(), 0, 0..1);
-        });
+        for (colouring, coloured) in colourings.into_iter().zip([false, true]) {
+            let Some(colouring) = colouring else { continue };
+            pass.set_pipeline(pipeline(colouring.pipelines));
+            if let Some(group) = colouring.groups[set] {
+                pass.set_bind_group(1, group, &[]);
+            }
+            if let Some(shades) = colouring.shades {
+                pass.set_vertex_buffer(1, shades.slice(..));
+            }
+            let own = |(panel, &place): (usize, &Rectangle)| match self.are_coloured[panel] == coloured {
+                true => place,
+                false => [0; 4],
+            };
+            panels.draw_regions(pass, places.iter().enumerate().map(own), |pass, panel| {
+                pass.draw_indexed(self.ranges[panel][set].clone(), 0, 0..1);
+            });
+        }
     }
 }

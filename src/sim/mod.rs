@@ -3,6 +3,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub(crate) mod alike;
+pub(crate) mod apart;
 pub(crate) mod body;
 pub(crate) mod contact;
 pub(crate) mod crew;

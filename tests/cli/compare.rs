@@ -504,3 +504,21 @@ fn wrong_words() {
     place.run("compare none none").bad(2, &["has a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
 }
+
+/// Of pictures whose states moved nobody knows how far, the one with most pixels that differ.
+#[test]
+fn a_report_opens_at_the_worst_picture() {
+    let place = Place::new();
+    for (frame, different) in [(0, 0), (1, 30), (2, 90), (3, 60)] {
+        let mut other = GREY;
+        other[..different].fill(0);
+        let state = if different > 0 { "2" } else { "1" };
+        put(&place, &format!("a/{frame}.png"), &picture("one", "1", frame, &GREY));
+        put(&place, &format!("b/{frame}.png"), &picture("one", state, frame, &other));
+    }
+    assert_eq!(place.run("compare a b --report page.html -q").status, Some(1));
+    let page = place.read("page.html");
+    let data = page.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("the data");
+    let data: serde_json::Value = serde_json::from_str(data).expect("JSON");
+    assert_eq!((&data["first"], &data["pictures"][2]["name"]), (&2.into(), &"2.png".into()));
+}

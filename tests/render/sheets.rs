@@ -385,3 +385,23 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
         assert_eq!(run.line(palette), same.line(palette), "{}", run.name);
     }
 }
+
+#[test]
+fn a_sheet_colours_all_its_scenes_by_one_field() {
+    let columns =
+        "[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0.03\n[[sheet.column]]\nscene = 'stretch.toml'\ntime = 0.5\n";
+    let figure = own(&format!(
+        "[sheet]\ncolour = {{ by = 'displacement', map = 'viridis' }}\nrow = [{{ run = 'Local shape' }}]\n{columns}"
+    ));
+    let scales: Vec<_> = figure.scenes().iter().map(|scene| scene.view.colour.expect("a field")).collect();
+    // Half of the longer edge.
+    let side = figure.scenes().iter().map(|scene| scene.view.side).fold(0.0, f64::max);
+    assert!(scales[0] == scales[1] && scales[0].range == [0.0, 0.5 * side], "{scales:?}");
+    let picture = compose_figure(&figure, &Moments::new(&figure)).expect("there is room");
+    assert!(!picture.ramp.is_empty());
+    for panel in &picture.panels {
+        assert_eq!(panel.sound.shades.len(), panel.sound.vertices.len());
+        assert!(panel.sound.shades.iter().any(|&shade| shade > 0.05));
+    }
+    assert!(picture.words.iter().any(|run| run.text == "displacement"));
+}

@@ -1,9 +1,9 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
 use super::{fig4b, frame, parse};
-use localshape::picture::{Composer, LineKind, MarkShape, Mesh, Picture, TextRun, Weight, compose};
+use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
-use localshape::scene::Scene;
+use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 
@@ -391,4 +391,41 @@ fn an_element_without_faces_is_drawn_from_its_middle() {
     assert_eq!(panel.lines.len(), 7);
     assert!(panel.lines.iter().all(|line| line.kind == LineKind::Bar && line.from == panel.lines[0].from));
     assert!(panel.region[2] > 50 && panel.region[3] > 50);
+}
+
+/// Of the only turned-over triangle of Fig. 4(a) nothing is hidden: its sign stands beside the body and points to it.
+#[test]
+fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
+    let text = include_str!("../../scenes/fig4a.toml");
+    let scene = Scene::parse(text, "fig4a.toml", &Limits::default()).expect("the shipped scene is sound");
+    let mut runner = Runner::new(&scene, &[1]);
+    for index in [89, 120, 300] {
+        let frame = runner.frame(index);
+        assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 1, "this run is known for it");
+        let picture = compose(&scene, &frame);
+        let panel = &picture.panels[0];
+        let pixel = |at: [f32; 3]| {
+            let clip = panel.sight.clip * glam::Vec3::from(at).extend(1.0);
+            let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+            glam::Vec2::new(left + width * (0.5 + 0.5 * clip.x / clip.w), top + height * (0.5 - 0.5 * clip.y / clip.w))
+        };
+        let corners = |mesh: &Mesh| mesh.vertices.iter().map(|vertex| pixel(vertex.position)).collect::<Vec<_>>();
+        let [sound, over] = [&panel.sound, &panel.turned_over].map(corners);
+        let (low, high) = sound
+            .iter()
+            .chain(&over)
+            .fold((glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
+        let signs: Vec<_> = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Clockwise).collect();
+        let [sign] = signs[..] else { panic!("one sign: {signs:?}") };
+        let [x, _, width, _] = sign.rectangle;
+        assert!(x + width < low.x || x > high.x, "frame {index}: {x} is between {low} and {high}");
+        // The leader goes from its disc into the triangle.
+        let mut leaders =
+            picture.marks.iter().filter(|mark| mark.shape == MarkShape::Smooth && mark.along != Mark::UPRIGHT);
+        let leader = leaders.next_back().expect("a leader");
+        let start = glam::Vec2::new(leader.rectangle[0], leader.rectangle[1]);
+        let (low, high) = over.iter().fold((over[0], over[0]), |(low, high), &at| (low.min(at), high.max(at)));
+        assert!(start.cmpge(low - 2.0).all() && start.cmple(high + 2.0).all(), "frame {index}: {start}");
+        assert!(leader.rectangle[2] > 20.0);
+    }
 }

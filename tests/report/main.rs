@@ -64,7 +64,13 @@ fn runs(frames: u64) -> Vec<RunDifference> {
             let moved = frame >= moved_from;
             let far = 1e-10 * 1.6_f64.powi(frame.saturating_sub(moved_from) as i32);
             let is_known = moved && frame < 38;
-            let displacement = is_known.then_some(Displacement { frame, node: 12, distance: far, precision: 1e-9 });
+            let displacement = is_known.then_some(Displacement {
+                frame,
+                node: 12,
+                distance: far,
+                of_shape: 0.5 * far,
+                precision: 1e-9,
+            });
             FrameDifference { frame, time: Some(frame as f64 / 60.0), moved, displacement }
         };
         RunDifference { run: run.into(), precision: 1e-9, moments: (0..frames).map(moment).collect() }
@@ -86,6 +92,7 @@ fn sequence() -> Report {
         drawn_by: [Some("one adapter".into()), None],
         runs: runs(41),
         pictures: pictures.into(),
+        first: 2,
     }
 }
 
@@ -213,7 +220,7 @@ fn it_works_by_keys_and_by_pointer() {
 }
 
 fn it_works_by_keys(browser: &mut Browser) {
-    assert_eq!(browser.text(NAME), "020.png", "the first failure is shown first");
+    assert_eq!(browser.text(NAME), "020.png", "what the report says is shown first");
     for (key, held, name) in [
         ("ArrowRight", PLAIN, "030.png"),
         ("ArrowLeft", PLAIN, "020.png"),
@@ -484,17 +491,29 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     }
 
     // Any number of pictures on any screen.
-    let single = Report { runs: vec![], pictures: vec![sheet("only.png", None, false)], ..sequence() };
+    let single = Report { runs: vec![], pictures: vec![sheet("only.png", None, false)], first: 0, ..sequence() };
     let nothing = Report { runs: vec![], pictures: vec![], ..sequence() };
     let states_only = Report { pictures: vec![], ..sequence() };
-    let mut many = Report { runs: runs(2000), ..sequence() };
+    let mut many = Report { runs: runs(2000), first: 0, ..sequence() };
     let unseen = PicturePair { expected: None, actual: None, difference: None, ..sheet("", None, false) };
     let named = |frame| PicturePair { name: format!("frame-{frame:05}.png"), frame: Some(frame), ..unseen.clone() };
     many.pictures = (0..2000).map(named).collect();
-    for (report, width) in [(&single, 360), (&nothing, 360), (&states_only, 360), (&many, 360)] {
+    let whole = sequence();
+    for (report, width) in
+        [(&single, 360), (&nothing, 360), (&states_only, 360), (&whole, 360), (&whole, 420), (&many, 360)]
+    {
         browser.resize([width, 900]);
         browser.open(&report.page(), "");
         browser.until("the pictures", LOADED);
+        // No words of the charts lie over others, or over a button.
+        let collisions = "(() => { const boxes = [...document.querySelectorAll('#charts text, #runs li, #reading, button')]
+            .map((one) => one.getBoundingClientRect()).filter(({ width }) => width > 0);
+            const apart = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+            return boxes.flatMap((a, at) => boxes.slice(at + 1).filter((b) => !apart(a, b))).length; })()";
+        if !report.runs.is_empty() {
+            browser.until("the charts", CHARTS);
+            assert_eq!(browser.value(collisions), 0, "{} pictures in {width} px", report.pictures.len());
+        }
         let too_wide = "document.documentElement.scrollWidth - innerWidth";
         assert!(browser.number(too_wide) <= 0.0, "{} pictures in {width} px", report.pictures.len());
         for key in ["End", "ArrowRight", "2", "3", "f", "+", "]"] {

@@ -1,9 +1,9 @@
 //! Colours, fonts and lines: correct ones have the right effect, and every mistake is explained.
 
 use super::mistakes::{PLANE, case};
-use super::{WORLD, good};
+use super::{WORLD, bad, good};
 use localshape::colour::{Vision, contrast, difference};
-use localshape::look::{ColourMap, Palette, Style, Theme};
+use localshape::look::{ColourMap, Difference, Ghost, Palette, Style, Theme, Traced};
 use localshape::scene::{Limits, Scene, SceneError};
 
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
@@ -430,4 +430,103 @@ fn fonts_may_lie_in_a_folder_of_their_own() {
     std::fs::create_dir(place.0.path().join("fonts")).unwrap();
     place.file("fonts/sans.otf", FONT);
     assert!(place.load("regular = 'fonts/sans.otf'").is_ok());
+}
+
+/// What bodies are compared with.
+#[test]
+fn ghosts_and_differences_name_runs() {
+    let named = |view: &str| good(&PLANE.replace("[view]\n", &format!("[view]\n{view}\n"))).view;
+    assert_eq!(named("ghost = 'rest'").ghost, Some(Ghost::Rest));
+    assert_eq!(named("ghost = 'Mass-spring'").ghost, Some(Ghost::Run(1)));
+    let view = named("difference = ['Mass-spring', 'Local shape']");
+    assert_eq!(view.difference, Some(Difference { runs: [1, 0], after_fit: false }));
+    assert_eq!(view.columns, 3, "the difference has a panel");
+    let view = named("difference = ['Local shape', 'Mass-spring']\ndifference_of = 'shapes'");
+    assert_eq!(view.difference, Some(Difference { runs: [0, 1], after_fit: true }));
+}
+
+#[test]
+fn mistakes_of_ghosts_and_differences() {
+    let view = |view: &str, expected: &[(usize, usize, &str)]| {
+        case(PLANE, "size = [640, 360]", view, expected);
+    };
+    view("ghost = 'Mass spring'", &[(20, 9, "there is no run \"Mass spring\" did you mean \"Mass-spring\"?")]);
+    let all = "expected \"Local shape\", \"Mass-spring\" or \"rest\"";
+    view("ghost = 'nobody'", &[(20, 9, all)]);
+    view(
+        "ghost = 'rest'\nexplode = 0.5",
+        &[(20, 1, "`view.explode` draws elements apart, so `ghost` cannot be shown")],
+    );
+    let pair = |name: &str| format!("difference = ['Local shape', '{name}']");
+    view(&pair("Mass"), &[(20, 30, "there is no run \"Mass\" did you mean \"Mass-spring\"?")]);
+    view(&pair("rest"), &[(20, 30, "there is no run \"rest\"")]);
+    view(&pair("Local shape"), &[(20, 14, "\"Local shape\" is compared with itself name two different runs")]);
+    view("difference = ['Local shape']", &[(20, 14, "`view.difference` has 1 entry; expected 2")]);
+    view("difference_of = 'shapes'", &[(20, 1, "`view.difference_of` is given, but no `view.difference`")]);
+    let exploded = format!("{}\nexplode = 0.5", pair("Mass-spring"));
+    view(&exploded, &[(20, 1, "so `difference` cannot be shown remove `explode` or `difference`")]);
+    // Frames of runs with different steps are not at the same moments.
+    let other_step = PLANE.replace("name = 'Mass-spring'\n", "name = 'Mass-spring'\nstep = 0.001\n");
+    let ghost = |name: &str| format!("ghost = '{name}'");
+    for (view, column) in [(ghost("Local shape"), 9), (ghost("Mass-spring"), 9), (pair("Mass-spring"), 14)] {
+        let text = bad(&other_step.replace("size = [640, 360]", &view));
+        let [found] = text.mistakes() else { panic!("{text}") };
+        assert_eq!((found.line, found.column), (21, column), "{text}");
+        assert!(found.message.ends_with("their frames are not at the same moments"), "{text}");
+    }
+    let same = PLANE.replace("name = 'Mass-spring'", "name = 'rest'");
+    case(
+        &same,
+        "size = [640, 360]",
+        "ghost = 'rest'",
+        &[(20, 9, "means the rest shape, but `run[1]` has this name, too")],
+    );
+}
+
+#[test]
+fn paths_and_points_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = |view: &str, csv: &str| {
+        std::fs::write(folder.path().join("camera.csv"), csv).expect("a file");
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, PLANE.replace("[view]\n", &format!("[view]\n{view}\n"))).expect("a file");
+        Scene::load(&path, &Limits::default())
+    };
+    let csv = "time,x,y\n0,1,2\n0.5,3,4\n";
+    let points = "paths = ['centre', 3]\npoints = { file = 'camera.csv', run = 'Mass-spring' }";
+    let good = scene(points, csv).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(good.view.paths, [Traced::Centre, Traced::Node(3)]);
+    let read = good.view.points.as_ref().expect("points");
+    assert_eq!((read.run, read.samples.len(), read.samples[1].1.y), (Some(1), 2, 4.0));
+    // What is in the file counts, not its name.
+    let other = scene(points, &csv.replace('4', "5")).unwrap_or_else(|error| panic!("{error}"));
+    assert_ne!(good.digest, other.digest);
+    std::fs::copy(folder.path().join("camera.csv"), folder.path().join("copy.csv")).expect("a file");
+    let same = scene(&points.replace("camera", "copy"), "").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(same.digest, other.digest);
+    for (view, csv, column, expected) in [
+        ("paths = ['middle']", csv, 10, "\"middle\""),
+        ("paths = [0, 4]", csv, 13, "there is no node 4; the body has 4, counted from 0"),
+        ("paths = ['centre']\nexplode = 1", csv, 1, "so `paths` cannot be shown"),
+        ("points = { file = 'camara.csv' }", csv, 19, "is not there"),
+        ("points = { file = 'camera.csv' }", "time,x,y\n0,1,b\n", 19, "has \"b\" as `y` in line 2"),
+        (
+            "points = { file = 'camera.csv' }",
+            "time,x,y,z\n0,1,2,3\n",
+            19,
+            "has a column `z`, but the body is in the plane",
+        ),
+        (
+            "points = { file = 'camera.csv' }",
+            "time,x,y\n5,1,2\n7,1,2\n",
+            19,
+            "from 5 s to 7 s, the scene goes from 0 to 3 s",
+        ),
+        ("points = { file = 'camera.csv', run = 'Mass' }", csv, 39, "there is no run \"Mass\""),
+    ] {
+        let error = scene(view, csv).expect_err(view);
+        let [found] = error.mistakes() else { panic!("{error}") };
+        assert_eq!((found.line, found.column), (20, column), "{error}");
+        assert!(found.message.contains(expected), "{error}");
+    }
 }

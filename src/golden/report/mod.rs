@@ -4,6 +4,8 @@
 //! overall verdict is plain HTML, so that it can be read without scripts.
 
 use super::states::RunDifference;
+use crate::colour::written;
+use crate::look::{LineStyle, Palette, Theme};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Serialize, Serializer};
@@ -13,6 +15,9 @@ use std::fmt::Write;
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = concat!(include_str!("strip.js"), include_str!("page.js"));
+
+/// So many runs have lines of their own; those of more begin again.
+const MOST_RUNS: usize = 64;
 
 /// The colours of a picture of differences: along silhouettes, elsewhere, and for differences that are not visible.
 pub(super) const SILHOUETTE: [u8; 3] = [230, 159, 0];
@@ -42,6 +47,8 @@ pub struct Report {
     pub runs: Vec<RunDifference>,
     /// The pictures in the order of the sequence.
     pub pictures: Vec<PicturePair>,
+    /// The index of the picture that is shown first.
+    pub first: usize,
 }
 
 /// An actual picture and the expected one.
@@ -91,7 +98,7 @@ impl Report {
     /// The whole HTML document.
     pub fn page(&self) -> String {
         // Browsers hash the text between the tags with LF line ends.
-        let [style, script] = [STYLE, SCRIPT].map(|text| text.replace("\r\n", "\n"));
+        let [style, script] = [&run_styles(), SCRIPT].map(|text| text.replace("\r\n", "\n"));
         // Only these scripts and styles are executed, whatever the names of files and runs contain.
         let policy = format!(
             "default-src 'none'; img-src data:; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
@@ -157,6 +164,23 @@ impl Report {
         }
         html
     }
+}
+
+/// The style of the page, with the colours and the dashes that runs have in pictures.
+fn run_styles() -> String {
+    let of = |theme| {
+        let palette = Palette::of(theme);
+        let rule = |run: usize| {
+            let LineStyle { colour, dash } = palette.line(run, None);
+            let dash: Vec<_> = dash.iter().map(f64::to_string).collect();
+            let (place, colour, dash) = (run + 1, written(colour), dash.join(" "));
+            let dash = if dash.is_empty() { "none" } else { &dash };
+            format!(".run-{place} {{ stroke: {colour}; stroke-dasharray: {dash}; }}\n")
+        };
+        (0..MOST_RUNS).map(rule).collect::<String>()
+    };
+    let [light, dark] = [Theme::Light, Theme::Dark].map(of);
+    format!("{STYLE}\n{light}@media (prefers-color-scheme: dark) {{\n{dark}}}\n")
 }
 
 /// The legend of a picture of differences.

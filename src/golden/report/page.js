@@ -321,7 +321,7 @@
   if (pictures.length === 0) return;
   list.size = clamp(pictures.length, 2, 12);
   setMode(mode);
-  at = Math.max(pictures.findIndex(hasFailed), 0);
+  at = report.first;
   filter(false);
   recall();
   addEventListener("hashchange", recall);

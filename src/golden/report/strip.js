@@ -40,9 +40,12 @@ function showSequence({ runs, pictures }, choose) {
   function state({ moved, displacement }, precision) {
     if (!moved) return { lane: "same", words: "same state" };
     if (!displacement) return { lane: "unknown", words: "moved, distance unknown" };
-    const { distance, node } = displacement;
-    if (distance > precision)
-      return { power: Math.log10(distance), words: `moved by ${metres(distance)} (node ${node})` };
+    const { distance, node, of_shape: left } = displacement;
+    if (distance > precision) {
+      const fitted = left <= precision ? "nothing" : metres(left);
+      const words = `moved by ${metres(distance)} (node ${node}), after the best rigid fit by ${fitted}`;
+      return { power: Math.log10(distance), words };
+    }
     const words = precision > 0 ? `moved by less than ${metres(precision)}` : "another state, no node displaced";
     return { lane: "below", words };
   }
@@ -141,7 +144,7 @@ function showSequence({ runs, pictures }, choose) {
       return line;
     });
     draw("path", { d: area, class: "alarm-area" });
-    lines.forEach((d, run) => draw("path", { d, class: `run ${look(run)}` }));
+    lines.forEach((d, run) => draw("path", { d, class: look(run) }));
     return base;
   }
 
@@ -169,8 +172,8 @@ function showSequence({ runs, pictures }, choose) {
     return base;
   }
 
-  /** Four colours and three dash patterns distinguish twelve runs. */
-  const look = (run) => `run-${(run % 4) + 1} dash-${(run % 3) + 1}`;
+  /** The colours and dashes of runs are those of pictures, which have as many. */
+  const look = (run) => `run run-${(run % 64) + 1}`;
 
   /** Writes out the column below the pointer, or else the chosen one. */
   function point(at = null) {
@@ -182,7 +185,7 @@ function showSequence({ runs, pictures }, choose) {
     the("reading").textContent = `${when}  ·  ${pixels}`;
     const ofRuns = runs.map(({ run }, at) => `${run}: ${states[at]}`);
     ofRuns.forEach((words, run) => {
-      the("runs").children[run].textContent = words;
+      the("runs").children[run].lastChild.textContent = words;
     });
     strip.setAttribute("aria-valuetext", [when, ...ofRuns, pixels].join("  ·  "));
   }
@@ -217,7 +220,8 @@ function showSequence({ runs, pictures }, choose) {
   the("aside").hidden = left === 0;
   the("aside").textContent = `Not shown here: ${plural(left, "picture")} without a frame number.`;
   runs.forEach((_, run) => {
-    the("runs").appendChild(document.createElement("li")).className = look(run);
+    const sample = `<svg aria-hidden="true"><line x2="40" y1="4" y2="4" class="${look(run)}" /></svg>`;
+    the("runs").appendChild(document.createElement("li")).innerHTML = `${sample}<span></span>`;
   });
   point();
   new ResizeObserver(() => requestAnimationFrame(drawCharts)).observe(svg);

@@ -1,9 +1,12 @@
 //! Composes pictures. Each panel starts as a [`Draft`], whose parts are in separate files.
 
 mod body;
+mod difference;
 mod figure;
+mod ghost;
 mod ground;
 mod panel;
+mod paths;
 mod region;
 
 use super::arrows;
@@ -12,7 +15,7 @@ use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
-use super::legend::{Bar, Legend};
+use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::plane::LEVEL;
 use super::shell::Shell;
 use super::skin::Skin;
@@ -22,14 +25,15 @@ use super::text::{Fonts, Weight};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
-use crate::history::History;
+use crate::history::{History, TimeSeries};
 use crate::look::ramp::ramp;
-use crate::look::{LineStyle, Palette, StrainScale};
+use crate::look::{ColourMap, Ghost, LineStyle, Palette, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
+use difference::Compared;
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
@@ -87,6 +91,9 @@ pub struct Composer<'a> {
     soft: f64,
     /// The curves below the panels, once the time series are set.
     strips: Option<Strips>,
+    /// The difference of two runs over time, and the paths of all runs, likewise.
+    course: Option<difference::Course>,
+    traced: Vec<TimeSeries>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -100,8 +107,8 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
-    /// places stay empty.
+    /// A scene with strips ([`crate::look::View::strip`]), paths or a difference needs [`Composer::set_history`], too; without it
+    /// their places stay empty.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
     }
@@ -139,9 +146,12 @@ impl<'a> Composer<'a> {
         let skin = Skin::new(body, &ears);
         let bare = bare_elements(body);
         let visible = scene.view.visible;
+        let map = scene.view.colour.map(|scale| scale.map);
+        // Fields and differences share one scale of colours.
+        let map = map.or(scene.view.difference.map(|_| ColourMap::default()));
         Self {
             scene,
-            ramp: scene.view.colour.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
+            ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
             spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
@@ -160,24 +170,30 @@ impl<'a> Composer<'a> {
             start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             strips: None,
+            course: None,
+            traced: Vec::new(),
             grips,
             exploded,
         }
     }
 
-    /// Sets the time series for the strips below the panels: those of all runs to be shown, over the whole scene. Scenes
-    /// without strips do not need them.
+    /// Sets the time series for the strips below the panels, for paths and for a difference: those of all runs to be shown, over
+    /// the whole scene. Other scenes do not need them.
     pub fn set_history(&mut self, history: &History) {
         self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
+        self.course = self.scene.view.difference.map(|_| difference::Course::new(history));
+        self.traced = if self.scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
     }
 
     /// Composes one frame.
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let legend = self.legend(frame.runs.len());
-        let caption = self.caption(frame.runs.len());
-        let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
+        let compared = self.compared(frame);
+        let panels = frame.runs.len() + usize::from(compared.is_some());
+        let legend = self.legend(panels);
+        let caption = self.caption(panels);
+        let layout = Layout::new(view, panels, legend.map_or(0, |legend| legend.height), caption.len());
         let legend = legend.filter(|_| layout.has_legend);
         let (scale, framing) = (layout.scale, self.framing(frame));
         let (marks, curves, words) = Default::default();
@@ -185,6 +201,13 @@ impl<'a> Composer<'a> {
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, &layout, &framing, &mut writer);
+        let place = layout.panels.get(frame.runs.len()).map(|place| (place.viewport, place.strip));
+        let compared = compared.as_ref().zip(place);
+        if let Some((compared, place)) = compared {
+            let has_clock = view.labels.clock && self.clock(&layout) == frame.runs.len();
+            let time = has_clock.then_some(frame.time);
+            self.write_difference(compared, place, frame.runs.len(), time, &mut writer);
+        }
         if let Some(strips) = &self.strips {
             for (place, run) in layout.panels.iter().zip(&frame.runs) {
                 place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
@@ -196,14 +219,28 @@ impl<'a> Composer<'a> {
         writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
         if let Some((legend, place)) = legend.zip(layout.panels.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
-            let bars = self.bars(frame);
-            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &bars);
+            let bars = self.bars(frame, compared.map(|(compared, _)| compared));
+            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
         let Writer { marks: above, curves, mut words, .. } = writer;
         let (mut under, mut marks) = (Vec::new(), hairlines);
-        let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
+        let mut ghosts = Vec::new();
+        let draft = |(place, run)| {
+            let draft = Draft::new(self, place, run, &framing, scale);
+            let room = draft.between_words();
+            draft.ghost(&frame.runs, room, &mut ghosts);
+            draft.paths(&self.traced, room, &mut ghosts);
+            let panel = draft.panel(&mut under, &mut marks);
+            draft.points(room, &mut marks);
+            panel
+        };
         let viewports = layout.panels.iter().map(|place| place.viewport);
-        let panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
+        let mut panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
+        if let Some((compared, place)) = compared {
+            let marks = [&mut under, &mut marks];
+            panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
+        }
+        let curves = [ghosts, curves].concat();
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
@@ -237,8 +274,7 @@ impl<'a> Composer<'a> {
     fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, writer: &mut Writer<'_>) {
         let view = &self.scene.view;
         let labels = view.labels;
-        // One clock, upper right.
-        let clock = view.columns.clamp(1, layout.panels.len().max(1)) - 1;
+        let clock = self.clock(layout);
         for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let viewport = place.viewport;
             let has_clock = labels.clock && at == clock;
@@ -276,14 +312,21 @@ impl<'a> Composer<'a> {
         }
     }
 
+    /// The panel with the only clock, upper right.
+    fn clock(&self, layout: &Layout) -> usize {
+        self.scene.view.columns.clamp(1, layout.panels.len().max(1)) - 1
+    }
+
     /// The line that stands for a run in strips and among arrows, if there are any.
     fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
         let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
-        (view.legend && (has_strip || has_arrows)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
+        let has_ghost =
+            matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
+        (view.legend && (has_strip || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
             let line = run.line(&self.palette);
             // Arrows are solid.
-            if has_strip { line } else { LineStyle { dash: &[], ..line } }
+            if has_strip || has_ghost { line } else { LineStyle { dash: &[], ..line } }
         })
     }
 
@@ -308,15 +351,28 @@ impl<'a> Composer<'a> {
     /// The key of colours and arrows, if there are any.
     fn legend(&self, runs: usize) -> Option<Legend> {
         let view = &self.scene.view;
-        let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-        if !view.legend || !view.visible.displacements && bars == 0 {
+        let bars = [view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()];
+        let bars = bars.into_iter().filter(|&is_shown| is_shown).count();
+        let (arrow, samples) = (view.visible.displacements, self.samples().len());
+        if !view.legend || !arrow && samples + bars == 0 {
             return None;
         }
-        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), view.visible.displacements, bars)
+        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), arrow, samples, bars)
+    }
+
+    /// What lines and marks mean.
+    fn samples(&self) -> Vec<Sample<'_>> {
+        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), colour, kind: SampleKind::Ghost });
+        let path = Some(self.path_name()).filter(|name| !name.is_empty());
+        let colour = self.palette.text;
+        let path = path.map(|name| Sample { name: name.into(), colour, kind: SampleKind::Path });
+        let points = self.scene.view.points.as_ref();
+        let points = points.map(|_| Sample { name: "measured".into(), colour, kind: SampleKind::Ring });
+        ghost.into_iter().chain(path).chain(points).collect()
     }
 
     /// The scales of colours in a frame.
-    fn bars(&self, frame: &Frame) -> Vec<Bar<'_>> {
+    fn bars(&self, frame: &Frame, compared: Option<&Compared<'_>>) -> Vec<Bar<'_>> {
         let view = &self.scene.view;
         let of_field = view.colour.as_ref().map(|colour| {
             let values = frame.runs.iter().flat_map(|run| &run.snapshot.field).copied();
@@ -331,7 +387,11 @@ impl<'a> Composer<'a> {
             });
             Bar::new(["spring strain", ""], range, &self.spring_ramp, strains)
         });
-        of_field.into_iter().chain(of_springs).collect()
+        let of_difference = view.difference.map(|_| {
+            let values = self.distances(compared).iter().copied();
+            Bar::new(["distance", "m"], self.distance_scale().range, &self.ramp, values)
+        });
+        of_field.into_iter().chain(of_springs).chain(of_difference).collect()
     }
 
     /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and

@@ -1,7 +1,7 @@
 //! Composes one panel from its parts.
 
 use super::Composer;
-use crate::look::FloorStyle;
+use crate::look::{ColourScale, FloorStyle};
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
 use crate::picture::field::{self, NOWHERE, Shades};
@@ -113,6 +113,13 @@ impl<'a> Draft<'a> {
             diverged: matches!(run.snapshot.status, Status::Diverged(_)),
             lens,
         }
+    }
+
+    /// Colours the body by a number at each node instead of the field of its scene.
+    pub(super) fn colour_by(&mut self, scale: &ColourScale, values: &[f64]) {
+        let shades = Shades::new(self.body, scale, values);
+        self.of_nodes = shades.of_nodes(self.body);
+        self.shades = Some(shades);
     }
 
     /// Draws the panel, with flat marks below and above the bodies.
@@ -317,6 +324,12 @@ impl<'a> Draft<'a> {
     pub(super) fn clear_of_words(&self) -> Rectangle {
         let view = &self.scene.view;
         layout::clear_of_words(self.viewport, self.scale, layout::rooms(view))
+    }
+
+    /// The same as wide as the panel.
+    pub(super) fn between_words(&self) -> Rectangle {
+        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear_of_words());
+        [left, top, width, height]
     }
 
     /// A point (m) as the panel has it.

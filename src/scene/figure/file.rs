@@ -2,6 +2,7 @@
 //! say, and the schema made from these types is what files are checked against.
 
 use crate::look::Theme;
+use crate::look::file::ColourFile;
 use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,6 +62,9 @@ pub(super) struct SheetFile {
     pub(super) strips: Vec<Diagnostic>,
     /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
+    /// A scalar field that colours all bodies, such as `{ by = "strain" }`, with one colour bar. Its default range goes from zero to
+    /// the largest estimate of all scenes. Default: the field of the scenes, if all have the same.
+    pub(super) colour: Option<ColourFile>,
     /// Start of the time axis (s), not after any moment shown. Default: 0.
     #[schemars(range(min = 0.0))]
     pub(super) from: Option<f64>,

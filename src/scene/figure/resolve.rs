@@ -1,7 +1,8 @@
 //! Resolves a figure: reads its scenes, and finds the runs and moments that it names.
 
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
-use super::{Column, Content, Figure, Forces, Row, Sheet, look};
+use super::{Column, Content, Figure, Forces, Row, Sheet};
+use crate::look::{self, Subject};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::list;
 use crate::scene::structure::Checked;
@@ -44,7 +45,7 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let look = look(first, file.theme, file.text_scale);
+    let look = super::look(first, file.theme, file.text_scale);
     Ok(Some(Figure {
         name: name.to_owned(),
         title: file.title.unwrap_or_default(),
@@ -153,6 +154,12 @@ impl Scenes<'_, '_, '_> {
         let rows = rows.into_iter().map(row).collect();
         let Self { report, mut scenes, .. } = self;
         share_lines(&mut scenes);
+        if let Some(typed) = &file.colour {
+            let subjects: Vec<_> = scenes.iter().map(subject).collect();
+            let way = [Way::Key("sheet"), Way::Key("colour"), Way::Key("range")];
+            let scale = look::colour(typed, &subjects, &way, report);
+            scenes.iter_mut().for_each(|scene| scene.view.colour = scale);
+        }
         let sheet = Sheet {
             scenes,
             columns: resolved,
@@ -302,6 +309,22 @@ impl Scenes<'_, '_, '_> {
         share_lines(&mut scenes);
         let forces = Forces { scenes, notes, compare: compare.flatten(), vectors: file.vectors, numbers };
         Ok((report.total() == before).then_some(forces))
+    }
+}
+
+/// What views of a scene depend on.
+fn subject(scene: &Scene) -> Subject<'_> {
+    Subject {
+        body: &scene.body,
+        initial: &scene.initial,
+        side: scene.view.side,
+        has_cells: scene.view.has_cells,
+        gravity: scene.gravity,
+        obstacles: &scene.obstacles,
+        grips: &scene.grips,
+        duration: scene.duration,
+        runs: scene.runs.iter().map(|run| (run.name.as_str(), run.step)).collect(),
+        models: scene.runs.iter().map(|run| &*run.model).collect(),
     }
 }
 

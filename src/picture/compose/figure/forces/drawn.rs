@@ -1,7 +1,7 @@
 //! A cell of a diagram of forces, drawn: the body, the rest shape behind it, arrows, vectors and numbers.
 
 use super::cell::Cell;
-use super::marks::{GHOST_LINE, ghost_colour, line, outlined};
+use super::marks::{GHOST_LINE, ghost_colour, outlined};
 use crate::colour::Colour;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
@@ -127,7 +127,7 @@ impl<'a> Drawn<'a> {
                 if also_inside || !polygons.iter().any(|polygon| is_inside(polygon, middle)) {
                     let palette = &self.figure.look.palette;
                     let colour = if also_inside { palette.second_text } else { palette.axis };
-                    marks.push(line(ends, GHOST_LINE * self.scale.line(), colour));
+                    marks.push(Mark::line(ends, GHOST_LINE * self.scale.line(), colour));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The key of a diagram of forces.
 
-use super::marks::{GHOST_LINE, ghost_colour, line, outlined};
+use super::marks::{GHOST_LINE, ghost_colour, outlined};
 use crate::picture::Mark;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
@@ -77,7 +77,7 @@ impl Key<'_> {
             let ends = [corners[at], corners[(at + 1) % 4]];
             for part in [[0.0, 0.2], [0.4, 0.6], [0.8, 1.0]] {
                 let dash = part.map(|share| ends[0].lerp(ends[1], share));
-                marks.push(line(dash, GHOST_LINE * scale.line(), palette.axis));
+                marks.push(Mark::line(dash, GHOST_LINE * scale.line(), palette.axis));
             }
         }
         left = say("rest shape, best fit", left + icon + gap, writer) + 3.0 * gap;

@@ -2,10 +2,9 @@
 
 use crate::colour::{Colour, mixed};
 use crate::look::Palette;
+use crate::picture::Mark;
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::layout::Scale;
-use crate::picture::narrow::narrow;
-use crate::picture::{Mark, MarkShape};
 use glam::DVec2;
 
 /// Opacity of the rest shape, and of the inside and the outline of arrows to compare with.
@@ -25,7 +24,7 @@ pub(super) fn ghost_colour(palette: &Palette) -> Colour {
 pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: Colour) -> Vec<Mark> {
     let points = outline(ends, HEAD * scale.line());
     let edge = mixed(ground, colour, OUTLINE_ALPHA);
-    let sides = points.windows(2).map(|two| line([two[0], two[1]], OUTLINE * scale.line(), edge));
+    let sides = points.windows(2).map(|two| Mark::line([two[0], two[1]], OUTLINE * scale.line(), edge));
     std::iter::once(arrow(ends, scale.line(), mixed(ground, colour, COMPARED), ground)).chain(sides).collect()
 }
 
@@ -47,15 +46,6 @@ fn outline([from, to]: [DVec2; 2], width: f64) -> Vec<DVec2> {
     let mut points: Vec<_> = half.iter().copied().chain(other).map(at).collect();
     points.push(points[0]);
     points
-}
-
-/// A straight line with smooth borders.
-pub(super) fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Mark {
-    let along = (to - from).try_normalize().unwrap_or(DVec2::X);
-    // The border of the mark is a pixel wide, half of it outside.
-    let corner = from - 0.5 * along - 0.5 * (thickness + 1.0) * along.perp();
-    let rectangle = [corner.x, corner.y, from.distance(to) + 1.0, thickness + 1.0];
-    Mark { along: along.to_array().map(narrow), ..Mark::upright(rectangle, MarkShape::Smooth, colour) }
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ mod plan;
 mod rows;
 
 use super::header;
-use crate::look::{Labels, View};
+use crate::look::{Ghost, Labels, View};
 use crate::moments::Moments;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
@@ -60,7 +60,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let header = header::write(&mut writer, figure, &below::key(&scenes));
     let legend = legend(&scenes, size, scale);
     let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &writer, f64::from(size[0])));
-    let labels = RowLabels::new(sheet, &fonts, scale, charts.is_some(), f64::from(size[0]));
+    let with_sample = charts.is_some() || scenes.iter().any(|scene| matches!(scene.view.ghost, Some(Ghost::Run(_))));
+    let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
     let plan = Plan::new(sheet, &writer, [size[0], bottom], header, labels.width, charts.as_ref());
     labels.write(&mut writer, &plan, sheet);
@@ -93,7 +94,14 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let bars = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.bars(&bars));
+        legend.draw(
+            &mut writer,
+            f64::from(size[0]),
+            f64::from(bottom),
+            arrow,
+            &first.samples(),
+            &first.bars(&bars, None),
+        );
     }
 
     let Writer { marks: above, mut curves, mut words, .. } = writer;
@@ -102,6 +110,9 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         for (column, run) in cells.iter().enumerate() {
             let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
             let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
+            let [left, top, width, height] = draft.viewport;
+            let room = [left, top, width, height - (plan.below_body.ceil() as u32).min(height)];
+            draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width do not show.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
@@ -130,7 +141,8 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.look = figure.look.clone();
         view.labels = Labels::default();
         view.scale_bar = false;
-        view.strip = None;
+        (view.strip, view.difference) = (None, None);
+        (view.paths, view.points) = (Vec::new(), None);
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         view.spring_strain = view.spring_strain.filter(|_| is_shared);
@@ -162,6 +174,7 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
 fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
     let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-    let any = view.legend && (view.visible.displacements || bars > 0);
-    any.then(|| Legend::new(size, scale, view.visible.displacements, bars)).flatten()
+    let (arrow, samples) = (view.visible.displacements, usize::from(view.ghost.is_some()));
+    let any = view.legend && (arrow || samples + bars > 0);
+    any.then(|| Legend::new(size, scale, arrow, samples, bars)).flatten()
 }

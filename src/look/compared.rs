@@ -1,0 +1,157 @@
+//! Resolves what bodies are compared with: ghosts, differences, their own paths, and points measured elsewhere.
+
+use super::file::{DifferenceOfFile, PathFile, PathPointFile, PointsFile, ViewFile};
+use super::points::PointsRead;
+use super::subject::Subject;
+use super::view::{Difference, Ghost, Points, Traced};
+use crate::reading::report::{Report, Way};
+use crate::reading::words::{list, nearest, quoted, short};
+use crate::sim::body::Dimension;
+
+/// What a ghost of the rest shape is called.
+const REST: &str = "rest";
+
+/// What is outlined over each body; `None` also after a mistake.
+pub(super) fn ghost(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
+    let name = typed.ghost.as_deref()?;
+    let path = [Way::Key("view"), Way::Key("ghost")];
+    check_whole(typed, "ghost", report);
+    let run = scene.runs.iter().position(|(known, _)| *known == name);
+    match run {
+        Some(at) if name == REST => {
+            let message = format!("\"{REST}\" means the rest shape, but `run[{at}]` has this name, too");
+            report.at(&path, message, "give the run another name".to_owned());
+            None
+        }
+        None if name == REST => Some(Ghost::Rest),
+        _ => {
+            let run = run.or_else(|| unknown(name, &[REST], &path, scene, report))?;
+            let other = scene.runs.iter().position(|(_, step)| *step != scene.runs[run].1);
+            if let Some(other) = other {
+                other_steps([run, other], &path, scene, report);
+            }
+            Some(Ghost::Run(run))
+        }
+    }
+}
+
+/// The runs whose difference is shown; `None` also after a mistake.
+pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Difference> {
+    let key = |key| [Way::Key("view"), Way::Key(key)];
+    let Some(names) = &typed.difference else {
+        if typed.difference_of.is_some() {
+            let message = "`view.difference_of` is given, but no `view.difference`".to_owned();
+            report.at_key(&key("difference_of"), message, "name two runs there, or remove it".to_owned());
+        }
+        return None;
+    };
+    check_whole(typed, "difference", report);
+    let mut find = |at: usize| {
+        let path = [Way::Key("view"), Way::Key("difference"), Way::Index(at)];
+        let run = scene.runs.iter().position(|(known, _)| *known == names[at]);
+        run.or_else(|| unknown(&names[at], &[], &path, scene, report))
+    };
+    let (one, other) = (find(0), find(1));
+    let runs = [one?, other?];
+    if runs[0] == runs[1] {
+        let message = format!("{} is compared with itself", quoted(&names[0]));
+        report.at(&key("difference"), message, "name two different runs".to_owned());
+        return None;
+    }
+    if scene.runs[runs[0]].1 != scene.runs[runs[1]].1 {
+        other_steps(runs, &key("difference"), scene, report);
+    }
+    Some(Difference { runs, after_fit: typed.difference_of == Some(DifferenceOfFile::Shapes) })
+}
+
+/// What leaves a path; empty also after a mistake.
+pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
+    let Some(paths) = &typed.paths else { return Vec::new() };
+    check_whole(typed, "paths", report);
+    let nodes = scene.body.len();
+    let one = |(at, path): (usize, &PathFile)| match *path {
+        PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
+        PathFile::Node(node) if (node as usize) < nodes => Some(Traced::Node(node)),
+        PathFile::Node(node) => {
+            let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
+            let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
+            report.at(&path, message, None);
+            None
+        }
+    };
+    paths.iter().enumerate().filter_map(one).collect()
+}
+
+/// Points that were measured elsewhere, if they fit the scene.
+pub(super) fn points(
+    typed: &ViewFile,
+    read: PointsRead,
+    scene: &Subject<'_>,
+    report: &mut Report<'_>,
+) -> Option<Points> {
+    let PointsFile { file, run } = typed.points.as_ref()?;
+    let at = |key| [Way::Key("view"), Way::Key("points"), Way::Key(key)];
+    match (scene.body.dimension, read.has_z) {
+        (Dimension::Space, false) => {
+            let message = format!("`{file}` has no column `z`, but the body is in space");
+            report.at(&at("file"), message, "add the third coordinate".to_owned());
+        }
+        (Dimension::Plane, true) => {
+            let message = format!("`{file}` has a column `z`, but the body is in the plane");
+            report.at(&at("file"), message, "remove it".to_owned());
+        }
+        _ => {}
+    }
+    if let (Some((first, _)), Some((last, _))) = (read.samples.first(), read.samples.last())
+        && (*first > scene.duration || *last < 0.0)
+    {
+        let [first, last, end] = [*first, *last, scene.duration].map(short);
+        let message = format!(
+            "the points of `{file}` were measured from {first} s to {last} s, the scene goes from 0 to {end} s"
+        );
+        report.at(&at("file"), message, "let their times count from the start of the scene".to_owned());
+    }
+    let run = match run {
+        None => None,
+        Some(name) => {
+            let known = scene.runs.iter().position(|(known, _)| known == name);
+            Some(known.or_else(|| unknown(name, &[], &at("run"), scene, report))?)
+        }
+    };
+    Some(Points { run, samples: read.samples })
+}
+
+/// Reports that a key is used where elements are drawn apart.
+fn check_whole(typed: &ViewFile, key: &'static str, report: &mut Report<'_>) {
+    if typed.explode > 0.0 {
+        let message = format!("`view.explode` draws elements apart, so `{key}` cannot be shown");
+        report.at_key(&[Way::Key("view"), Way::Key(key)], message, format!("remove `explode` or `{key}`"));
+    }
+}
+
+/// Reports a run that is not there, unless there are mistakes in the runs themselves.
+fn unknown<T>(name: &str, more: &[&str], path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<T> {
+    if scene.runs.is_empty() {
+        return None;
+    }
+    let known: Vec<&str> = scene.runs.iter().map(|(name, _)| *name).chain(more.iter().copied()).collect();
+    let help = match nearest(name, &known) {
+        Some(name) => format!("did you mean {}?", quoted(name)),
+        None => format!("expected {}", list(&known, "or", quoted)),
+    };
+    report.at(path, format!("there is no run {}", quoted(name)), help);
+    None
+}
+
+/// Reports runs with different steps: their frames show different moments.
+fn other_steps(runs: [usize; 2], path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) {
+    let [(one, step), (other, other_step)] = runs.map(|run| scene.runs[run]);
+    let message = format!(
+        "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
+        quoted(one),
+        short(step),
+        quoted(other),
+        short(other_step)
+    );
+    report.at(path, message, "give the runs that are compared the same `step`".to_owned());
+}

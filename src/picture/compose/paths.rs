@@ -1,0 +1,187 @@
+//! Paths of bodies up to the present moment, and points that were measured elsewhere.
+
+use super::Composer;
+use super::panel::Draft;
+use crate::history::TimeSeries;
+use crate::look::Traced;
+use crate::picture::chart::dot;
+use crate::picture::layout::Rectangle;
+use crate::picture::narrow::narrow;
+use crate::picture::plane::{clipped, sides};
+use crate::picture::series::{EXACT, simplified};
+use crate::picture::{Curve, Mark, MarkShape};
+use crate::sim::snapshot::Snapshot;
+use glam::{DVec2, DVec3};
+
+/// Widths of the paths of the centre and of a node, and how much wider their halo is (px in the reference picture), and its
+/// opacity.
+const CENTRE: f64 = 2.2;
+const NODE: f64 = 1.4;
+const HALO: f64 = 2.0;
+const HALO_ALPHA: f64 = 0.6;
+/// Radius of the dot at the end of a path, in widths.
+const DOT: f64 = 1.7;
+/// Radius of a measured point of the present moment and of earlier ones (px in the reference picture), and their opacity.
+const RING: f64 = 5.0;
+const PAST: f64 = 2.0;
+const PAST_ALPHA: f64 = 0.6;
+
+impl Composer<'_> {
+    /// What the paths are called in the key; empty if there are none.
+    pub(super) fn path_name(&self) -> String {
+        let paths = &self.scene.view.paths;
+        let nodes = paths.iter().filter(|traced| **traced != Traced::Centre).count();
+        match (nodes < paths.len(), nodes) {
+            (false, 0) => String::new(),
+            (true, 0) => "path of the centre".to_owned(),
+            (false, 1) => "path of a node".to_owned(),
+            (false, _) => "paths of nodes".to_owned(),
+            (true, _) => "paths".to_owned(),
+        }
+    }
+}
+
+impl Draft<'_> {
+    /// The paths up to the present moment inside a part of the picture, as far as the time series of the run is known.
+    pub(super) fn paths(&self, series: &[TimeSeries], room: Rectangle, curves: &mut Vec<Curve>) {
+        let snapshot = &self.run.snapshot;
+        let own = series.iter().find(|series| series.run == self.run.run);
+        let Some(own) = own.filter(|_| snapshot.position.len() == self.body.len()) else { return };
+        let (colour, halo) =
+            (self.scene.runs[self.run.run].line(&self.composer.palette).colour, self.composer.palette.halo);
+        for (traced, path) in self.scene.view.paths.iter().zip(&own.paths) {
+            let width = if *traced == Traced::Centre { CENTRE } else { NODE };
+            let past = own.times.iter().take_while(|&&time| time < snapshot.time).count();
+            let now = traced.of(&self.scene.body, &snapshot.position);
+            let way = path.iter().take(past).copied().chain([now]);
+            let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
+            let pieces: Vec<_> = lines.iter().flat_map(|line| parted(simplified(line, EXACT))).collect();
+            let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
+            for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {
+                let line = self.scale.line();
+                curves.extend(pieces.iter().map(|piece| Curve {
+                    points: piece.iter().map(|point| point.map(narrow)).collect(),
+                    width: narrow((width + more) * line),
+                    dash: Vec::new(),
+                    colour,
+                    alpha: narrow(alpha),
+                }));
+                curves.extend(last.map(|pixel| dot(pixel, (DOT * width + 0.75 * more) * line, colour)));
+            }
+        }
+    }
+
+    /// The points that were measured up to the present moment inside a part of the picture: rings where they are now, dots
+    /// where they were.
+    pub(super) fn points(&self, room: Rectangle, marks: &mut Vec<Mark>) {
+        let Some(points) = &self.scene.view.points else { return };
+        if points.run.is_some_and(|run| run != self.run.run) {
+            return;
+        }
+        let palette = &self.composer.palette;
+        let present = present(&points.samples, &self.run.snapshot, 0.5 / self.scene.frames_per_second);
+        for &(time, at) in points.samples.iter().take_while(|(time, _)| *time <= present.1) {
+            let Some(pixel) = self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel)) else { continue };
+            let is_now = Some(time) == present.0;
+            let radius = if is_now { RING } else { PAST } * self.scale.line();
+            if !holds(room, pixel) {
+                continue;
+            }
+            let disc = Mark::around(pixel, radius, MarkShape::Node, if is_now { palette.halo } else { palette.text });
+            let part = if is_now { 1.0 } else { PAST_ALPHA };
+            marks.extend(Mark { second: palette.text, ..disc }.faded(part));
+        }
+    }
+}
+
+/// The time of the points that are drawn as those of the present moment, if there are any, and up to when points are past
+/// (s). A time belongs to the present until the next one comes; the last one for as long as the one before it.
+fn present(samples: &[(f64, DVec3)], snapshot: &Snapshot, half_frame: f64) -> (Option<f64>, f64) {
+    let now = snapshot.time + half_frame;
+    let mut known: Vec<f64> = samples.iter().map(|(time, _)| *time).collect();
+    known.dedup();
+    let past = known.partition_point(|time| *time <= now);
+    let Some(last) = past.checked_sub(1) else { return (None, now) };
+    let before = last.checked_sub(1).map_or(2.0 * half_frame, |before| known[last] - known[before]);
+    let until = known.get(past).copied().unwrap_or(known[last] + before);
+    ((snapshot.time < until).then_some(known[last]), now)
+}
+
+fn holds(room: Rectangle, pixel: DVec2) -> bool {
+    let [left, top, right, bottom] = sides(room.map(f64::from));
+    (left..=right).contains(&pixel.x) && (top..=bottom).contains(&pixel.y)
+}
+
+/// A line, parted where it turns back on itself: the shader of curves joins pieces that go on in about the same direction.
+fn parted(line: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+    let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
+    for two in line.windows(2) {
+        let [from, to] = [two[0], two[1]].map(DVec2::from);
+        let turns_back = |piece: &[[f64; 2]]| {
+            let [.., before, last] = piece else { return false };
+            (DVec2::from(*last) - DVec2::from(*before)).normalize_or_zero().dot((to - from).normalize_or_zero()) < -0.5
+        };
+        match pieces.last_mut().filter(|piece| !turns_back(piece)) {
+            Some(piece) => piece.push(two[1]),
+            None => pieces.push(two.to_vec()),
+        }
+    }
+    pieces
+}
+
+/// The parts of a line in a rectangle (px). Points that no camera sees part it.
+fn within(points: impl Iterator<Item = Option<DVec2>>, room: Rectangle) -> Vec<Vec<[f64; 2]>> {
+    let edges = sides(room.map(f64::from));
+    let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
+    let (mut before, mut is_open): (Option<DVec2>, bool) = (None, false);
+    for point in points {
+        // A body that rests stays where it is.
+        if before == point {
+            continue;
+        }
+        if let (Some(from), Some(to)) = (before, point) {
+            match clipped(from, to - from, edges, [0.0, 1.0]) {
+                Some([begin, end]) => {
+                    let [first, last] = [begin, end].map(|share| from.lerp(to, share).to_array());
+                    match lines.last_mut().filter(|_| is_open && begin == 0.0) {
+                        Some(line) => line.push(last),
+                        None => lines.push(vec![first, last]),
+                    }
+                    is_open = end == 1.0;
+                }
+                None => is_open = false,
+            }
+        } else {
+            is_open = false;
+        }
+        before = point;
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_parted_where_they_leave() {
+        let points = [[5.0, 5.0], [15.0, 5.0], [5.0, 8.0], [5.0, 8.0], [6.0, 9.0]].map(|at| Some(DVec2::from(at)));
+        let lines = within(points.into_iter(), [0, 0, 10, 10]);
+        assert_eq!(lines, [vec![[5.0, 5.0], [10.0, 5.0]], vec![[10.0, 6.5], [5.0, 8.0], [6.0, 9.0]]]);
+        assert_eq!(within([points[0], None, points[4], points[3]].into_iter(), [0, 0, 10, 10]).len(), 1);
+    }
+
+    #[test]
+    fn lines_are_parted_where_they_turn_back() {
+        let line = vec![[5.0, 5.0], [5.0, 9.0], [5.001, 1.0], [9.0, 1.0]];
+        assert_eq!(parted(line), [vec![[5.0, 5.0], [5.0, 9.0]], vec![[5.0, 9.0], [5.001, 1.0], [9.0, 1.0]]]);
+        assert!(parted(vec![[1.0, 1.0]]).is_empty());
+    }
+
+    #[test]
+    fn points_are_of_the_present_until_the_next_ones() {
+        let samples: Vec<_> = [0.1, 0.1, 0.2].map(|time| (time, DVec3::ZERO)).into();
+        let at = |time: f64| present(&samples, &Snapshot { time, ..Snapshot::default() }, 0.01).0;
+        assert_eq!([0.05, 0.1, 0.15, 0.2, 0.28, 0.5].map(at), [None, Some(0.1), Some(0.1), Some(0.2), Some(0.2), None]);
+    }
+}

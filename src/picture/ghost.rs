@@ -1,0 +1,285 @@
+//! The outline of a body that is not drawn itself: dashed curves along the border of its projection.
+
+use super::Curve;
+use super::camera::Lens;
+use super::layout::{Rectangle, Scale};
+use super::narrow::narrow;
+use super::plane::{clipped, sides};
+use crate::colour::Colour;
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// Width of the outline and of its halo, and the lengths of its dashes and of the gaps between them (px in the reference
+/// picture).
+const WIDTH: f64 = 2.0;
+const HALO: f64 = 4.4;
+const HALO_ALPHA: f64 = 0.65;
+pub(super) const DASH: [f64; 2] = [6.5, 4.5];
+/// Edges are looked at in pieces of this length, and covered this far beside them on both sides they lie inside (px).
+const PIECE: f64 = 3.0;
+const BESIDE: f64 = 1.6;
+
+/// A triangulated surface seen by a camera.
+pub(super) struct Ghost<'a> {
+    pub(super) lens: &'a Lens,
+    /// The positions of nodes (m), the nodes of the surface, and its triangles as places among these.
+    pub(super) position: &'a [DVec3],
+    pub(super) nodes: &'a [u32],
+    pub(super) triangles: &'a [[u32; 3]],
+    /// The ends of the edges of elements without faces, as nodes.
+    pub(super) bars: &'a [[u32; 2]],
+    /// Nothing is drawn outside of it.
+    pub(super) room: Rectangle,
+}
+
+impl Ghost<'_> {
+    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
+    pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
+        let lines = [self.outline(), self.bars()].concat();
+        for (width, colour, alpha) in [(HALO, halo, HALO_ALPHA), (WIDTH, colour, 1.0)] {
+            let curve = |line: &Vec<DVec2>| Curve {
+                points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
+                width: narrow(width * scale.line()),
+                dash: dashes(line, scale.line()).map(narrow).to_vec(),
+                colour,
+                alpha: narrow(alpha),
+            };
+            curves.extend(lines.iter().map(curve));
+        }
+    }
+
+    /// The elements without faces (px).
+    fn bars(&self) -> Vec<Vec<DVec2>> {
+        let line = |ends: &[u32; 2]| {
+            let [from, to] = ends.map(|node| self.lens.project(self.position[node as usize]));
+            let [from, to] = [from?, to?].map(|(pixel, _)| DVec2::from(pixel));
+            let shares = clipped(from, to - from, sides(self.room.map(f64::from)), [0.0, 1.0])?;
+            Some(shares.map(|share| from.lerp(to, share)).to_vec())
+        };
+        self.bars.iter().filter_map(line).collect()
+    }
+
+    /// The border of the projection as lines, as long as possible (px). A closed line ends where it begins.
+    fn outline(&self) -> Vec<Vec<DVec2>> {
+        let pixels = self.nodes.iter().map(|&node| self.lens.project(self.position[node as usize]));
+        let Some(pixels) = pixels.map(|seen| Some(DVec2::from(seen?.0))).collect::<Option<Vec<_>>>() else {
+            return Vec::new();
+        };
+        let cover = Cover::new(self.room, self.triangles.iter().map(|corners| corners.map(|at| pixels[at as usize])));
+        let mut lines = Lines::default();
+        for [a, b] in self.turning_edges(&pixels) {
+            lines.add([a, b], [pixels[a as usize], pixels[b as usize]], &cover);
+        }
+        lines.joined(&pixels)
+    }
+
+    /// The edges at which the surface ends, or turns from facing the viewer to facing away.
+    fn turning_edges(&self, pixels: &[DVec2]) -> Vec<[u32; 2]> {
+        // For each edge, how many triangles face the viewer, and how many face away.
+        let mut edges: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
+        for corners in self.triangles {
+            let [a, b, c] = corners.map(|at| pixels[at as usize]);
+            let faces_away = usize::from((b - a).perp_dot(c - a) > 0.0);
+            for side in 0..3 {
+                let [from, to] = [corners[side], corners[(side + 1) % 3]];
+                edges.entry([from.min(to), from.max(to)]).or_default()[faces_away] += 1;
+            }
+        }
+        edges
+            .into_iter()
+            .filter(|(_, [towards, away])| towards + away == 1 || towards * away > 0)
+            .map(|(edge, _)| edge)
+            .collect()
+    }
+}
+
+/// Dashes and gaps along a line, such that a closed one has whole dashes (px).
+fn dashes(line: &[DVec2], unit: f64) -> [f64; 2] {
+    let dash = DASH.map(|length| length * unit);
+    let length: f64 = line.windows(2).map(|two| two[0].distance(two[1])).sum();
+    let period = dash[0] + dash[1];
+    if line.first() != line.last() || length < period {
+        return dash;
+    }
+    dash.map(|part| part * length / ((length / period).round() * period))
+}
+
+/// The pixels that a projection covers.
+struct Cover {
+    room: Rectangle,
+    is_covered: Vec<bool>,
+}
+
+impl Cover {
+    fn new(room: Rectangle, triangles: impl Iterator<Item = [DVec2; 3]>) -> Self {
+        let [left, top, width, height] = room;
+        let mut is_covered = vec![false; width as usize * height as usize];
+        let corner = DVec2::new(f64::from(left), f64::from(top));
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|at| at - corner);
+            let area = (b - a).perp_dot(c - a);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let range = |low: f64, high: f64, length: u32| {
+                let inside = |at: f64| at.clamp(0.0, f64::from(length)) as u32;
+                inside(low.floor())..inside(high.ceil())
+            };
+            for y in range(low.y, high.y, height) {
+                for x in range(low.x, high.x, width) {
+                    let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                    let is_left = |from: DVec2, to: DVec2| (to - from).perp_dot(at - from) * area >= 0.0;
+                    if is_left(a, b) && is_left(b, c) && is_left(c, a) {
+                        is_covered[(y * width + x) as usize] = true;
+                    }
+                }
+            }
+        }
+        Self { room, is_covered }
+    }
+
+    /// Whether the pixel at a place is covered, if it is in the room.
+    fn holds(&self, at: DVec2) -> bool {
+        let [left, top, width, height] = self.room;
+        let [x, y] = [at.x - f64::from(left), at.y - f64::from(top)];
+        let inside = x >= 0.0 && y >= 0.0 && x < f64::from(width) && y < f64::from(height);
+        inside && self.is_covered[(y as u32 * width + x as u32) as usize]
+    }
+}
+
+/// Pieces of edges on their way to longer lines.
+#[derive(Default)]
+struct Lines {
+    /// The ends of whole edges.
+    edges: Vec<[u32; 2]>,
+    /// Parts of others (px).
+    parts: Vec<Vec<DVec2>>,
+}
+
+impl Lines {
+    /// Adds what of an edge lies in the room and on the border.
+    fn add(&mut self, nodes: [u32; 2], [from, to]: [DVec2; 2], cover: &Cover) {
+        let way = to - from;
+        let length = way.length();
+        let Some([begin, end]) = clipped(from, way, sides(cover.room.map(f64::from)), [0.0, 1.0]) else { return };
+        if length <= 0.0 {
+            // Two nodes at one place: lines go on through it.
+            return self.edges.push(nodes);
+        }
+        let beside = BESIDE * way.perp() / length;
+        let count = (length * (end - begin) / PIECE).ceil().max(1.0) as usize;
+        let share = |at: usize| begin + (end - begin) * at as f64 / count as f64;
+        let is_border = |piece: usize| {
+            let middle = from + share(piece).midpoint(share(piece + 1)) * way;
+            !(cover.holds(middle + beside) && cover.holds(middle - beside))
+        };
+        let on_border: Vec<_> = (0..count).map(is_border).collect();
+        if [begin, end] == [0.0, 1.0] && !on_border.contains(&false) {
+            return self.edges.push(nodes);
+        }
+        let mut first = 0;
+        for pieces in on_border.chunk_by(|one, other| one == other) {
+            if pieces[0] {
+                self.parts.push([first, first + pieces.len()].map(|at| from + share(at) * way).to_vec());
+            }
+            first += pieces.len();
+        }
+    }
+
+    /// All of them, with whole edges joined at their nodes.
+    fn joined(self, pixels: &[DVec2]) -> Vec<Vec<DVec2>> {
+        let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (edge, nodes) in self.edges.iter().enumerate() {
+            nodes.iter().for_each(|&node| at_node.entry(node).or_default().push(edge));
+        }
+        let mut is_taken = vec![false; self.edges.len()];
+        let mut follow = |start: u32| {
+            let (mut line, mut node) = (vec![pixels[start as usize]], start);
+            while let Some(&edge) = at_node[&node].iter().find(|&&edge| !is_taken[edge]) {
+                is_taken[edge] = true;
+                let [a, b] = self.edges[edge];
+                node = if node == a { b } else { a };
+                line.push(pixels[node as usize]);
+            }
+            line
+        };
+        // First lines with ends, then closed ones.
+        let odd = at_node.iter().filter(|(_, edges)| edges.len() % 2 == 1).map(|(&node, _)| node);
+        let starts: Vec<_> = odd.chain(at_node.keys().copied()).collect();
+        let lines = starts.into_iter().map(&mut follow).filter(|line| line.len() > 1);
+        lines.chain(self.parts).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::View;
+    use crate::picture::Framing;
+    use crate::sim::body::Dimension;
+
+    const ROOM: Rectangle = [0, 0, 640, 640];
+
+    fn lens(dimension: Dimension) -> Lens {
+        let mut view = View::default();
+        (view.camera.azimuth, view.camera.elevation, view.camera.distance) = (0.5, 0.3, 8.0);
+        Lens::new(&view, &Framing::still(&view.camera), dimension, ROOM.map(f64::from), 1.0)
+    }
+
+    fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
+        let nodes: Vec<u32> = (0..position.len() as u32).collect();
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room }.outline()
+    }
+
+    /// A cube with outward triangles.
+    fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let half = |at: u32, bit: u32| f64::from(at >> bit & 1) - 0.5;
+        let position = (0..8).map(|at| DVec3::new(half(at, 0), half(at, 1), half(at, 2))).collect();
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        (position, faces.into_iter().flat_map(|[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]]).collect())
+    }
+
+    #[test]
+    fn a_cube_has_one_closed_outline_of_six_edges() {
+        let lens = lens(Dimension::Space);
+        let (position, triangles) = cube();
+        let lines = outline(&lens, &position, &triangles, ROOM);
+        let [line] = &lines[..] else { panic!("{lines:?}") };
+        assert_eq!((line.len(), line[0]), (7, line[6]));
+        // Whole dashes, hardly longer or shorter than usual.
+        let length: f64 = line.windows(2).map(|two| two[0].distance(two[1])).sum();
+        let [dash, gap] = dashes(line, 1.0);
+        let count = length / (dash + gap);
+        assert!((count - count.round()).abs() < 1e-9 && (dash / DASH[0] - 1.0).abs() < 0.1, "{count}");
+    }
+
+    #[test]
+    fn edges_inside_the_outline_are_left_out() {
+        // A small cube before the middle of a large one turns away from the viewer, too, but not at the border.
+        let lens = lens(Dimension::Space);
+        let (mut position, mut triangles) = cube();
+        let [towards, small]: [DVec3; 2] = [(lens.eye - DVec3::ZERO).normalize(), DVec3::splat(0.2)];
+        let inner: Vec<_> = position.iter().map(|&at| 1.2 * towards + small * at).collect();
+        triangles.extend(triangles.clone().iter().map(|corners| corners.map(|at| at + 8)));
+        let alone = outline(&lens, &position, &triangles[..12], ROOM);
+        position.extend(inner);
+        assert_eq!(outline(&lens, &position, &triangles, ROOM), alone);
+    }
+
+    #[test]
+    fn a_body_in_the_plane_is_outlined_without_its_inner_edges() {
+        let lens = lens(Dimension::Plane);
+        let position: Vec<_> = (0..6).map(|at| DVec3::new(f64::from(at % 3) - 1.0, f64::from(at / 3), 0.0)).collect();
+        let triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
+        let lines = outline(&lens, &position, &triangles, ROOM);
+        assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [7]);
+        // Of what leaves the room nothing is drawn outside.
+        let room = [380, 250, 200, 200];
+        let lines = outline(&lens, &position, &triangles, room);
+        let [left, top, right, bottom] = sides(room.map(f64::from));
+        assert!(!lines.is_empty());
+        for point in lines.iter().flatten() {
+            let inside =
+                (left - 1e-9..=right + 1e-9).contains(&point.x) && (top - 1e-9..=bottom + 1e-9).contains(&point.y);
+            assert!(inside, "{point}");
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Ghosts over bodies, and the panel of the difference of two runs.
+
+use super::{fig4b, gpu};
+use glam::DVec3;
+use localshape::history::History;
+use localshape::look::{Difference, Ghost, Points, Style, Theme, Traced};
+use localshape::moments::Moments;
+use localshape::picture::{Composer, Curve, MarkShape, Panel, Picture};
+use localshape::render::Renderer;
+use localshape::runner::Runner;
+use localshape::scene::figure::Figure;
+use localshape::scene::{Limits, Scene};
+use localshape::sim::snapshot::Frame;
+
+/// The scene of Fig. 4(b), which shows the difference of its runs, and two frames.
+fn with_difference(after_fit: bool) -> (Scene, [Frame; 2], History) {
+    let (mut scene, _) = fig4b(0);
+    scene.duration = 0.2;
+    scene.view.columns = 3;
+    scene.view.difference = Some(Difference { runs: [1, 0], after_fit });
+    let mut runner = Runner::new(&scene, &[0, 1]);
+    let frames = [4, 9].map(|index| runner.frame(index));
+    let history = History::new(&scene, &[0, 1]);
+    (scene, frames, history)
+}
+
+/// The dashed curves of a colour.
+fn outlines(picture: &Picture, colour: [u8; 3]) -> Vec<&Curve> {
+    let is_dashed = |curve: &&Curve| curve.colour == colour && curve.dash.len() == 2 && curve.points.len() > 2;
+    picture.curves.iter().filter(is_dashed).collect()
+}
+
+fn inside(panel: [u32; 4], point: [f32; 2]) -> bool {
+    let [left, top, width, height] = panel.map(|length| length as f32);
+    (left..=left + width).contains(&point[0]) && (top..=top + height).contains(&point[1])
+}
+
+#[test]
+fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
+    let (mut scene, frame) = fig4b(4);
+    for theme in [Theme::Light, Theme::Dark] {
+        scene.view.look = Style::of(theme);
+        let palette = scene.view.look.palette;
+        for (ghost, colour, panels) in [
+            (Ghost::Run(0), scene.runs[0].line(&palette).colour, vec![1]),
+            (Ghost::Run(1), scene.runs[1].line(&palette).colour, vec![0]),
+            (Ghost::Rest, palette.second_text, vec![0, 1]),
+        ] {
+            scene.view.ghost = Some(ghost);
+            let picture = Composer::new(&scene).compose(&frame);
+            let found = outlines(&picture, colour);
+            assert!(!found.is_empty());
+            let of = |curve: &Curve| picture.panels.iter().position(|panel| inside(panel.viewport, curve.points[0]));
+            let mut has: Vec<_> = found.iter().map(|curve| of(curve).expect("in a panel")).collect();
+            has.dedup();
+            assert_eq!(has, panels, "{ghost:?}");
+            for curve in found {
+                let panel = picture.panels[of(curve).expect("in a panel")].viewport;
+                assert!(curve.points.iter().all(|&point| inside(panel, point)));
+            }
+            // The key says whose outline it is.
+            let name = if let Ghost::Run(run) = ghost { &scene.runs[run].name } else { "rest shape" };
+            let straight = picture.curves.iter().filter(|curve| curve.points.len() == 2 && curve.colour == colour);
+            let height = straight.map(|curve| curve.points[0][1]).fold(0.0, f32::max);
+            let mut words = picture.words.iter().filter(|run| (run.baseline - height).abs() < 8.0);
+            assert!(words.any(|run| run.text.starts_with(name)), "{ghost:?}");
+        }
+    }
+    scene.view.ghost = None;
+    assert!(Composer::new(&scene).compose(&frame).curves.is_empty());
+}
+
+/// Without its run there is no ghost, and nothing else changes.
+#[test]
+fn a_frame_without_the_run_of_the_ghost_has_none() {
+    let (mut scene, frame) = fig4b(4);
+    scene.view.ghost = Some(Ghost::Run(0));
+    let alone = Frame { runs: vec![frame.runs[1].clone()], ..frame };
+    let picture = Composer::new(&scene).compose(&alone);
+    assert!(picture.curves.iter().all(|curve| curve.points.len() == 2), "the sample of the key alone");
+}
+
+#[test]
+fn a_difference_has_a_panel_whose_colours_and_number_are_those_of_the_distances() {
+    for after_fit in [false, true] {
+        let (scene, frames, history) = with_difference(after_fit);
+        let most = history.difference.iter().fold(0.0, |most: f64, [_, distance]| distance.max(most));
+        assert!(most > 0.01, "{most}");
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&history);
+        for frame in &frames {
+            let picture = composer.compose(frame);
+            let [first, second, difference] = &picture.panels[..] else { panic!("three panels") };
+            assert!(first.sound.shades.is_empty() && second.sound.shades.is_empty());
+            // As large as beside it, where the chart takes some of the room.
+            assert_eq!(difference.sight.focal, second.sight.focal);
+            let at = history.difference.iter().find(|[time, _]| *time == frame.runs[0].snapshot.time);
+            let [_, largest] = at.expect("every frame is a moment of the series");
+            let shades = difference.sound.shades.iter().chain(&difference.turned_over.shades);
+            let highest = shades.fold(0.0, |most: f32, &shade| shade.max(most));
+            assert!(f64::from(highest) <= largest / most + 1e-6 && f64::from(highest) > 0.5 * largest / most);
+            let told = format!("{:.0} mm", 1e3 * largest);
+            assert!(picture.words.iter().any(|run| run.text == told), "{told}");
+            let colour = scene.runs[0].line(&picture.palette).colour;
+            assert!(!outlines(&picture, colour).is_empty(), "the other run is outlined");
+            // A frame composed alone is the same.
+            let mut alone = Composer::new(&scene);
+            alone.set_history(&history);
+            assert_eq!(alone.compose(frame), picture);
+        }
+    }
+}
+
+#[test]
+fn what_is_left_after_the_fit_is_less() {
+    let [as_they_are, fitted] = [false, true].map(|after_fit| with_difference(after_fit).2.difference);
+    assert_eq!(as_they_are.len(), fitted.len());
+    assert!(as_they_are.len() > 100 && as_they_are[0] == [0.0, 0.0]);
+    // The fit minimises the sum of squares, not the largest distance.
+    let sum = |course: &[[f64; 2]]| course.iter().map(|[_, distance]| distance).sum::<f64>();
+    assert!(sum(&fitted) < sum(&as_they_are), "{} {}", sum(&fitted), sum(&as_they_are));
+}
+
+/// Other panels look as they would without it.
+#[test]
+fn a_panel_without_a_field_is_drawn_like_one_in_a_picture_without_any() {
+    let Some(gpu) = gpu("a_panel_without_a_field_is_drawn_like_one_in_a_picture_without_any") else { return };
+    let (mut scene, [frame, _], _) = with_difference(false);
+    scene.view.labels = Default::default();
+    (scene.view.legend, scene.view.scale_bar) = (false, false);
+    scene.view.size = [960, 400];
+    let draw = |picture: &Picture| {
+        let mut renderer = Renderer::new(gpu, picture.size, 4).expect("a size that can be drawn");
+        renderer.draw(picture).expect("the device works")
+    };
+    let with = Composer::new(&scene).compose(&frame);
+    let mut without = with.clone();
+    without.panels.truncate(2);
+    without.ramp.clear();
+    let [with, without] = [draw(&with), draw(&without)];
+    for x in 0..630 {
+        for y in 0..400 {
+            assert_eq!(with.get_pixel(x, y), without.get_pixel(x, y), "{x} {y}");
+        }
+    }
+}
+
+/// A sheet outlines a run that none of its rows shows.
+#[test]
+fn sheets_have_ghosts_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", "[view]\nghost = 'Local shape'\n");
+    std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
+    let text = "[sheet]\nscene = 'scene.toml'\nmoments = [0.03, 0.05]\n[[sheet.row]]\nrun = 'Mass-spring'\n";
+    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
+    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
+    let figure = figure.unwrap_or_else(|error| panic!("{error}"));
+    let moments = Moments::new(&figure);
+    let other = moments.others[0][1].as_ref().expect("the ghost's run");
+    assert_eq!((other.run, other.snapshot.time), (0, moments.cells[0][1].snapshot.time));
+    let picture = localshape::picture::compose_figure(&figure, &moments).expect("there is room");
+    let colour = figure.scenes()[0].runs[0].line(&picture.palette).colour;
+    for panel in &picture.panels {
+        assert!(outlines(&picture, colour).iter().any(|curve| inside(panel.viewport, curve.points[0])));
+    }
+}
+
+/// The pixel of a point of a panel.
+fn seen(panel: &Panel, at: [f32; 3]) -> [f32; 2] {
+    let clip = panel.sight.clip * glam::Vec3::from(at).extend(1.0);
+    let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+    [left + width * (0.5 + 0.5 * clip.x / clip.w), top + height * (0.5 - 0.5 * clip.y / clip.w)]
+}
+
+#[test]
+fn paths_end_where_bodies_are_and_begin_where_they_started() {
+    let (mut scene, _) = fig4b(0);
+    scene.duration = 0.2;
+    scene.view.paths = vec![Traced::Centre, Traced::Node(63)];
+    let mut runner = Runner::new(&scene, &[0, 1]);
+    let frames = [0, 3, 9].map(|index| runner.frame(index));
+    let history = History::new(&scene, &[0, 1]);
+    let mut composer = Composer::new(&scene);
+    composer.set_history(&history);
+    let mut longest = 0;
+    for frame in &frames {
+        let picture = composer.compose(frame);
+        let palette = &picture.palette;
+        for (run, panel) in frame.runs.iter().zip(&picture.panels) {
+            let colour = scene.runs[run.run].line(palette).colour;
+            let here = |curve: &&Curve| curve.colour == colour && inside(panel.viewport, curve.points[0]);
+            let of_run: Vec<_> = picture.curves.iter().filter(here).collect();
+            let (dots, lines): (Vec<_>, Vec<_>) = of_run.into_iter().partition(|curve| curve.points.len() == 1);
+            assert_eq!(dots.len(), 2);
+            // The dot of the node lies on a corner of the body, that of the centre inside of all corners.
+            let vertices = panel.sound.vertices.iter().chain(&panel.turned_over.vertices);
+            let pixels: Vec<_> = vertices.map(|vertex| seen(panel, vertex.position)).collect();
+            let off = |[x, y]: [f32; 2]| {
+                let far = pixels.iter().map(|pixel| (pixel[0] - x).abs().max((pixel[1] - y).abs()));
+                far.fold(f32::INFINITY, f32::min)
+            };
+            let [centre, node] = dots[..] else { panic!("two dots") };
+            assert!(off(node.points[0]) < 0.05, "frame {}: {}", frame.index, off(node.points[0]));
+            for axis in 0..2 {
+                let (low, high) = pixels
+                    .iter()
+                    .fold((f32::INFINITY, 0.0_f32), |(low, high), pixel| (low.min(pixel[axis]), high.max(pixel[axis])));
+                assert!((low..high).contains(&centre.points[0][axis]));
+            }
+            for dot in [centre, node] {
+                assert!(frame.index == 0 || lines.iter().any(|line| line.points.last() == dot.points.last()));
+            }
+            longest = longest.max(lines.iter().map(|line| line.points.len()).max().unwrap_or(0));
+        }
+        assert!(picture.words.iter().any(|run| run.text == "paths"));
+        let mut alone = Composer::new(&scene);
+        alone.set_history(&history);
+        assert_eq!(alone.compose(frame), picture);
+    }
+    assert!(longest > 10, "{longest}");
+    // Without the time series there are none.
+    assert_eq!(Composer::new(&scene).compose(&frames[1]).curves.len(), 1, "the sample of the key");
+}
+
+#[test]
+fn measured_points_are_rings_now_and_dots_before() {
+    let (mut scene, frame) = fig4b(6);
+    let samples = [0.0, 0.05, 0.1, 0.1, 0.15].map(|time| (time, DVec3::new(0.0, 0.1 + time, 0.0)));
+    for (run, panels) in [(None, [3, 3]), (Some(1), [0, 3])] {
+        scene.view.points = Some(Points { run, samples: samples.into() });
+        let picture = Composer::new(&scene).compose(&frame);
+        let of = |panel: usize| {
+            let [left, top, width, height] = picture.panels[panel].viewport.map(|length| length as f32);
+            let inside = move |[x, y, wide, high]: [f32; 4]| {
+                (left..left + width).contains(&(x + wide / 2.0)) && (top..top + height).contains(&(y + high / 2.0))
+            };
+            picture.marks.iter().filter(move |mark| mark.shape == MarkShape::Node && inside(mark.rectangle))
+        };
+        // The frame is at 100 ms: two dots before, and two rings at one place. The key has a ring, too, below the panels.
+        for (panel, count) in panels.into_iter().enumerate() {
+            let widths: Vec<_> = of(panel).map(|mark| mark.rectangle[2]).collect();
+            assert_eq!(widths.len(), if count > 0 { 4 } else { 0 }, "{run:?} {panel}");
+            assert!(widths.is_empty() || (widths[0] == widths[1] && widths[1] < widths[2] && widths[2] == widths[3]));
+        }
+        assert!(picture.words.iter().any(|run| run.text == "measured"));
+    }
+}
+
+/// Bars have no faces: each is a dashed line.
+#[test]
+fn bodies_of_bars_have_ghosts() {
+    let text = include_str!("../../scenes/chain.toml");
+    let mut scene = Scene::parse(text, "chain.toml", &Limits::default()).expect("the shipped scene is sound");
+    scene.view.ghost = Some(Ghost::Rest);
+    let frame = Runner::new(&scene, &[0]).frame(0);
+    let picture = Composer::new(&scene).compose(&frame);
+    let is_ghost = |curve: &&Curve| curve.colour == picture.palette.second_text && curve.dash.len() == 2;
+    // Eight bars, as far as they are in the panel, the weight at their end, and the sample of the key.
+    let count = picture.curves.iter().filter(is_ghost).count();
+    assert!((5..=10).contains(&count), "{count}");
+}
