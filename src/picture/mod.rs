@@ -270,8 +270,8 @@ pub(crate) struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
-    /// From 0 to 1: the opacity of a contour, which fades as its faces turn towards the viewer; the opacity of an edge of an
-    /// element that is not turned over where a surface hides it.
+    /// From 0 to 1: the opacity of a contour; the opacity of an edge of an element that is not turned over where a surface
+    /// hides it.
     pub strength: f32,
 }
 

@@ -182,7 +182,7 @@ impl<'a> Draft<'a> {
     }
 
     /// The camera of the panel before it follows anything.
-    fn still(&self) -> Lens {
+    pub(super) fn still(&self) -> Lens {
         let view = &self.scene.view;
         Lens::new(
             view,
