@@ -106,7 +106,11 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner, behind: f32, sample: u32
 
 @fragment
 fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let colour = tint(corner);
+    var colour = tint(corner);
+    if corner.hatch > 0.5 {
+        // Flat.
+        colour = mix(colour, panel.edge, dots(corner.place.xy));
+    }
     if panel.behind < 0.5 {
         return see_through(colour);
     }

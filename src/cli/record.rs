@@ -212,7 +212,7 @@ impl Recording<'_> {
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
-                runner = runner.without_field();
+                runner = runner.without_pictures();
             }
             if let Some(diagnostic) = course {
                 runner = runner.with_course(&[diagnostic]);

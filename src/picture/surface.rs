@@ -50,6 +50,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) element: f64,
     /// Opacity of elements that are not turned over.
     pub(super) opacity: f64,
+    /// Whether each element is flat.
+    pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
     /// Whether edges of elements that are not turned over are drawn in front, and behind surfaces.
@@ -95,7 +97,7 @@ struct Patch {
     /// The corners of the face, seen from outside counter-clockwise.
     nodes: Vec<u32>,
     corners: Vec<DVec3>,
-    /// Where each corner lies in the hatch.
+    /// The place of each corner in the pattern on the face.
     phases: Vec<f64>,
     points: Vec<DVec3>,
     /// The triangles, as places in `points`.
@@ -228,7 +230,9 @@ impl Surroundings<'_> {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears.of(&patch.nodes);
             let before = [mesh.vertices.len(), mesh.shades.len(), mesh.triangles.len()];
-            self.emit(side, ears, &grid, &mut patch, mesh);
+            // Turned-over elements are hatched, flat ones among the others dotted.
+            let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
+            self.emit(side, ears, dots, &grid, &mut patch, mesh);
             if hides_back && self.is_hidden(side, &patch) {
                 mesh.vertices.truncate(before[0]);
                 mesh.shades.truncate(before[1]);
@@ -314,15 +318,28 @@ impl Surroundings<'_> {
         if needed >= affordable as f64 { affordable } else { (needed as usize).max(1) }
     }
 
-    /// Cuts a face into triangles and adds them to a mesh.
-    fn emit(&self, side: &Side, ears: Option<&[[u32; 3]]>, grid: &Grid, patch: &mut Patch, mesh: &mut Mesh) {
+    /// Whether a face belongs to a flat element.
+    fn is_flat(&self, side: &Side) -> bool {
+        side.element.and_then(|element| self.flat.get(element as usize)).copied().unwrap_or(false)
+    }
+
+    /// Cuts a face into triangles and adds them to a mesh, with dots or, without a value, with the hatch.
+    fn emit(
+        &self,
+        side: &Side,
+        ears: Option<&[[u32; 3]]>,
+        dots: Option<f64>,
+        grid: &Grid,
+        patch: &mut Patch,
+        mesh: &mut Mesh,
+    ) {
         let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
         let Patch { nodes, corners, phases, points, triangles, is_curved, facing } = patch;
         corners.clear();
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
         let phase = |node: u32| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft);
-        phases.extend(nodes.iter().map(|&node| phase(node)));
+        phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();
         facing.clear();
