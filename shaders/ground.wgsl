@@ -41,6 +41,21 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
     return Corner(panel.clip * vec4(position, 1.0), on_floor);
 }
 
+// An ordered dither: from −½ to ½, evenly spread over each 8×8 pixels (B. E. Bayer, 1973).
+fn dither(pixel: vec2<f32>) -> f32 {
+    let at = vec2<u32>(pixel);
+    let x = at.x ^ at.y;
+    let y = at.y;
+    let order = ((x & 1u) << 5u) | ((y & 1u) << 4u) | ((x & 2u) << 2u) | ((y & 2u) << 1u) | ((x & 4u) >> 1u) | ((y & 4u) >> 2u);
+    return (f32(order) + 0.5) / 64.0 - 0.5;
+}
+
+// The linear light of about 0.8 steps of a byte of sRGB, from the derivative of its curve: with a whole one, rounding could
+// change what is exactly a byte, such as the plain background.
+fn byte_step(colour: vec3<f32>) -> vec3<f32> {
+    return sqrt(colour) * (1.2 + 0.7 * colour) / 255.0;
+}
+
 fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     let at = (on_floor - shade.xy) * shade.z;
     let inside = all(at >= vec2(0.0)) && all(at <= vec2(1.0));
@@ -69,5 +84,7 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     colour = mix(colour, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
     let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
     colour = mix(ground.shadow.rgb, colour, left);
-    return vec4(mix(ground.background.rgb, colour, fade), 1.0);
+    let faded = mix(ground.background.rgb, colour, fade);
+    // Without a dither, wide shadows show the borders of their 256 steps.
+    return vec4(faded + dither(corner.place.xy) * byte_step(faded), 1.0);
 }

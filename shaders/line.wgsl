@@ -39,7 +39,7 @@ const BAR_WIDTH = 2.2;
 // Elements smaller than this (px) get fainter edges, or edges would cover everything.
 const SMALL_ELEMENT = 26.0;
 // Towards this size (px) edges fade out, because so close together they would flicker.
-const SMALLEST_ELEMENT = vec2<f32>(1.5, 4.0);
+const SMALLEST_ELEMENT = vec2<f32>(4.0, 8.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
 

@@ -30,6 +30,11 @@ const STRIPE_ALPHA = 0.62;
 // A flat body's hatch goes along with the body, has this period (px in the reference picture) and this share of it is dark.
 const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
+// Dots of flat elements go along with the body, too: their distance and radius (px in the reference picture), and how dark
+// they are.
+const DOTS_APART = 7.0;
+const DOT = 1.3;
+const DOT_ALPHA = 0.6;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
 // The highest opacity stored for a transparent surface; solid obstacles have a higher one.
@@ -195,10 +200,25 @@ fn stored_mean(sum: vec4<f32>) -> vec4<f32> {
     return vec4(sqrt(mean.rgb), select(min(mean.a, MOST_OPACITY), 1.0, mean.a > 0.9999));
 }
 
+// How much of a pixel the dots of a flat element cover.
+fn dots(place: vec2<f32>) -> f32 {
+    let scale = panel.line_scale;
+    let from_body = (place + panel.place.xy - panel.place.zw) / (DOTS_APART * scale);
+    // Rows at 45°.
+    let at = vec2(from_body.x + from_body.y, from_body.y - from_body.x) * 0.70710678;
+    let off = length(fract(at) - 0.5) * DOTS_APART * scale;
+    return DOT_ALPHA * saturate(DOT * scale + 0.5 - off);
+}
+
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     let light = light(corner.position, corner.normal);
-    let colour = panel.sound * light.diffuse + light.gloss;
+    var own = panel.sound;
+    if corner.hatch > 0.5 {
+        // Flat: grey with dots.
+        own = mix(vec3(dot(own, LUMINANCE)), panel.edge, dots(corner.place.xy));
+    }
+    let colour = own * light.diffuse + light.gloss;
     if panel.behind < 0.5 {
         return see_through(colour);
     }

@@ -6,9 +6,10 @@
 @group(1) @binding(4) var<uniform> ramp: array<vec4<f32>, SHADES>;
 
 const SHADES = 64;
-// The darkest light leaves this part of a colour, and light of this brightness and below it is the darkest.
-const SHADED = 0.68;
-const DARKEST = 0.35;
+// Light changes the lightness of a colour by at most this part, up and down, and never its hue. The darkest and the
+// brightest light are of these brightnesses.
+const LIGHTNESS = 0.06;
+const BRIGHTNESS = vec2<f32>(0.40, 1.15);
 // How strong stripes are that are seen through the body.
 const THROUGH = 0.75;
 
@@ -46,8 +47,14 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     let shade = mix(ramp[cell].rgb, ramp[cell + 1u].rgb, at - f32(cell));
     // Below zero there is no value.
     let colour = select(panel.sound, shade, corner.shade > -0.5);
+    if panel.flatness > 0.5 {
+        return colour;
+    }
     let brightness = dot(light(corner.position, corner.normal).diffuse, LUMINANCE);
-    return colour * mix(SHADED, 1.0, smoothstep(DARKEST, 1.0, brightness));
+    let lightness = 1.0 + LIGHTNESS * (2.0 * smoothstep(BRIGHTNESS.x, BRIGHTNESS.y, brightness) - 1.0);
+    // Lightness goes with the cube root of light (Oklab). What is too bright for the screen would change its hue there.
+    let most = 1.0 / max(max(colour.r, colour.g), max(colour.b, 1e-3));
+    return colour * min(lightness * lightness * lightness, most);
 }
 
 // The colour of a turned-over element, and how much of it is the alarm's: the stripes of its hatch, or all of it.
@@ -99,7 +106,11 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner, behind: f32, sample: u32
 
 @fragment
 fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
-    let colour = tint(corner);
+    var colour = tint(corner);
+    if corner.hatch > 0.5 {
+        // Flat.
+        colour = mix(colour, panel.edge, dots(corner.place.xy));
+    }
     if panel.behind < 0.5 {
         return see_through(colour);
     }

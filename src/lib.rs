@@ -93,6 +93,7 @@ pub mod golden;
 #[cfg(feature = "render")]
 pub mod gpu;
 mod history;
+mod last_fit;
 pub mod look;
 mod moments;
 mod output;

@@ -2,20 +2,21 @@
 //! All other code simulates through this one.
 
 pub use crate::history::{History, TimeSeries};
+use crate::last_fit::fits;
 use crate::look::Traced;
 use crate::scene::Scene;
 use crate::sim::apart;
 use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
-use crate::sim::snapshot::{Frame, RunFrame, Status};
+use crate::sim::snapshot::{Frame, LastFit, RunFrame, Status};
 use crate::sim::state::State;
 use crate::sim::world::{Moment, Stepping, Surroundings, World};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Simulates runs of a scene and returns frames in rising order.
 ///
@@ -51,6 +52,12 @@ struct Running {
     traced: Vec<Traced>,
     body: Arc<Body>,
     series: TimeSeries,
+    /// Threads within the run.
+    threads: usize,
+    /// Whether it is drawn.
+    is_drawn: bool,
+    /// What pictures show of it from there on if it diverges, known as soon as it is needed.
+    last_fit: OnceLock<Option<LastFit>>,
 }
 
 impl<'a> Runner<'a> {
@@ -79,14 +86,21 @@ impl<'a> Runner<'a> {
                 traced: Vec::new(),
                 body: Arc::clone(&scene.body),
                 series: TimeSeries::new(run),
+                threads,
+                is_drawn: true,
+                last_fit: OnceLock::new(),
             }
         };
         Self { scene, runs: runs.iter().map(running).collect(), apart: None }
     }
 
-    /// The same without computing the field by which the scene is coloured, if nothing is drawn.
-    pub(crate) fn without_field(mut self) -> Self {
-        self.runs.iter_mut().for_each(|running| running.world.show(None));
+    /// The same without computing what only pictures need: the field by which the scene is coloured, and the last states
+    /// that fit of runs that diverge.
+    pub(crate) fn without_pictures(mut self) -> Self {
+        for running in &mut self.runs {
+            running.world.show(None);
+            running.is_drawn = false;
+        }
         self
     }
 
@@ -181,8 +195,7 @@ impl<'a> Runner<'a> {
 
     /// The runs at the last moment that all have reached.
     pub fn snapshots(&self) -> Vec<RunFrame> {
-        let runs = self.runs.par_iter();
-        runs.map(|running| RunFrame { run: running.run, snapshot: running.world.snapshot() }).collect()
+        self.runs.par_iter().map(|running| running.frame(self.scene)).collect()
     }
 
     /// Advances to a frame and returns it.
@@ -226,6 +239,18 @@ impl<'a> Runner<'a> {
 }
 
 impl Running {
+    /// The present state, and what pictures show instead if it has diverged.
+    fn frame(&self, scene: &Scene) -> RunFrame {
+        let Self { run, world, threads, is_drawn, last_fit, .. } = self;
+        let frame = RunFrame::new(*run, world.snapshot());
+        if !is_drawn || world.status() == Status::Ok && fits(scene, &frame.snapshot.position) {
+            return frame;
+        }
+        let found = last_fit.get_or_init(|| crate::last_fit::last_fit(scene, *run, *threads));
+        let shown = found.as_ref().filter(|found| found.snapshot.step < frame.snapshot.step);
+        RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
+    }
+
     fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
         while let (Some(&note), None) = (self.notes.get(self.series.times.len()), self.series.divergence) {
@@ -420,7 +445,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_field().with_time_series(Diagnostic::ALL).with_difference();
+        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL).with_difference();
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }

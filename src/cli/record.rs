@@ -213,7 +213,7 @@ impl Recording<'_> {
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
-                runner = runner.without_field();
+                runner = runner.without_pictures();
             }
             if ahead {
                 runner = runner.with_time_series(strip.as_slice()).with_difference();

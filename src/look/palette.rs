@@ -1,6 +1,6 @@
 //! The colours of a picture, and those of the two themes. Vermilion means "turned over" and nothing else.
 
-use crate::colour::{Colour, LEAST_CONTRAST, contrast, readable};
+use crate::colour::{Colour, LEAST_CONTRAST, Oklab, contrast, from_oklab, mixed, oklab, readable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -84,6 +84,9 @@ pub(crate) struct Palette {
     pub runs: [Colour; 8],
 }
 
+/// How much of the background there is in the greys of a run that is over.
+const GREYED: f64 = 0.45;
+
 impl Palette {
     /// The colours of a theme.
     pub(crate) fn of(theme: Theme) -> Self {
@@ -102,6 +105,19 @@ impl Palette {
     /// What ghosts of shapes on the background are tinted with.
     pub(crate) fn edge_on_ground(&self) -> Colour {
         if self.is_made_for_light() { self.edge } else { self.outline }
+    }
+
+    /// The same with the colours of bodies and their lines greyed, for a run that is over.
+    pub(crate) fn greyed(&self) -> Self {
+        let grey = |colour| {
+            let grey = from_oklab(Oklab([oklab(colour).0[0], 0.0, 0.0]));
+            mixed(grey, self.background, GREYED)
+        };
+        let Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, .. } = *self;
+        let [sound, sound_flat, node, alarm] = [sound, sound_flat, node, alarm].map(grey);
+        let [alarm_line, edge, outline] = [alarm_line, edge, outline].map(grey);
+        let [spring, spring_on_body] = [spring, spring_on_body].map(grey);
+        Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, ..*self }
     }
 
     /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].

@@ -30,8 +30,11 @@ const POINTS: [[f64; 3]; 9] = [
 /// with hues that differ for any colour vision; the middle is grey, and nearer to the background than they are.
 const DIVERGING: [[[f64; 3]; 3]; 2] = [
     [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
-    [[0.7200, 0.0900, -0.1300], [0.4600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
+    [[0.7200, 0.0900, -0.1300], [0.5000, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
 ];
+
+/// The part of `magma` that is left out at its black end, where neither shading nor edges could be seen.
+const BLACK_OF_MAGMA: f64 = 0.25;
 
 /// Lightness of the two ends of the scale of greys: those of the usual one, for the same reasons.
 const GREYS: [f64; 2] = [0.9550, 0.3850];
@@ -48,7 +51,10 @@ pub(crate) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
         ColourMap::Greys => (0..SHADES).map(|at| from_oklab(grey(with_theme(at)))).collect(),
         ColourMap::Viridis => published(colorous::VIRIDIS),
         ColourMap::Cividis => published(colorous::CIVIDIS),
-        ColourMap::Magma => published(colorous::MAGMA),
+        ColourMap::Magma => {
+            let from_black = |at: usize| BLACK_OF_MAGMA + (1.0 - BLACK_OF_MAGMA) * share(at);
+            (0..SHADES).map(|at| colorous::MAGMA.eval_continuous(from_black(at)).into_array()).collect()
+        }
         ColourMap::VioletGreen => (0..SHADES).map(|at| from_oklab(diverging(share(at), theme))).collect(),
         ColourMap::PurpleGreen => published(colorous::PURPLE_GREEN),
     }
@@ -121,10 +127,10 @@ mod tests {
     }
 
     #[test]
-    fn published_scales_begin_and_end_as_published() {
+    fn published_scales_begin_and_end_as_published_but_for_black() {
         for (map, low, high) in [
             (ColourMap::Viridis, [0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]),
-            (ColourMap::Magma, [0x00, 0x00, 0x04], [0xfc, 0xfd, 0xbf]),
+            (ColourMap::Magma, [0x51, 0x12, 0x7c], [0xfc, 0xfd, 0xbf]),
             (ColourMap::Cividis, [0x00, 0x22, 0x4e], [0xfe, 0xe8, 0x38]),
             (ColourMap::PurpleGreen, [0x40, 0x00, 0x4b], [0x00, 0x44, 0x1b]),
         ] {

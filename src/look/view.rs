@@ -220,7 +220,7 @@ pub enum ColourMap {
     Viridis,
     /// From dark blue to yellow, the same with colour blindness (Nuñez, Anderton, Renslow 2018), in either theme.
     Cividis,
-    /// From black through crimson to pale yellow (matplotlib), in either theme. Its orange is similar to the colour of
+    /// From purple through crimson to pale yellow, in either theme: matplotlib's without its black end. Its orange is similar to the colour of
     /// turned-over elements; `colours.turned_over` can change that.
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.

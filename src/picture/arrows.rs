@@ -4,7 +4,7 @@ use super::camera::Lens;
 use super::layout::Rectangle;
 use super::narrow::narrow;
 use super::order::farthest_first;
-use super::plane::{clipped, sides};
+use super::plane::{clipped, from_side, sides};
 use super::{Mark, MarkShape};
 use crate::colour::Colour;
 use crate::sim::snapshot::Placement;
@@ -24,19 +24,56 @@ const FAINTEST: f64 = 0.33;
 const SHORTEST: [f64; 2] = [9.0, 2.5];
 /// They fade over this part of that length above it.
 const FADING: f64 = 0.35;
-/// More arrows than this hide each other.
+/// Arrows nearer to each other than the first distance are thinned out, and fade up to the second one (widths of a head).
+const APART: [f64; 2] = [0.75, 1.5];
+/// Thinning more arrows than this would take long.
 const MOST_ARROWS: usize = 500;
 
 /// The nodes that get an arrow: those on the surface, and of very many a part that looks even but follows no rows.
 pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
     let mut nodes = on_surface.to_vec();
     if nodes.len() > MOST_ARROWS {
-        // Fibonacci hashing: the same nodes in every frame, run and picture.
-        nodes.sort_by_key(|&node| (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node));
+        nodes.sort_by_key(|&node| rank(node));
         nodes.truncate(MOST_ARROWS);
     }
     nodes.sort_unstable();
     nodes
+}
+
+/// The place of a node in an order that looks even but follows no rows (Fibonacci hashing): the same in every frame, run and
+/// picture.
+fn rank(node: u32) -> (u64, u32) {
+    (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node)
+}
+
+/// How opaque arrows are that fade before others: each is given by its ends (px) and its own opacity, those that stay come
+/// first. Opacities change steadily as arrows move, so that none appears at once.
+fn thinned(arrows: &[([DVec2; 2], f64)], head: f64) -> Vec<f64> {
+    let [near, far] = APART.map(|widths| widths * head);
+    let mut opacities: Vec<f64> = Vec::with_capacity(arrows.len());
+    for &(ends, own) in arrows {
+        let before = arrows.iter().zip(&opacities).filter(|(_, opacity)| **opacity > 0.0);
+        let left = before.map(|((other, _), opacity)| {
+            let free = ((between(ends, *other) - near) / (far - near)).clamp(0.0, 1.0);
+            1.0 - opacity * (1.0 - free)
+        });
+        let left = left.fold(1.0, f64::min);
+        opacities.push(own * left);
+    }
+    opacities
+}
+
+/// The distance of two straight lines.
+fn between([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
+    let parts = |from: DVec2, to: DVec2, one: DVec2, other: DVec2| {
+        (to - from).perp_dot(one - from) * (to - from).perp_dot(other - from) < 0.0
+    };
+    if parts(a, b, c, d) && parts(c, d, a, b) {
+        return 0.0;
+    }
+    [from_side(a, c, d), from_side(b, c, d), from_side(c, a, b), from_side(d, a, b)]
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// How large arrows are beside those of the reference picture, for elements of a length (px) in type of a unit.
@@ -84,7 +121,7 @@ pub(super) struct Arrows<'a> {
 }
 
 impl Arrows<'_> {
-    /// Adds an arrow for each of the nodes, as opaque as it says, the farthest first.
+    /// Adds an arrow for each of the nodes, as opaque as it says and as others leave room for it, the farthest first.
     pub(super) fn draw(
         &self,
         nodes: &[(u32, f64)],
@@ -93,18 +130,22 @@ impl Arrows<'_> {
         placement: &Placement,
         marks: &mut Vec<Mark>,
     ) {
-        let ends = nodes.iter().filter_map(|&(node, opacity)| {
+        let mut nodes = nodes.to_vec();
+        nodes.sort_by_key(|&(node, _)| rank(node));
+        let arrows = nodes.into_iter().filter_map(|(node, opacity)| {
             let start = placement.place(rest[node as usize]);
             let end = start + self.times * (position[node as usize] - start);
             let (from, _) = self.lens.project(start)?;
             let (to, depth) = self.lens.project(end)?;
-            Some((depth, (opacity, [from, to].map(DVec2::from))))
+            let (ends, part) = self.inside([from, to].map(DVec2::from))?;
+            Some((depth, (ends, opacity * part)))
         });
-        let arrows = farthest_first(ends.collect()).filter_map(|(opacity, ends)| {
-            let (ends, part) = self.inside(ends)?;
-            arrow(ends, self.size * self.thickness, self.colour, self.halo).faded(opacity * part)
-        });
-        marks.extend(arrows);
+        let (depths, arrows): (Vec<_>, Vec<_>) = arrows.unzip();
+        let size = self.size * self.thickness;
+        let opacities = thinned(&arrows, HEAD * self.size);
+        let drawn = arrows.iter().zip(opacities).map(|(&(ends, _), opacity)| (ends, opacity));
+        let drawn = farthest_first(depths.into_iter().zip(drawn).collect());
+        marks.extend(drawn.filter_map(|(ends, opacity)| arrow(ends, size, self.colour, self.halo).faded(opacity)));
     }
 
     /// The part of an arrow inside the room, and its opacity: the shortest fade. Long arrows are cut, not left out, or the
@@ -131,6 +172,22 @@ mod tests {
         let middle = DVec2::new(left, top) + 0.5 * height * along.perp();
         assert!((middle + (width - 3.0) * along - to).length() < 1e-4);
         assert!((middle + 3.0 * along - from).length() < 1e-4);
+    }
+
+    #[test]
+    fn arrows_that_cross_or_crowd_are_thinned_out_steadily() {
+        let upright = |x: f64| ([DVec2::new(x, 0.0), DVec2::new(x, 40.0)], 1.0);
+        let level = ([DVec2::new(-10.0, 20.0), DVec2::new(90.0, 20.0)], 1.0);
+        assert_eq!(thinned(&[upright(0.0), level, upright(40.0)], 17.0), [1.0, 0.0, 1.0]);
+        assert_eq!(thinned(&[level, upright(0.0), upright(40.0)], 17.0), [1.0, 0.0, 0.0]);
+        // One that is not seen takes no room.
+        assert_eq!(thinned(&[(level.0, 0.0), upright(0.0)], 17.0), [0.0, 1.0]);
+        let beside = |x: f64| thinned(&[upright(0.0), upright(x)], 17.0)[1];
+        assert_eq!([beside(0.0), beside(12.0), beside(30.0)], [0.0, 0.0, 1.0]);
+        for tenth in 100..300 {
+            let [here, next] = [0, 1].map(|more| beside(f64::from(tenth + more) / 10.0));
+            assert!((0.0..0.01).contains(&(next - here)), "{tenth}: {here} {next}");
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::{Curve, Mark, MarkShape, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
-use crate::sim::snapshot::{Divergence, Snapshot};
+use crate::sim::snapshot::{Divergence, RunFrame, Snapshot, Status};
 
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
@@ -75,12 +75,10 @@ pub(super) struct Heading<'a> {
 /// A number in a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Number {
-    /// The number with its unit.
-    value: String,
     /// The widest value of its kind; room for it is reserved, so that text does not appear and disappear.
     widest: String,
-    /// What it is, in words and in fewer words.
-    wordings: [String; 2],
+    /// The number with its unit, and what it is; then the same in fewer words.
+    wordings: Vec<[String; 2]>,
     /// Whether it is semi-bold and written in any case.
     is_loud: bool,
 }
@@ -182,14 +180,17 @@ impl Writer<'_> {
         if !Scale::legible(caption) || snapshot.turned_over.is_empty() {
             return room.left;
         }
-        let over = snapshot.turned_over.iter().filter(|&&over| over).count();
+        let Snapshot { turned_over, flat, .. } = snapshot;
+        let [over, flattened] = [turned_over, flat].map(|state| state.iter().filter(|&&is_so| is_so).count());
         let (colour, second) = match over {
             0 => (self.palette.text, self.palette.second_text),
             _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
+        // Where none has turned over, those that are flat count.
+        let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, "turned over") };
         let bottom = room.bottom - self.scale.lower_margin();
         let taken = tally.draw(
-            &snapshot.turned_over,
+            [turned_over, flat],
             self.palette,
             self.scale,
             0.36 * room.width(),
@@ -199,13 +200,14 @@ impl Writer<'_> {
         let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
         let all = snapshot.turned_over.len();
         let free = room.right - left;
-        let count = self.fonts.shortened(&format!("{over} of {all}"), Weight::SemiBold, title, free);
+        let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let explained = self.fonts.shortened("turned over", Weight::Regular, caption, free);
-        self.left(&explained, Weight::Regular, caption, second, left, room.top + lines.caption);
+        let explained = |state: &str| self.fonts.shortened(state, Weight::Regular, caption, free);
+        let (usual, state) = (explained("turned over"), explained(state));
+        self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
         // The widest count, so that what stands beside it does not come and go.
         let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, title);
-        left + widest.max(self.fonts.width(&explained, Weight::Regular, caption))
+        left + widest.max(self.fonts.width(&usual, Weight::Regular, caption))
     }
 
     /// Where numbers at the lower right begin at the widest (px), whatever becomes of the run.
@@ -215,7 +217,7 @@ impl Writer<'_> {
         let wide = |text: &str, weight, size| self.fonts.width(text, weight, size);
         let widest = [
             wide(&usual.widest, Weight::Regular, title),
-            wide(&usual.wordings[0], Weight::Regular, caption),
+            wide(&usual.wordings[0][1], Weight::Regular, caption),
             wide(DIVERGED, Weight::SemiBold, title),
         ];
         room.right - widest.into_iter().fold(0.0, f64::max)
@@ -231,25 +233,34 @@ impl Writer<'_> {
         }
         let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
         let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
-        let value = self.fonts.width(&number.widest, weight, title).max(self.fonts.width(&number.value, weight, title));
         let fonts = self.fonts;
-        let wide = |text: &str| fonts.width(text, Weight::Regular, caption);
-        let Some(wording) = number.wordings.iter().find(|text| wide(text).max(value) <= free) else { return };
-        self.right(&number.value, weight, title, self.palette.text, room.right, room.top + lines.count);
+        let wide = |[value, explained]: &[String; 2]| {
+            let value = fonts.width(&number.widest, weight, title).max(fonts.width(value, weight, title));
+            value.max(fonts.width(explained, Weight::Regular, caption))
+        };
+        let Some([value, explained]) = number.wordings.iter().find(|texts| wide(texts) <= free) else { return };
+        self.right(value, weight, title, self.palette.text, room.right, room.top + lines.count);
         let colour = self.palette.second_text;
-        self.right(wording, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
+        self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
     }
 
     /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
-    /// room. `usual` is its length (px) where no camera moves: its place and its words follow from that alone.
-    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, [pixels, usual]: [f64; 2]) {
+    /// room. `usual` is its length (px) where no camera moves: its place and its words follow from that alone. Returns where it
+    /// ends (px).
+    pub(super) fn scale_bar(
+        &mut self,
+        panel: Rectangle,
+        between: [f64; 2],
+        metres: f64,
+        [pixels, usual]: [f64; 2],
+    ) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
         let text = number::plain_metres(metres);
         let wide = self.fonts.width(&text, Weight::Regular, caption);
         let free = between[1] - between[0] - 2.0 * self.scale.gap();
         if !Scale::legible(caption) || usual.max(wide) > free {
-            return;
+            return None;
         }
         let middle = between[0].midpoint(between[1]);
         let [length, thickness] = [pixels, 2.0 * self.scale.line()].map(|length| length.round().max(1.0));
@@ -269,6 +280,7 @@ impl Writer<'_> {
         let colour = self.palette.second_text;
         let baseline = room.top + lines.caption;
         self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, baseline);
+        Some(middle + 0.5 * pixels.max(wide))
     }
 
     /// Hairlines between panels that stand beside or above each other.
@@ -350,11 +362,24 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// The number of a run that diverged: when.
-pub(super) fn divergence(divergence: &Divergence) -> Number {
-    let at = format!("at {}", number::time(divergence.time));
-    let value = DIVERGED.to_owned();
-    Number { widest: value.clone(), value, wordings: [at, String::new()], is_loud: true }
+/// In place of the number of a run that diverges or did so, as far as it is shown: when, and how much wider it is in the end.
+pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
+    let Status::Diverged(Divergence { time, .. }) = run.shown().status else { return None };
+    let (loud, at) = (diverged(run), format!("at {}", number::time(time)));
+    let wider = wider(run).map(|wider| [format!("{loud} {at}"), wider]);
+    let wordings = wider.into_iter().chain([[loud.to_owned(), at], [loud.to_owned(), String::new()]]).collect();
+    Some(Number { widest: String::new(), wordings, is_loud: true })
+}
+
+/// What a run that diverges does or did at the time of a frame.
+pub(super) fn diverged(run: &RunFrame) -> &'static str {
+    if run.snapshot.status == Status::Ok { "diverges" } else { DIVERGED }
+}
+
+/// How much wider a run is in the end than it is shown; `None` if hardly.
+pub(super) fn wider(run: &RunFrame) -> Option<String> {
+    let times = run.last_fit.as_ref()?.times_wider;
+    (times >= 1.5).then(|| format!("{} times wider than shown", number::times(times)))
 }
 
 /// The largest distance of two bodies, of all distances up to another one (m), where bodies have a size (m).
@@ -370,16 +395,16 @@ pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
 
 /// The number at the lower right of a run that has not diverged.
 pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
-    let words = |long: &str, short: &str| [long.to_owned(), short.to_owned()];
+    let words = |value: String, names: [&str; 2]| names.map(|name| [value.clone(), name.to_owned()]).to_vec();
     if let Some(ratio) = area_ratio {
         let widest = "−0.00".to_owned();
-        let wordings = words("smallest area ratio", "area ratio");
-        return Number { value: number::ratio(ratio), widest, wordings, is_loud: false };
+        let wordings = words(number::ratio(ratio), ["smallest area ratio", "area ratio"]);
+        return Number { widest, wordings, is_loud: false };
     }
     let extent = scene.body.extent();
     let value = number::length(snapshot.diagnostics.shape_error, extent);
     let widest = number::length(0.888 * extent, extent);
-    Number { value, widest, wordings: words("shape error", "error"), is_loud: false }
+    Number { widest, wordings: words(value, ["shape error", "error"]), is_loud: false }
 }
 
 #[cfg(test)]

@@ -50,6 +50,7 @@ const CLEAR: f64 = 2.0;
 pub(super) struct Bar<'a> {
     name: &'static str,
     unit: &'static str,
+    definition: &'static str,
     /// The values at its ends.
     range: [f64; 2],
     ramp: &'a [Colour],
@@ -58,16 +59,16 @@ pub(super) struct Bar<'a> {
 }
 
 impl<'a> Bar<'a> {
-    /// The scale of something with a name and a unit, over a range in which its values lie, or beyond which.
+    /// The scale of something with a name, a unit and a definition, over a range in which its values lie, or beyond which.
     pub(super) fn new(
-        [name, unit]: [&'static str; 2],
+        [name, unit, definition]: [&'static str; 3],
         range: [f64; 2],
         ramp: &'a [Colour],
         values: impl Iterator<Item = f64>,
     ) -> Self {
         let [low, high] = range;
         let beyond = values.fold([false; 2], |[below, above], value| [below || value < low, above || value > high]);
-        Self { name, unit, range, ramp, beyond }
+        Self { name, unit, definition, range, ramp, beyond }
     }
 }
 
@@ -203,11 +204,11 @@ impl Legend {
         self.write(writer, &name, Weight::Regular, 16.0, palette.second_text, left + before, middle + 5.5 * unit)
     }
 
-    /// A bar of colours between two places, with its name before it and its numbers below; it stands in the given middle
-    /// if it can.
+    /// A bar of colours between two places, with its name before it, its numbers below and, where there is room, its
+    /// definition below its name; it stands in the given middle if it can.
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
-        let &Bar { name, ramp, beyond, .. } = bar;
+        let &Bar { name, ramp, beyond, mut definition, .. } = bar;
         let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
@@ -221,6 +222,13 @@ impl Legend {
             + space
             + writer.fonts.width(&unit_text, Weight::Regular, caption);
         let gap = 20.0 * unit;
+        let defined = fonts.width(definition, Weight::Regular, numbers);
+        if defined + gap + 2.0 * overhang + LENGTHS[0] * unit > right - left {
+            definition = "";
+        }
+        // Clear of the first number, which stands beside it.
+        let beside = widths.first().map_or(0.0, |width| width / 2.0);
+        let named = if definition.is_empty() { named } else { named.max(defined + beside) };
         let free = right - left - named - gap - overhang;
         let length = (0.26 * (right - left)).clamp(LENGTHS[0] * unit, LENGTHS[1] * unit).min(free).max(1.0).round();
         let room = widths.iter().sum::<f64>() + NUMBERS_APART * unit * widths.len() as f64;
@@ -234,6 +242,8 @@ impl Legend {
         let baseline = top + 0.5 * height + 5.5 * unit;
         let after = self.write(writer, name, Weight::SemiBold, 16.0, palette.text, left, baseline);
         self.write(writer, &unit_text, Weight::Regular, 16.0, palette.second_text, after + space, baseline);
+        let below = top + height + (TICK + 14.5) * unit;
+        self.write(writer, definition, Weight::Regular, NUMBERS, palette.second_text, left, below);
         let bar_left = (left + named + gap).round();
         let rim = (unit * writer.scale.line_factor).round().max(1.0);
         // Where values lie beyond the scale, the bar ends in a point.
@@ -261,8 +271,7 @@ impl Legend {
             let x = bar_left + axis.share(tick).clamp(0.0, 1.0) * length;
             let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
             writer.marks.push(filled(line, palette.axis));
-            let baseline = top + height + (TICK + 14.5) * unit;
-            self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, baseline);
+            self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, below);
         }
     }
 

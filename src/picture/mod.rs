@@ -93,6 +93,8 @@ pub(crate) struct Panel {
     pub turned_over: Mesh,
     /// Whether that is hatched.
     pub hatch: bool,
+    /// Whether the body is drawn in greys, because its run diverges or did so.
+    pub greyed: bool,
     /// Edges and contours of both, and of solid obstacles.
     pub lines: Vec<Line>,
     /// The obstacles besides the floor.
@@ -258,7 +260,8 @@ pub(crate) struct Vertex {
     pub position: [f32; 3],
     /// Normal of the face, of any length.
     pub normal: [f32; 3],
-    /// Where it lies in the hatch that is painted on the material, in periods.
+    /// On turned-over elements: where it lies in the hatch that is painted on the material, in periods. On others: 1 if the
+    /// element is flat, and so dotted, else 0.
     pub hatch: f32,
 }
 
@@ -271,8 +274,8 @@ pub(crate) struct Line {
     pub to: [f32; 3],
     /// What it is.
     pub kind: LineKind,
-    /// From 0 to 1: the opacity of a contour, which fades as its faces turn towards the viewer; the opacity of an edge of an
-    /// element that is not turned over where a surface hides it.
+    /// From 0 to 1: the opacity of a contour; the opacity of an edge of an element that is not turned over where a surface
+    /// hides it.
     pub strength: f32,
 }
 

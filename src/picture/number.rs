@@ -76,6 +76,18 @@ pub(super) fn with_minus(text: String) -> String {
     zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
 }
 
+/// How many times: in words up to twelve, then in digits, from a thousand on in powers of ten.
+pub(super) fn times(value: f64) -> String {
+    const WORDS: [&str; 11] =
+        ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+    match value.round() {
+        whole if whole < 999.5 => {
+            WORDS.get((whole as usize).wrapping_sub(2)).map_or_else(|| format!("{whole}"), |&word| word.to_owned())
+        }
+        whole => format!("{whole:.0e}"),
+    }
+}
+
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));

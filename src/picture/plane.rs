@@ -377,7 +377,7 @@ fn outside(polygon: &[DVec2], point: DVec2) -> f64 {
 }
 
 /// How far a point lies from a straight line between two others.
-fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
+pub(super) fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
     let share = (point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
     point.distance(a.lerp(b, share.clamp(0.0, 1.0)))
 }

@@ -15,17 +15,19 @@ use std::collections::HashMap;
 const HATCH_PERIOD: f64 = 0.30;
 /// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
 const FLATNESS: f64 = 0.35;
-/// Contours fade at faces seen at a smaller cosine than this.
+/// Faces seen at a smaller cosine than this are drawn though they are turned away: rounding could show them.
 const GRAZING: f64 = 0.02;
-/// The finest cut of a patch in each direction.
+/// The finest cut of a patch in each direction, and that of few faces: as fine as gives so many cells in all.
 const FINEST_CUT: usize = 6;
+const FINEST_OF_FEW: usize = 24;
+const CELLS_OF_FEW: usize = 4000;
 /// Where there are more faces than this they are cut in two at the most, and where there are more than that not at all:
 /// their patches are small, and drawing them takes longest.
 const MANY_FACES: usize = 3000;
 const VERY_MANY_FACES: usize = 12_000;
 
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
-const SMALLEST_ELEMENT: f64 = 1.5;
+const SMALLEST_ELEMENT: f64 = 4.0;
 /// Edges of elements smaller than this (px) do not show through the body.
 const SEEN_THROUGH: f64 = 6.5;
 /// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
@@ -48,6 +50,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) element: f64,
     /// Opacity of elements that are not turned over.
     pub(super) opacity: f64,
+    /// Whether each element is flat.
+    pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
     /// Whether edges of elements that are not turned over are drawn in front, and behind surfaces.
@@ -93,28 +97,36 @@ struct Patch {
     /// The corners of the face, seen from outside counter-clockwise.
     nodes: Vec<u32>,
     corners: Vec<DVec3>,
-    /// Where each corner lies in the hatch.
+    /// The place of each corner in the pattern on the face.
     phases: Vec<f64>,
     points: Vec<DVec3>,
-    /// The triangles, as places in `points`, and how much each shows its outside, from 0 to 1.
+    /// The triangles, as places in `points`.
     triangles: Vec<[u32; 3]>,
+    /// Whether it is a bilinear patch, whose normals vary over it; else each triangle has its own.
+    is_curved: bool,
+    /// How far the normals point towards the viewer: at each point of a bilinear patch, else of each triangle. Where that
+    /// is negative, the viewer sees the inside.
     facing: Vec<f64>,
 }
 
-/// The sides of all faces of a surface, cut into pieces: how much the triangle at each piece shows its outside.
+/// A side of a face: its nodes, and where its values begin in [`Borders`].
+type Border = ([u32; 2], u32);
+
+/// The sides of all faces of a surface, cut into pieces: how far the normals of the face point towards the viewer there.
 #[derive(Default)]
 struct Borders {
-    /// Piece after piece of side after side.
+    /// The values at the ends of the pieces, side after side.
     facing: Vec<f64>,
-    /// Each side: its nodes, and where its pieces begin in `facing`.
-    sides: Vec<([u32; 2], u32)>,
+    sides: Vec<Border>,
+    /// Where the values of one edge's sides change their sign, as parts of its length.
+    changes: Vec<f64>,
 }
 
 impl Borders {
     /// The sides in the order of their edges; those of one edge stand beside each other.
-    fn sorted(&self, nodes: usize) -> Vec<([u32; 2], u32)> {
+    fn sorted(&self, nodes: usize) -> Vec<Border> {
         // Sorted into boxes by the first node, which leaves hardly anything to sort.
-        let low = |side: &([u32; 2], u32)| side.0[0].min(side.0[1]) as usize;
+        let low = |side: &Border| side.0[0].min(side.0[1]) as usize;
         let mut starts = vec![0_u32; nodes + 1];
         self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
         (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
@@ -124,7 +136,7 @@ impl Borders {
             sorted[*place as usize] = *side;
             *place += 1;
         }
-        let key = |side: &([u32; 2], u32)| (ordered(side.0), side.1);
+        let key = |side: &Border| (ordered(side.0), side.1);
         let mut rest = &mut sorted[..];
         while let Some(first) = rest.first().map(low) {
             let count = rest.iter().take_while(|side| low(side) == first).count();
@@ -133,6 +145,48 @@ impl Borders {
             rest = after;
         }
         sorted
+    }
+
+    /// The value of a side at a part of its edge's length, which runs from the lower node to the higher one.
+    fn at(&self, &([from, to], first): &Border, share: f64, cut: usize) -> f64 {
+        let along = (if from < to { share } else { 1.0 - share }) * cut as f64;
+        let piece = (along as usize).min(cut - 1);
+        let [a, b] = [0, 1].map(|end| self.facing[first as usize + piece + end]);
+        a + (b - a) * (along - piece as f64)
+    }
+
+    /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of its
+    /// sides is seen, that of another is not. An edge of one side alone is a border of the surface.
+    fn contours(&mut self, sides: &[Border], cut: usize, draw: &mut dyn FnMut([f64; 2])) {
+        let mut changes = std::mem::take(&mut self.changes);
+        changes.clear();
+        for &([from, to], first) in sides {
+            let values = &self.facing[first as usize..][..=cut];
+            for (piece, two) in values.windows(2).enumerate().filter(|(_, two)| (two[0] < 0.0) != (two[1] < 0.0)) {
+                let share = (piece as f64 + two[0] / (two[0] - two[1])) / cut as f64;
+                changes.push(if from < to { share } else { 1.0 - share });
+            }
+        }
+        changes.sort_unstable_by(f64::total_cmp);
+        let (mut begin, mut from) = (None, 0.0);
+        for to in changes.iter().copied().chain([1.0]) {
+            let middle = f64::midpoint(from, to);
+            let away = sides.iter().filter(|side| self.at(side, middle, cut) < 0.0).count();
+            let is_contour = sides.len() == 1 || (away > 0 && away < sides.len());
+            match begin {
+                None if is_contour => begin = Some(from),
+                Some(start) if !is_contour => {
+                    draw([start, from]);
+                    begin = None;
+                }
+                _ => {}
+            }
+            from = to;
+        }
+        if let Some(start) = begin {
+            draw([start, 1.0]);
+        }
+        self.changes = changes;
     }
 }
 
@@ -171,12 +225,14 @@ impl Surroundings<'_> {
             && !self.lens.orthographic;
         let (mut patch, mut borders) = (Patch::default(), Borders::default());
         borders.sides.reserve(4 * faces.len());
-        borders.facing.reserve(4 * cut * faces.len());
+        borders.facing.reserve(4 * (cut + 1) * faces.len());
         for side in faces {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears.of(&patch.nodes);
             let before = [mesh.vertices.len(), mesh.shades.len(), mesh.triangles.len()];
-            self.emit(side, ears, &grid, &mut patch, mesh);
+            // Turned-over elements are hatched, flat ones among the others dotted.
+            let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
+            self.emit(side, ears, dots, &grid, &mut patch, mesh);
             if hides_back && self.is_hidden(side, &patch) {
                 mesh.vertices.truncate(before[0]);
                 mesh.shades.truncate(before[1]);
@@ -187,20 +243,19 @@ impl Surroundings<'_> {
         }
         let sides = borders.sorted(self.body.len());
         for edge in sides.chunk_by(|one, other| ordered(one.0) == ordered(other.0)) {
-            self.edge(edge, &borders.facing, cut, kinds, lines);
+            self.edge(edge, &mut borders, cut, kinds, lines);
         }
     }
 
     /// The lines along one edge, at which the sides of some faces meet.
-    fn edge(&self, sides: &[([u32; 2], u32)], facing: &[f64], cut: usize, kinds: Lines, lines: &mut Vec<Line>) {
+    fn edge(&self, sides: &[Border], borders: &mut Borders, cut: usize, kinds: Lines, lines: &mut Vec<Line>) {
         let [a, b] = ordered(sides[0].0);
         let (start, end) = (self.at(a), self.at(b));
         let share = self.own_lines();
         if share == 0.0 {
             return;
         }
-        let faces_away =
-            |&(_, first): &([u32; 2], u32)| facing[first as usize..][..cut].iter().all(|&seen| seen <= 0.0);
+        let faces_away = |&(_, first): &Border| borders.facing[first as usize..][..=cut].iter().all(|&seen| seen < 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
@@ -211,26 +266,23 @@ impl Surroundings<'_> {
         if is_large && if is_hidden { behind } else { in_front } {
             lines.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
-        let along = (end - start) / cut as f64;
-        for piece in 0..cut {
-            let seen = |&([from, to], first): &([u32; 2], u32)| {
-                facing[first as usize + if from < to { piece } else { cut - 1 - piece }]
-            };
-            let (least, most) =
-                sides.iter().map(seen).fold((1.0, 0.0), |(a, b): (f64, f64), at| (a.min(at), b.max(at)));
-            let strength = share * if sides.len() == 1 { 1.0 } else { contour(least, most) };
-            if strength > 0.0 {
-                let [from, to] = [piece, piece + 1].map(|at| start + at as f64 * along);
-                lines.push(self.line(from, to, kinds.contour, strength));
-            }
-        }
+        borders.contours(sides, cut, &mut |part| {
+            let [from, to] = part.map(|at| start.lerp(end, at));
+            lines.push(self.line(from, to, kinds.contour, share));
+        });
+    }
+
+    /// How far an outward normal at a point points towards the viewer, in parts of its length times the distance.
+    fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
+        -normal.dot(if self.lens.orthographic { self.lens.forward } else { point - self.lens.eye })
     }
 
     /// Whether a face of an element of its own is turned away from the viewer: the element hides it.
     fn is_hidden(&self, side: &Side, patch: &Patch) -> bool {
         // A flat element does not hide its own face.
         let is_solid = side.element.is_some_and(|element| !self.body.topology().is_flat(element as usize));
-        is_solid && patch.facing.iter().all(|&seen| seen == 0.0)
+        let turned = || self.lens.facing(patch.corners[0], newell(&patch.corners)) < -GRAZING;
+        is_solid && patch.facing.iter().all(|&seen| seen < 0.0) && turned()
     }
 
     /// Opacity of the lines of elements that are drawn apart. At 0 the gaps still separate them.
@@ -248,7 +300,8 @@ impl Surroundings<'_> {
         if total > VERY_MANY_FACES {
             return 1;
         }
-        let affordable = if total > MANY_FACES { 2 } else { FINEST_CUT };
+        let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
+        let affordable = if total > MANY_FACES { 2 } else { of_few };
         let (mut nodes, mut largest) = (Vec::new(), 0.0_f64);
         for side in faces {
             self.corners(side, &mut nodes);
@@ -265,29 +318,45 @@ impl Surroundings<'_> {
         if needed >= affordable as f64 { affordable } else { (needed as usize).max(1) }
     }
 
-    /// Cuts a face into triangles and adds them to a mesh.
-    fn emit(&self, side: &Side, ears: Option<&[[u32; 3]]>, grid: &Grid, patch: &mut Patch, mesh: &mut Mesh) {
+    /// Whether a face belongs to a flat element.
+    fn is_flat(&self, side: &Side) -> bool {
+        side.element.and_then(|element| self.flat.get(element as usize)).copied().unwrap_or(false)
+    }
+
+    /// Cuts a face into triangles and adds them to a mesh, with dots or, without a value, with the hatch.
+    fn emit(
+        &self,
+        side: &Side,
+        ears: Option<&[[u32; 3]]>,
+        dots: Option<f64>,
+        grid: &Grid,
+        patch: &mut Patch,
+        mesh: &mut Mesh,
+    ) {
         let base = u32::try_from(mesh.vertices.len()).expect("fewer than 2^32 vertices");
-        let Patch { nodes, corners, phases, points, triangles, facing } = patch;
+        let Patch { nodes, corners, phases, points, triangles, is_curved, facing } = patch;
         corners.clear();
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
         let phase = |node: u32| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft);
-        phases.extend(nodes.iter().map(|&node| phase(node)));
+        phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();
+        facing.clear();
         let vertex = |point: DVec3, normal: DVec3, phase: f64| Vertex {
             position: narrow_point((point - self.origin) / self.side).to_array(),
             normal: narrow_point(normal / (self.side * self.side)).to_array(),
             hatch: narrow(phase),
         };
         let shades = self.shades.map(|shades| shades.corners(nodes, side.element));
+        *is_curved = corners.len() == 4 && ears.is_none();
         if let ([a, b, c, d], None) = (&corners[..], ears) {
             for &([u, v], weights) in &grid.points {
                 let point = a.lerp(*b, u).lerp(d.lerp(*c, u), v);
                 let normal = bilinear_normal([*a, *b, *c, *d], [u, v]);
                 mesh.vertices.push(vertex(point, normal, weighted(&weights, phases)));
                 points.push(point);
+                facing.push(self.facing(point, normal));
             }
             if let Some(shades) = shades {
                 mesh.shades.extend(grid.points.iter().map(|(_, weights)| narrow(weighted(weights, &shades))));
@@ -314,43 +383,55 @@ impl Surroundings<'_> {
                 }
             }
         }
-        facing.clear();
-        for triangle in triangles {
-            let [a, b, c] = triangle.map(|at| points[at as usize]);
-            let cosine = self.lens.facing(a, (b - a).cross(c - a));
-            facing.push((0.5 + 0.5 * cosine / GRAZING).clamp(0.0, 1.0));
-            mesh.triangles.push(triangle.map(|at| base + at));
+        if !*is_curved {
+            facing.extend(triangles.iter().map(|triangle| {
+                let [a, b, c] = triangle.map(|at| points[at as usize]);
+                self.facing(a, (b - a).cross(c - a))
+            }));
         }
+        mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
     }
 
-    /// Contours between the triangles of one patch.
+    /// Contours within one face. Those of a bilinear patch run where its normal is at right angles to the line of sight,
+    /// interpolated within each triangle; they end exactly where those along the edges begin.
     fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut Vec<Line>) {
-        let Patch { points, triangles, facing, .. } = patch;
+        let Patch { points, triangles, is_curved, facing, .. } = patch;
         let share = self.own_lines();
-        if share == 0.0 || facing.windows(2).all(|two| two[0] == two[1]) {
+        let is_away = |at: usize| facing[at] < 0.0;
+        if share == 0.0 || (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
             return;
         }
-        let mut sides: HashMap<[u32; 2], f64> = HashMap::new();
-        for (triangle, &seen) in triangles.iter().zip(facing) {
+        let mut draw = |[from, to]: [DVec3; 2]| lines.push(self.line(from, to, kinds.contour, share));
+        if *is_curved {
+            for triangle in triangles {
+                let crossed = around(triangle).map(|side| ordered(side).map(|at| at as usize));
+                let mut ends = crossed
+                    .filter(|&[a, b]| is_away(a) != is_away(b))
+                    .map(|[a, b]| points[a].lerp(points[b], facing[a] / (facing[a] - facing[b])));
+                if let (Some(from), Some(to)) = (ends.next(), ends.next()) {
+                    draw([from, to]);
+                }
+            }
+            return;
+        }
+        let mut sides: HashMap<[u32; 2], bool> = HashMap::new();
+        for (at, triangle) in triangles.iter().enumerate() {
             for side in around(triangle) {
-                if let Some(other) = sides.insert(ordered(side), seen)
-                    && other != seen
-                {
-                    let [a, b] = side.map(|at| points[at as usize]);
-                    lines.push(self.line(a, b, kinds.contour, share * contour(other, seen)));
+                if sides.insert(ordered(side), is_away(at)).is_some_and(|other| other != is_away(at)) {
+                    draw(side.map(|at| points[at as usize]));
                 }
             }
         }
     }
 }
 
-/// Records how much the triangles along the sides of a face show their outsides.
+/// Records how far the normals along the sides of a face point towards the viewer.
 fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut Borders) {
     let Patch { nodes, facing, .. } = patch;
     for (side, ends) in around(nodes).enumerate() {
         borders.sides.push((ends, u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces")));
-        if let ([_, _, _, _], None) = (&nodes[..], ears) {
-            borders.facing.extend((0..cut).map(|piece| facing[border_triangle(side, piece, cut)]));
+        if patch.is_curved {
+            borders.facing.extend((0..=cut).map(|along| facing[border_point(side, along, cut)]));
             continue;
         }
         let two = [side as u32, ((side + 1) % nodes.len()) as u32];
@@ -363,7 +444,7 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &
             None if nodes.len() == 3 => facing[0],
             None => facing[side],
         };
-        borders.facing.extend(std::iter::repeat_n(seen, cut));
+        borders.facing.extend(std::iter::repeat_n(seen, cut + 1));
     }
 }
 
@@ -373,26 +454,20 @@ pub(super) fn own_lines(element: f64) -> f64 {
     ((element - none) / (all - none)).clamp(0.0, 1.0)
 }
 
-/// The opacity of a contour between two triangles that show their outsides so much. It is 1 on one side of a triangle seen
-/// from the side.
-fn contour(one: f64, other: f64) -> f64 {
-    (3.0 * (one - other).abs()).min(1.0)
-}
-
 /// The sum of what stands at the corners of a face, each times its weight.
 fn weighted(weights: &[f64; 4], of_corners: &[f64]) -> f64 {
     weights.iter().zip(of_corners).map(|(weight, corner)| weight * corner).sum()
 }
 
-/// The triangle of a [`Grid`] that holds a piece of a side of the quadrilateral.
-fn border_triangle(side: usize, piece: usize, cut: usize) -> usize {
-    let last = cut - 1;
-    match side {
-        0 => 2 * piece,
-        1 => 2 * (piece * cut + last),
-        2 => 2 * (last * cut + last - piece) + 1,
-        _ => 2 * ((last - piece) * cut) + 1,
-    }
+/// The point of a [`Grid`] so many pieces along a side of the quadrilateral.
+fn border_point(side: usize, along: usize, cut: usize) -> usize {
+    let [row, column] = match side {
+        0 => [0, along],
+        1 => [along, cut],
+        2 => [cut, cut - along],
+        _ => [cut - along, 0],
+    };
+    row * (cut + 1) + column
 }
 
 /// The normal of a bilinear patch, as long as the area it stands for. It is linear in both directions, so that its

@@ -1,4 +1,5 @@
-//! The tally: one square for each element, a row for each layer, with the turned-over elements marked.
+//! The tally: one square for each element, a row for each layer, with the turned-over elements marked and the flat ones
+//! hollow.
 
 use super::layout::Scale;
 use super::{Mark, MarkShape};
@@ -14,6 +15,8 @@ pub(super) const HEIGHT: f64 = 36.0;
 const WIDTH: f64 = 200.0;
 /// Squares smaller than this (px in the reference picture) would be less legible than a bar.
 const LEAST_SQUARE: f64 = 4.0;
+/// The rim of a hollow square, in parts of its side.
+const RIM: f64 = 0.14;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];
 
@@ -68,10 +71,11 @@ impl Tally {
         self.are_layers && self.rows.len() > 1
     }
 
-    /// The marks of the tally with its lower left corner at a place (px), and its width (px).
+    /// The marks of the tally with its lower left corner at a place (px), and its width (px). `states` tells which elements
+    /// have turned over, and which are flat.
     pub(super) fn draw(
         &self,
-        turned_over: &[bool],
+        states: [&[bool]; 2],
         palette: &Palette,
         scale: Scale,
         room: f64,
@@ -83,9 +87,9 @@ impl Tally {
                 // Few rows stand in the middle of the height that three would take.
                 let taken = self.rows.len() as f64 * (lengths[0] + lengths[1]) - lengths[1];
                 let raised = ((HEIGHT * scale.type_unit() - taken) / 2.0).max(0.0);
-                self.draw_squares(turned_over, palette, lengths, [corner[0], corner[1] - raised], marks)
+                self.draw_squares(states, palette, lengths, [corner[0], corner[1] - raised], marks)
             }
-            None => self.draw_bar(turned_over, palette, scale, room, corner, marks),
+            None => self.draw_bar(states, palette, scale, room, corner, marks),
         }
     }
 
@@ -103,7 +107,7 @@ impl Tally {
 
     fn draw_squares(
         &self,
-        turned_over: &[bool],
+        states: [&[bool]; 2],
         palette: &Palette,
         [side, gap]: [f64; 2],
         [left, bottom]: [f64; 2],
@@ -113,13 +117,17 @@ impl Tally {
         let mut width: f64 = 0.0;
         for (up, row) in self.rows.iter().rev().enumerate() {
             for (along, &element) in row.iter().enumerate() {
-                let over = turned_over.get(element).copied().unwrap_or(false);
+                let [over, flat] = states.map(|state| state.get(element).copied().unwrap_or(false));
                 let x = left + along as f64 * (side + gap);
                 let y = bottom - side - up as f64 * (side + gap);
-                let (shape, colour) =
-                    if over { (MarkShape::Struck, palette.alarm) } else { (MarkShape::Filled, palette.tally) };
-                let square = Mark::upright([x, y, side, side], shape, colour);
-                marks.push(Mark { second: palette.alarm_line, ..square });
+                if flat {
+                    marks.extend(hollow([x, y, side, side], palette));
+                } else {
+                    let (shape, colour) =
+                        if over { (MarkShape::Struck, palette.alarm) } else { (MarkShape::Filled, palette.tally) };
+                    let square = Mark::upright([x, y, side, side], shape, colour);
+                    marks.push(Mark { second: palette.alarm_line, ..square });
+                }
                 width = width.max(x + side - left);
             }
         }
@@ -128,7 +136,7 @@ impl Tally {
 
     fn draw_bar(
         &self,
-        turned_over: &[bool],
+        states: [&[bool]; 2],
         palette: &Palette,
         scale: Scale,
         room: f64,
@@ -140,15 +148,29 @@ impl Tally {
         }
         let [width, height] =
             [(BAR[0] * scale.type_unit()).min(room).round(), (BAR[1] * scale.type_unit()).round().max(1.0)];
-        let over = turned_over.iter().filter(|&&over| over).count();
         // A single element among thousands still shows.
-        let filled = if over == 0 { 0.0 } else { (width * over as f64 / self.count as f64).max(2.0).min(width) };
+        let [over, flat] = states.map(|state| match state.iter().filter(|&&is_so| is_so).count() {
+            0 => 0.0,
+            count => (width * count as f64 / self.count as f64).max(2.0).min(width).round(),
+        });
+        let flat = flat.min(width - over);
         let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.type_unit() - height).round());
         let bar = |length, colour| Mark::upright([left, top, length, height], MarkShape::Filled, colour);
         marks.push(bar(width, palette.tally));
-        if over > 0 {
-            marks.push(bar(filled, palette.alarm));
+        if flat > 0.0 {
+            marks.extend(hollow([left + over, top, flat, height], palette));
+        }
+        if over > 0.0 {
+            marks.push(bar(over, palette.alarm));
         }
         width
     }
+}
+
+/// A hollow rectangle, which stands for flat elements.
+pub(in crate::picture) fn hollow([left, top, width, height]: [f64; 4], palette: &Palette) -> [Mark; 2] {
+    let rim = (RIM * height).round().max(1.0).min(width / 2.0);
+    let inside = [left + rim, top + rim, width - 2.0 * rim, height - 2.0 * rim];
+    let filled = |rectangle, colour| Mark::upright(rectangle, MarkShape::Filled, colour);
+    [filled([left, top, width, height], palette.axis), filled(inside, palette.background)]
 }

@@ -29,6 +29,11 @@ const THINNEST: f64 = 0.2;
 const SEEN_THROUGH: f64 = 8.0;
 /// The share of the background in the colour of the farthest line or node, as a depth cue where there are no surfaces.
 const HAZE: f64 = 0.62;
+/// The same of springs that are coloured by their strain, in parts of it: at full strain there is none, so that these have
+/// the colours of the key.
+const STRAINED_HAZE: f64 = 0.8;
+/// Springs are put above others in so many steps of strain; of those of one step the nearest lie on top.
+const STRAIN_STEPS: f64 = 8.0;
 /// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
 const LONGEST_STEP: f64 = 0.05;
 
@@ -91,21 +96,35 @@ impl Wire<'_> {
     }
 
     /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its
-    /// strain.
+    /// strain, and the more strained lie above the others.
     pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], [f64; 2])>) -> Vec<Stroke> {
         let haze = self.haze();
+        if let Some((ramp, range)) = strain {
+            let strokes = springs.iter().map(|&ends| {
+                let share = self.share(ends, range);
+                let (depth, stroke) = self.strained(ends, ramp, range, &|at| STRAINED_HAZE * haze(at) * (1.0 - share));
+                (depth, ((share * STRAIN_STEPS).round(), stroke))
+            });
+            let mut strokes: Vec<_> = farthest_first(strokes.collect()).collect();
+            strokes.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+            return strokes.into_iter().map(|(_, stroke)| stroke).collect();
+        }
         let mut strokes = Vec::with_capacity(springs.len());
         for &ends in springs {
-            match strain {
-                Some((ramp, range)) => strokes.push(self.strained(ends, ramp, range, &haze)),
-                None => self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes),
-            }
+            self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes);
         }
-        if self.surfaces && strain.is_none() {
+        if self.surfaces {
             let second = Second::OnBody(self.palette.spring_on_body);
             strokes.iter_mut().for_each(|(_, stroke)| stroke.second = second);
         }
         farthest_first(strokes).collect()
+    }
+
+    /// How strained a spring is, from 0 to 1 at the nearer end of its colours.
+    fn share(&self, ends: [u32; 2], [low, high]: [f64; 2]) -> f64 {
+        let strain = spring_strain(self.body, self.position, ends);
+        let share = strain.abs() / low.abs().min(high.abs()).max(f64::MIN_POSITIVE);
+        if share.is_nan() { 0.0 } else { share.min(1.0) }
     }
 
     /// A spring in the colour of its strain.
@@ -116,9 +135,8 @@ impl Wire<'_> {
         let middle = ends_now[0].midpoint(ends_now[1]);
         let faded = |colour| mixed(colour, self.palette.background, haze(middle));
         let (depth, plain) = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
-        // Over surfaces, a casing keeps lines of all colours visible.
-        let second = if self.surfaces { Second::Casing(faded(self.palette.casing)) } else { Second::None };
-        (depth, Stroke { second, ..plain })
+        // A casing keeps lines of all colours visible, over surfaces, the ground and other lines.
+        (depth, Stroke { second: Second::Casing(faded(self.palette.casing)), ..plain })
     }
 
     /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.

@@ -116,7 +116,8 @@ pub(super) fn is_plain(picture: &Picture, panel: &Panel) -> bool {
 }
 
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
-    let (palette, sight) = (&picture.palette, &panel.sight);
+    let sight = &panel.sight;
+    let palette = &if panel.greyed { picture.palette.greyed() } else { picture.palette };
     let [left, top] = [0, 1].map(|axis| panel.region[axis] as f32 - region[axis] as f32);
     PanelUniform {
         clip,

@@ -57,16 +57,17 @@ impl Diagnose {
         Self { body: Arc::clone(body), volumes_at_rest, volume_at_rest, affine, rest_centre, centred }
     }
 
-    /// The diagnostics of a state, whether each element is turned over, and the best rigid placement of the body.
+    /// The diagnostics of a state, whether each element is turned over and whether it is flat, and the best rigid placement
+    /// of the body.
     pub(crate) fn state(
         &self,
         state: Nodes<'_>,
         gravity: DVec3,
         report: &Report,
-    ) -> (Diagnostics, Vec<bool>, Placement) {
+    ) -> (Diagnostics, [Vec<bool>; 2], Placement) {
         let facts = self.facts(state, gravity, || report.clone());
         let all = Diagnostics::of(&facts, |_| true);
-        (all, facts.turned_over().collect(), *facts.placement)
+        (all, [facts.turned_over().collect(), facts.flat().collect()], *facts.placement)
     }
 
     /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
@@ -299,7 +300,7 @@ fn mean(points: &[DVec3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::diagnostics::is_turned_over;
+    use super::super::diagnostics::{is_flat, is_turned_over};
     use super::*;
     use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;
@@ -394,6 +395,16 @@ mod tests {
             assert!(is_turned_over(-1.01e-9 * at_rest, at_rest));
         }
         assert!(!is_turned_over(-1.0, 0.0), "what has no volume cannot turn over");
+    }
+
+    #[test]
+    fn an_element_is_flat_below_a_hundredth_of_its_volume() {
+        for at_rest in [1.0, 2e-6, -3.0] {
+            assert!(is_flat(0.009 * at_rest, at_rest) && is_flat(0.0, at_rest) && is_flat(-1e-10 * at_rest, at_rest));
+            assert!(!is_flat(0.011 * at_rest, at_rest));
+            assert!(!is_flat(-0.005 * at_rest, at_rest), "it has turned over");
+        }
+        assert!(!is_flat(0.0, 0.0), "what has no volume cannot lose it");
     }
 
     #[test]

@@ -41,6 +41,14 @@ pub(super) struct Facts<'a> {
 /// that really turns over the margin is only a billionth of its height.
 const ROUND_OFF: f64 = 1e-9;
 
+/// An element is flat if its volume is below this fraction of that at rest and it has not turned over.
+const FLAT: f64 = 0.01;
+
+/// Whether an element with a volume at rest has lost it.
+pub(super) fn is_flat(now: f64, at_rest: f64) -> bool {
+    now.abs() < FLAT * at_rest.abs() && !is_turned_over(now, at_rest)
+}
+
 pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
     now * at_rest < -ROUND_OFF * at_rest * at_rest
 }
@@ -59,6 +67,11 @@ impl Facts<'_> {
     /// Whether each element has turned over.
     pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
         self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
+    }
+
+    /// Whether each element is flat.
+    pub(super) fn flat(&self) -> impl Iterator<Item = bool> {
+        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_flat(now, at_rest))
     }
 
     /// RMS distance of the nodes from the placement (m).

@@ -63,6 +63,16 @@ impl Field {
         }
     }
 
+    /// What it is, in a few words beside its name in keys.
+    pub(crate) fn definition(self) -> &'static str {
+        match self {
+            Self::Strain => "RMS distance from the rest shape, over its size",
+            Self::Displacement => "distance from the best fit of the rest shape",
+            Self::Speed => "of each node",
+            Self::ElasticEnergy => "share of each node",
+        }
+    }
+
     /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`].
     pub(super) fn values(self, body: &Body, state: Nodes<'_>, placement: &Placement, energies: Vec<f64>) -> Vec<f64> {
         match self {

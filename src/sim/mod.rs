@@ -42,7 +42,7 @@ pub use integrate::Integrator;
 pub(crate) use kernel::floor;
 pub use lists::IndexLists;
 pub use motion::{Ease, Key, Motion, Offset, Pose};
-pub use snapshot::{Diagnostics, Divergence, Frame, Placement, RunFrame, Snapshot, Status};
+pub use snapshot::{Diagnostics, Divergence, Frame, LastFit, Placement, RunFrame, Snapshot, Status};
 pub use state::{Memory, Nodes, State};
 pub use topology::{Elements, Faces, Springs};
 pub use world::{Kernel, Moment, World};

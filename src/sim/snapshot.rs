@@ -41,6 +41,8 @@ pub struct Snapshot {
     /// Whether each element has turned over: its signed volume is below −1e-9 of that at rest; see
     /// [`Diagnostics::turned_over`].
     pub turned_over: Vec<bool>,
+    /// Whether each element is flat: its volume is below a hundredth of that at rest, and it has not turned over.
+    pub flat: Vec<bool>,
     /// The best rigid placement of the rest shape.
     pub placement: Placement,
     /// The values of the requested field, one for each node or each element; empty if no field was requested.
@@ -88,4 +90,28 @@ pub struct RunFrame {
     pub run: usize,
     /// Its state.
     pub snapshot: Snapshot,
+    /// What pictures show of a run that diverges, from the last state that fits on; `None` before that, and where nothing is
+    /// drawn.
+    pub last_fit: Option<Box<LastFit>>,
+}
+
+impl RunFrame {
+    /// A run with a state that is shown as it is.
+    pub fn new(run: usize, snapshot: Snapshot) -> Self {
+        Self { run, snapshot, last_fit: None }
+    }
+
+    /// The state that pictures show.
+    pub(crate) fn shown(&self) -> &Snapshot {
+        self.last_fit.as_ref().map_or(&self.snapshot, |last_fit| &last_fit.snapshot)
+    }
+}
+
+/// The last state of a run that diverges in which the body is not much wider than at rest or at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LastFit {
+    /// That state, with its own time and the status at the end.
+    pub snapshot: Snapshot,
+    /// How many times wider the body is when the run stops.
+    pub times_wider: f64,
 }

@@ -309,7 +309,7 @@ impl World {
         } else {
             self.dynamics.report(part, &self.state, None)
         };
-        let (diagnostics, turned_over, placement) = part.diagnose.state(nodes, self.system.gravity, &report);
+        let (diagnostics, [turned_over, flat], placement) = part.diagnose.state(nodes, self.system.gravity, &report);
         let field = self.field.map_or_else(Vec::new, |field| field.values(&part.body, nodes, &placement, energies));
         Snapshot {
             step: self.state.steps,
@@ -317,6 +317,7 @@ impl World {
             position: nodes.position.to_vec(),
             velocity: nodes.velocity.to_vec(),
             turned_over,
+            flat,
             placement,
             field,
             diagnostics,

@@ -1,8 +1,9 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
 use super::{fig4b, gpu, parse, renderer};
+use localshape::colour::{Vision, difference, oklab};
 use localshape::look::{ColourMap, ColourScale, Style, Theme, Visible};
-use localshape::picture::{Mark, MarkShape, Picture, SHADES, Second, compose};
+use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::field::Field;
@@ -396,6 +397,40 @@ fn the_plane_shows_the_colours_of_the_bar() {
             let body = image::imageops::crop_imm(&image, x, y, width, height).to_image();
             let count = body.pixels().filter(|pixel| near(pixel)).count();
             assert!(count > 300, "{theme:?} {at}: {count}");
+        }
+    }
+}
+
+#[test]
+fn light_keeps_the_colours_of_the_key() {
+    use ColourMap::{Cividis, Greys, Magma, MintIndigo, PurpleGreen, VioletGreen, Viridis};
+    let Some(gpu) = gpu("light_keeps_the_colours_of_the_key") else { return };
+    let (mut scene, mut frame) = with_field(Field::Speed, [0.0, 1.0], 4);
+    let view = &mut scene.view;
+    (view.size, view.edges, view.outline, view.hatch) = ([200, 160], [false; 2], false, false);
+    frame.runs.truncate(1);
+    let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
+    let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];
+    for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
+        scene.view.look = Look::of(theme);
+        scene.view.colour = Some(ColourScale { field: Field::Speed, range: [0.0, 1.0], map });
+        for at in [0, 16, 32, 47, SHADES - 1] {
+            frame.runs[0].snapshot.field.fill(at as f64 / (SHADES - 1) as f64);
+            let mut picture = compose(&scene, &frame);
+            (picture.words, picture.marks) = Default::default();
+            let key = picture.ramp[at];
+            let image = renderer.draw(&picture).expect("the device works");
+            picture.panels[0].sound = Mesh::default();
+            let ground = renderer.draw(&picture).expect("the device works");
+            let on_body = image.pixels().zip(ground.pixels()).filter(|(body, ground)| body != ground);
+            let colours: Vec<_> = on_body.map(|(body, _)| body.0).collect();
+            assert!(colours.len() > 800, "{map:?} {theme:?} {at}: {}", colours.len());
+            let most = colours.iter().map(|&colour| difference(colour, key, Vision::Normal)).fold(0.0, f64::max);
+            assert!(most <= 5.0, "{map:?} {theme:?} {at}: {most} from {key:x?}");
+            // Faces are told from each other nevertheless.
+            let lightness = colours.iter().map(|&colour| oklab(colour).0[0]);
+            let (least, most) = lightness.fold((1.0, 0.0), |(a, b): (f64, f64), at| (a.min(at), b.max(at)));
+            assert!(most / least > 1.03, "{map:?} {theme:?} {at}: {least} {most}");
         }
     }
 }

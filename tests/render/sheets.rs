@@ -191,7 +191,9 @@ fn counts_are_those_that_were_simulated() {
         for (panel, run) in picture.panels.iter().zip(moments.cells.iter().flatten()) {
             let expected = run.snapshot.diagnostics.turned_over;
             let count = within(&picture, panel).find(|word| word.weight == Weight::SemiBold).expect("a count");
-            assert_eq!(count.text, expected.to_string(), "{}", figure.title);
+            let flat = run.snapshot.flat.iter().filter(|&&flat| flat).count();
+            let text = if expected == 0 && flat > 0 { format!("{flat} flat") } else { expected.to_string() };
+            assert_eq!(count.text, text, "{}", figure.title);
             let colour = if expected > 0 { picture.palette.alarm_text } else { picture.palette.second_text };
             assert_eq!(count.colour, colour);
             let [left, top, width, height] = panel.viewport.map(|length| length as f32);
@@ -200,13 +202,13 @@ fn counts_are_those_that_were_simulated() {
                 mark.shape == MarkShape::Struck && left <= x && x < left + width && top <= y && y < top + height
             });
             assert_eq!(struck.count(), expected, "{}", figure.title);
-            // One square for each element.
+            // One square for each element, and one inside it for each flat one.
             let squares = picture.marks.iter().filter(|mark| {
                 let [x, y, across, high] = mark.rectangle;
                 let inside = left <= x && x < left + width && top <= y && y < top + height;
                 inside && across == high && matches!(mark.shape, MarkShape::Filled | MarkShape::Struck)
             });
-            assert_eq!(squares.count(), run.snapshot.turned_over.len(), "{}", figure.title);
+            assert_eq!(squares.count(), run.snapshot.turned_over.len() + flat, "{}", figure.title);
         }
     }
 }

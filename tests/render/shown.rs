@@ -1,6 +1,8 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
 use super::{fig4b, frame, parse};
+use localshape::colour::contrast;
+use localshape::look::{ColourMap, Palette, Theme};
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
@@ -428,4 +430,105 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
         assert!(start.cmpge(low - 2.0).all() && start.cmple(high + 2.0).all(), "frame {index}: {start}");
         assert!(leader.rectangle[2] > 20.0);
     }
+}
+
+#[test]
+fn contours_are_closed_chains() {
+    let (simulated, _) = fig4b(0);
+    let (mut scene, mut runner) = (simulated.clone(), Runner::new(&simulated, &[0, 1]));
+    let mut seen = 0;
+    for index in [3, 5, 8, 14] {
+        let frame = runner.frame(index);
+        for azimuth in [0.1, 1.3, 2.9] {
+            scene.view.camera.azimuth = azimuth;
+            let picture = compose(&scene, &frame);
+            let lines = picture.panels[0].lines.iter().filter(|line| line.kind == LineKind::Contour);
+            let ends: Vec<_> = lines.flat_map(|line| [line.from, line.to]).map(glam::Vec3::from).collect();
+            for end in &ends {
+                // Much nearer than the pieces of a patch are long.
+                let meeting = ends.iter().filter(|other| end.distance(**other) < 4e-4).count();
+                assert!(meeting % 2 == 0, "{index} {azimuth}: {meeting} contours meet at {end}");
+            }
+            seen += ends.len();
+        }
+    }
+    assert!(seen > 500, "{seen}");
+}
+
+/// A shipped scene.
+fn shipped(text: &str) -> Scene {
+    Scene::parse(text, "shipped.toml", &Limits::default()).expect("the shipped scene is sound")
+}
+
+#[test]
+fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
+    let scene = shipped(include_str!("../../scenes/explicit-euler.toml"));
+    let composer = Composer::new(&scene);
+    let mut runner = Runner::new(&scene, &[0, 1, 2]);
+    let [before, growing, first, last] = [10, 57, 90, 119].map(|index| composer.compose(&runner.frame(index)));
+    let greyed = |picture: &Picture| picture.panels.iter().map(|panel| panel.greyed).collect::<Vec<_>>();
+    assert_eq!((greyed(&before), greyed(&last)), (vec![false; 3], vec![false, false, true]));
+    assert_eq!((&growing.panels[2], &first.panels[2]), (&last.panels[2], &last.panels[2]));
+    let [left, top, width, height] = last.panels[2].viewport;
+    let [x, y, wide, high] = last.panels[2].region;
+    assert!(x > left && y > top && x + wide < left + width && y + high < top + height, "it fits");
+    let said: Vec<_> = last.words.iter().map(|run| run.text.as_str()).collect();
+    let Status::Diverged(divergence) = runner.snapshots()[2].snapshot.status else { panic!("it diverged") };
+    let when = format!("diverged at {:.0} ms", divergence.time * 1e3);
+    assert!(said.contains(&when.as_str()), "{said:?}");
+    assert!(said.iter().any(|text| text.ends_with(" times wider than shown")), "{said:?}");
+    let when = when.replace("diverged", "diverges");
+    assert!(growing.words.iter().any(|run| run.text == when), "it has not yet");
+}
+
+#[test]
+fn greys_have_no_hue_and_keep_their_order() {
+    for theme in [Theme::Light, Theme::Dark] {
+        let palette = Palette::of(theme);
+        let grey = palette.greyed();
+        for colour in [grey.sound, grey.sound_flat, grey.alarm, grey.edge, grey.outline] {
+            let [least, most] = [colour.iter().min(), colour.iter().max()].map(|byte| *byte.expect("three"));
+            assert!(most - least <= 8, "{theme:?}: {colour:?}");
+        }
+        assert!(contrast(grey.outline, palette.background) > contrast(grey.sound, palette.background));
+    }
+}
+
+#[test]
+fn flat_elements_are_a_state_of_their_own() {
+    let scene = shipped(include_str!("../../scenes/elements/restore-plane.toml"));
+    let frame = Runner::new(&scene, &[0]).frame(0);
+    let picture = compose(&scene, &frame);
+    assert!(picture.panels[0].sound.vertices.iter().all(|vertex| vertex.hatch == 1.0), "dots");
+    let squares = |picture: &Picture, colour| {
+        let is_one =
+            |mark: &&localshape::picture::Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
+        picture.marks.iter().filter(is_one).count()
+    };
+    assert_eq!([picture.palette.axis, picture.palette.tally].map(|colour| squares(&picture, colour)), [27, 0]);
+    let says = |picture: &Picture, text: &str| picture.words.iter().any(|run| run.text == text);
+    assert!(says(&picture, "27 of 27") && says(&picture, "flat") && !says(&picture, "turned over"));
+    // At rest nothing is flat.
+    let (scene, frame) = fig4b(0);
+    let picture = compose(&scene, &frame);
+    assert!(picture.panels.iter().all(|panel| panel.sound.vertices.iter().all(|vertex| vertex.hatch == 0.0)));
+    assert!(says(&picture, "0 of 27") && says(&picture, "turned over") && !says(&picture, "flat"));
+}
+
+#[test]
+fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
+    let (mut scene, _) = fig4b(0);
+    scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
+    let scale = localshape::look::StrainScale { range: [-0.1, 0.1], map: ColourMap::VioletGreen };
+    scene.view.spring_strain = Some(scale);
+    let frame = Runner::new(&scene, &[1]).frame(4);
+    let strokes = &compose(&scene, &frame).panels[0].strokes;
+    let ends = localshape::look::ramp::ramp(scale.map, Theme::Light);
+    let full = |colour| colour == ends[0] || colour == ends[ends.len() - 1];
+    let springs = scene.runs[1].model.springs().len();
+    let first = strokes.iter().position(|stroke| full(stroke.colours[0])).expect("some are strained so far");
+    let above = &strokes[first..springs];
+    // Of those that are in the same step of strain.
+    let count = above.iter().filter(|stroke| full(stroke.colours[0])).count();
+    assert!(above.len() < 2 * count && count > 20, "{count} of {}", above.len());
 }

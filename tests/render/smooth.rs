@@ -183,3 +183,31 @@ fn obstacles_are_drawn_alike_every_time() {
         assert_eq!(one, other);
     }
 }
+
+/// Means of 8×8 pixels are between two bytes where the shadow changes slowly: there are no bands of one byte each. The plain
+/// background is left alone.
+#[test]
+fn a_wide_shadow_has_no_bands() {
+    let Some(gpu) = gpu("a_wide_shadow_has_no_bands") else { return };
+    let (mut scene, frame) = super::fig4b(2);
+    scene.view.floor = localshape::look::FloorStyle::None;
+    let mut picture = compose(&scene, &frame);
+    (picture.words, picture.marks) = Default::default();
+    for panel in &mut picture.panels {
+        (panel.sound, panel.turned_over) = Default::default();
+        panel.lines.clear();
+    }
+    let image = draw(gpu, &picture, 1);
+    assert!((0..1280).all(|x| image.get_pixel(x, 2).0 == picture.palette.background));
+    let (mut between, mut all) = (0, 0);
+    for (x, y) in (40..75).flat_map(|y| (0..160).map(move |x| (8 * x, 8 * y))) {
+        let block: Vec<_> = (0..64).map(|at| f64::from(image.get_pixel(x + at % 8, y + at / 8)[1])).collect();
+        let (low, high) = block.iter().fold((255.0, 0.0), |(a, b): (f64, f64), &at| (a.min(at), b.max(at)));
+        let mean = block.iter().sum::<f64>() / 64.0;
+        if mean < 245.0 && high - low <= 2.0 {
+            all += 1;
+            between += usize::from((mean - mean.round()).abs() > 0.03);
+        }
+    }
+    assert!(all > 200 && between * 10 > all * 8, "{between} of {all}");
+}

@@ -213,7 +213,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
     let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with(" m")).map(|word| word.span);
     let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
-    assert!(frames[1].words.iter().any(|word| word.text == "diverged"), "it blows up");
+    assert!(frames[1].words.iter().any(|word| word.text.starts_with("diverged")), "it blows up");
     assert!(bar(&frames[0]).is_some());
     assert_eq!(bar(&frames[0]), bar(&frames[1]));
 }
@@ -234,7 +234,6 @@ fn everything_is_written_where_there_is_room() {
         "turned over",
         "shape error",
         "0.1 m",
-        "diverged",
         "strain",
         "spring strain",
         "0.25",
@@ -242,7 +241,7 @@ fn everything_is_written_where_there_is_room() {
     for words in expected {
         assert!(said.contains(&words), "“{words}” is not in {said:?}");
     }
-    for beginning in ["A title above all", "A caption of several", "A third model", "displacement ", "at "] {
+    for beginning in ["A title above all", "A caption of several", "A third model", "displacement ", "diverged"] {
         assert!(said.iter().any(|words| words.starts_with(beginning)), "“{beginning}…” is not in {said:?}");
     }
 }

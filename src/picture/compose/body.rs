@@ -26,6 +26,7 @@ impl Draft<'_> {
             apart: self.composer.exploded.is_some(),
             element: self.element,
             opacity: self.scene.view.opacity,
+            flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
         };
         let sets = self.composer.shell.boundaries(self.body, &self.run.snapshot.turned_over);
@@ -121,7 +122,7 @@ impl Draft<'_> {
             side: self.side,
             eye: self.lens.eye,
             forward: self.lens.forward,
-            palette: &self.composer.palette,
+            palette: &self.palette,
             line: self.scale.line(),
             element: self.element,
             surfaces: self.scene.view.visible.surfaces,

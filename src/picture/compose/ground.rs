@@ -26,6 +26,10 @@ const FADE_ABOVE: f64 = 9.0;
 /// The lines of the grid are a side apart, or more if a body would cover more cells than this: a lattice, whose cells the
 /// grid repeats, and any other body, beside which a fine grid would distract.
 const MOST_CELLS: [f64; 2] = [10.0, 5.0];
+/// Nor are they nearer to each other than this (px), or they would make a moiré; so flat does the floor look at least
+/// (sine of the angle).
+const LEAST_CELL: f64 = 8.0;
+const FLATTEST: f64 = 0.2;
 /// The darkness of the shadow of a body without surfaces, in parts of that of one with surfaces.
 const SHEER: f64 = 0.38;
 
@@ -133,17 +137,20 @@ impl Draft<'_> {
 
     /// The distance of the grid's lines (sides).
     pub(super) fn cell(&self) -> f64 {
+        let camera = &self.scene.view.camera;
         let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
-        cell(self.composer.extent * self.composer.spread / self.side, most)
+        // Without what the camera follows, so that cells do not change between frames.
+        let pixels = self.still().focal * self.side / camera.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
+        cell(self.composer.extent * self.composer.spread / self.side, most, LEAST_CELL / pixels)
     }
 }
 
-/// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most: 1, 2, 5,
-/// 10, 20, …
-fn cell(extent: f64, most: f64) -> f64 {
+/// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most, and no less
+/// than `least` (sides): 1, 2, 5, 10, 20, …
+fn cell(extent: f64, most: f64, least: f64) -> f64 {
     let mut cells = 1.0;
     for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {
-        if extent / cells <= most {
+        if extent / cells <= most && cells >= least {
             break;
         }
         cells *= factor;

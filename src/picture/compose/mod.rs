@@ -32,7 +32,7 @@ use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
-use crate::sim::snapshot::{Frame, Snapshot, Status};
+use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 use difference::Compared;
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
@@ -265,7 +265,7 @@ impl<'a> Composer<'a> {
 
     /// What the camera of all panels looks at.
     fn framing(&self, frame: &Frame) -> Framing {
-        let middles = Middles::new(frame.runs.iter().filter_map(|run| middle(&run.snapshot)), self.start);
+        let middles = Middles::new(frame.runs.iter().filter_map(middle), self.start);
         let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
         camera::framing(&self.scene.view.camera, &middles, !level)
     }
@@ -292,22 +292,22 @@ impl<'a> Composer<'a> {
             }
             let margin = writer.scale.margin();
             let mut from = f64::from(viewport[0]) + margin;
-            let mut to = f64::from(viewport[0] + viewport[2]) - margin;
+            let to = f64::from(viewport[0] + viewport[2]) - margin;
             if labels.count {
-                from = writer.count(viewport, &self.tally, &run.snapshot);
+                from = writer.count(viewport, &self.tally, run.shown());
             }
             let usual = caption::number(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
-            match run.snapshot.status {
-                Status::Diverged(divergence) => writer.number(viewport, from, &caption::divergence(&divergence)),
-                Status::Ok if labels.number => writer.number(viewport, from, &usual),
-                Status::Ok => {}
-            }
-            to = to.min(writer.left_of_numbers(viewport, &usual));
+            let to = to.min(writer.left_of_numbers(viewport, &usual));
             // One camera for all panels, and so one bar.
             if view.scale_bar && at == 0 {
                 let room = to - from - 2.0 * writer.scale.gap();
                 let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
-                writer.scale_bar(viewport, [from, to], metres, pixels);
+                from = writer.scale_bar(viewport, [from, to], metres, pixels).unwrap_or(from);
+            }
+            match caption::divergence(run) {
+                Some(divergence) => writer.number(viewport, from, &divergence),
+                None if labels.number => writer.number(viewport, from, &usual),
+                None => {}
             }
         }
     }
@@ -375,17 +375,18 @@ impl<'a> Composer<'a> {
     fn bars(&self, frame: &Frame, compared: Option<&Compared<'_>>) -> Vec<Bar<'_>> {
         let view = &self.scene.view;
         let of_field = view.colour.as_ref().map(|colour| {
-            let values = frame.runs.iter().flat_map(|run| &run.snapshot.field).copied();
-            Bar::new([colour.field.name(), colour.field.unit()], colour.range, &self.ramp, values)
+            let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
+            let field = colour.field;
+            Bar::new([field.name(), field.unit(), field.definition()], colour.range, &self.ramp, values)
         });
         let body = &*self.scene.body;
         let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
-            let whole = frame.runs.iter().filter(|run| run.snapshot.position.len() == body.len());
+            let whole = frame.runs.iter().filter(|run| run.shown().position.len() == body.len());
             let strains = whole.flat_map(|run| {
                 let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
-                springs.iter().map(|&ends| spring_strain(body, &run.snapshot.position, ends))
+                springs.iter().map(|&ends| spring_strain(body, &run.shown().position, ends))
             });
-            Bar::new(["spring strain", ""], range, &self.spring_ramp, strains)
+            Bar::new(["spring strain", "", "change of length over length at rest"], range, &self.spring_ramp, strains)
         });
         let of_difference = view.difference.map(|_| {
             let values = self.distances(compared).iter().copied();
@@ -441,10 +442,11 @@ fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
 }
 
-/// The middle of a body's nodes (m); `None` for a diverged run, which the camera does not follow.
-fn middle(snapshot: &Snapshot) -> Option<DVec3> {
-    let followed = !matches!(snapshot.status, Status::Diverged(_));
-    mean(&snapshot.position).filter(|middle| followed && middle.is_finite())
+/// The middle of a body's nodes (m) as it is shown; `None` for a diverged run without a state that fits, which the camera
+/// does not follow.
+fn middle(run: &RunFrame) -> Option<DVec3> {
+    let followed = run.snapshot.status == Status::Ok || run.last_fit.is_some();
+    mean(&run.shown().position).filter(|middle| followed && middle.is_finite())
 }
 
 /// The mean of points; `None` if there are none.

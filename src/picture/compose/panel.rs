@@ -1,7 +1,7 @@
 //! Composes one panel from its parts.
 
 use super::Composer;
-use crate::look::{ColourScale, FloorStyle};
+use crate::look::{ColourScale, FloorStyle, Palette};
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
 use crate::picture::field::{self, NOWHERE, Shades};
@@ -18,7 +18,7 @@ use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
 use crate::sim::field::Support;
-use crate::sim::snapshot::{RunFrame, Status};
+use crate::sim::snapshot::{RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -35,7 +35,7 @@ pub(super) struct Draft<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
     pub(super) body: &'a Body,
-    pub(super) run: &'a RunFrame,
+    pub(super) run: Shown<'a>,
     pub(super) framing: &'a Framing,
     pub(super) viewport: Rectangle,
     pub(super) scale: Scale,
@@ -56,8 +56,19 @@ pub(super) struct Draft<'a> {
     pub(super) element: f64,
     /// Whether the body lies in the plane.
     pub(super) flat: bool,
-    /// Whether the run diverged.
+    /// Whether the run diverged and no state of it is known that fits.
     pub(super) diverged: bool,
+    /// Whether the body is greyed, because the run diverges or did so.
+    pub(super) greyed: bool,
+    /// The colours.
+    pub(super) palette: Palette,
+}
+
+/// A run with the state that is shown of it.
+#[derive(Clone, Copy)]
+pub(super) struct Shown<'a> {
+    pub(super) run: usize,
+    pub(super) snapshot: &'a Snapshot,
 }
 
 impl<'a> Draft<'a> {
@@ -71,11 +82,15 @@ impl<'a> Draft<'a> {
     ) -> Self {
         let scene = composer.scene;
         let (view, body) = (&scene.view, &*scene.body);
+        let greyed = run.shown().status != Status::Ok;
+        let diverged = greyed && run.last_fit.is_none();
+        let run = Shown { run: run.run, snapshot: run.shown() };
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
         let mut position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
-        let mut field = Cow::Borrowed(&run.snapshot.field[..]);
+        // Without values, a greyed body has its own colour.
+        let mut field = Cow::Borrowed(if greyed { &[][..] } else { &run.snapshot.field[..] });
         let mut drawn = body;
         if let Some(exploded) = &composer.exploded {
             let ground = contact::ground(&scene.obstacles, run.snapshot.time).map(|(normal, _)| normal);
@@ -110,7 +125,9 @@ impl<'a> Draft<'a> {
             of_nodes,
             element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
             flat,
-            diverged: matches!(run.snapshot.status, Status::Diverged(_)),
+            diverged,
+            greyed,
+            palette: if greyed { composer.palette.greyed() } else { composer.palette },
             lens,
         }
     }
@@ -142,6 +159,7 @@ impl<'a> Draft<'a> {
             opacity: narrow(self.scene.view.opacity),
             turned_over,
             hatch: self.scene.view.hatch,
+            greyed: self.greyed,
             lines,
             obstacles,
             strokes: self.strokes(),
@@ -189,7 +207,7 @@ impl<'a> Draft<'a> {
     }
 
     /// The camera of the panel before it follows anything.
-    fn still(&self) -> Lens {
+    pub(super) fn still(&self) -> Lens {
         let view = &self.scene.view;
         Lens::new(
             view,
@@ -217,7 +235,7 @@ impl<'a> Draft<'a> {
             clear: self.clear_of_words(),
             floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
             scale: self.scale,
-            palette: &self.composer.palette,
+            palette: &self.palette,
         };
         flat.floors(&self.scene.obstacles, self.run.snapshot.time, under);
         if visible.surfaces && !self.diverged {

@@ -3,6 +3,7 @@
 use crate::picture::caption::{Writer, wrapped};
 use crate::picture::compose::cut;
 use crate::picture::layout::{CAPTION_LINE, Scale};
+use crate::picture::tally::hollow;
 use crate::picture::text::Weight;
 use crate::picture::{Mark, MarkShape};
 use crate::scene::figure::Figure;
@@ -18,10 +19,14 @@ const MOST_HEIGHT: f64 = 0.34;
 const SQUARE: f64 = 13.0;
 const SQUARE_GAP: f64 = 9.0;
 const APART: f64 = 36.0;
+/// Between the keys of two squares (px in the reference picture).
+const KEYS_APART: f64 = 22.0;
+/// What a hollow square means.
+const FLAT: &str = "flat: volume below 1 %";
 
-/// Writes title, caption and a key of what a struck square means, in the first of its wordings that fits, into a
-/// picture of a width (px). Returns the last baseline (px), 0 if nothing is written.
-pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String]) -> f64 {
+/// Writes title, caption and a key of what a struck square means, in the first of its wordings that fits, and a hollow one
+/// if there are any, into a picture of a width (px). Returns the last baseline (px), 0 if nothing is written.
+pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String], has_flat: bool) -> f64 {
     let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
     let [width, height] = figure.size.map(f64::from);
     let (margin, room) = (scale.margin(), width - 2.0 * scale.margin());
@@ -55,7 +60,9 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
         return last;
     }
     let [side, gap] = [SQUARE, SQUARE_GAP].map(|length| (length * scale.type_unit()).round().max(2.0));
-    let wide = |text: &String| side + gap + fonts.width(text, Weight::Regular, small);
+    let one = |text: &str| side + gap + fonts.width(text, Weight::Regular, small);
+    let of_flat = if has_flat { one(FLAT) + KEYS_APART * scale.unit } else { 0.0 };
+    let wide = |text: &String| of_flat + one(text);
     // Beside the last line, or else one above it.
     let beside = wordings.iter().find_map(|text| {
         let free = |line: &&[f64; 2]| line[1] + APART * scale.unit + wide(text) <= width - margin;
@@ -67,7 +74,13 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
         Some((text, baseline, if lines.is_empty() { width - margin - wide(text) } else { margin }))
     };
     if let Some((text, baseline, left)) = beside.or_else(below) {
-        let rectangle = [left.round(), (baseline - 0.36 * small - side / 2.0).round(), side, side];
+        let top = (baseline - 0.36 * small - side / 2.0).round();
+        if has_flat {
+            writer.marks.extend(hollow([left.round(), top, side, side], palette));
+            writer.left(FLAT, Weight::Regular, small, palette.second_text, left + side + gap, baseline);
+        }
+        let left = left + of_flat;
+        let rectangle = [left.round(), top, side, side];
         let square = Mark::upright(rectangle, MarkShape::Struck, palette.alarm);
         writer.marks.push(Mark { second: palette.alarm_line, ..square });
         writer.left(text, Weight::Regular, small, palette.second_text, left + side + gap, baseline);

@@ -53,7 +53,7 @@ impl<'a> Cell<'a> {
                 let middle = snapshot.placement.centre;
                 Framing { target: middle, base: middle, ..Framing::still(&scene.view.camera) }
             },
-            frame: RunFrame { run, snapshot },
+            frame: RunFrame::new(run, snapshot),
             room,
         }
     }

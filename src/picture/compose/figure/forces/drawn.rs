@@ -106,7 +106,7 @@ impl<'a> Drawn<'a> {
         let stroke = |ends| Stroke {
             ends,
             colours: [palette.second_text; 2],
-            second: Second::None,
+            second: Second::OnBody(palette.spring_on_body),
             behind: (255.0 * HIDDEN) as u8,
             width: narrow(GHOST_LINE * self.scale.line()),
         };
@@ -124,9 +124,14 @@ impl<'a> Drawn<'a> {
             for dash in self.dashes([from, to]) {
                 let ends = dash.map(|share| from.lerp(to, share));
                 let middle = ends[0].midpoint(ends[1]);
-                if also_inside || !polygons.iter().any(|polygon| is_inside(polygon, middle)) {
+                let inside = polygons.iter().any(|polygon| is_inside(polygon, middle));
+                if also_inside || !inside {
                     let palette = &self.figure.look.palette;
-                    let colour = if also_inside { palette.second_text } else { palette.axis };
+                    let colour = match also_inside {
+                        true if inside => palette.spring_on_body,
+                        true => palette.second_text,
+                        false => palette.axis,
+                    };
                     marks.push(Mark::line(ends, GHOST_LINE * self.scale.line(), colour));
                 }
             }

@@ -49,7 +49,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     let (marks, curves, words) = Default::default();
     let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
     let unit = scale.unit;
-    let last = header::write(&mut writer, figure, &[]);
+    let last = header::write(&mut writer, figure, &[], false);
     let top = if last > 0.0 { last + BELOW_HEADER * unit } else { 0.0 };
     // Below a title, names need no margin above them.
     let raised = if top > 0.0 { UNDER_TITLE * unit } else { 0.0 };

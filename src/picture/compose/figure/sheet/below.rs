@@ -1,7 +1,7 @@
 //! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
 use super::plan::{Plan, TALLY_RAISED};
-use crate::picture::caption::Writer;
+use crate::picture::caption::{Writer, diverged, wider};
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
@@ -9,7 +9,7 @@ use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
 use crate::picture::{Mark, number, series};
 use crate::scene::Scene;
-use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
+use crate::sim::snapshot::{Diagnostic, RunFrame, Snapshot, Status};
 use crate::sim::words::{elements, rounded};
 
 /// Size of diagnostics (px in the reference picture).
@@ -46,13 +46,13 @@ pub(super) struct Below {
     /// The tally, as if the tile's lower left corner were the picture's left upper one.
     tally: Vec<Mark>,
     tally_width: f64,
-    /// How many elements have turned over; empty if unknown.
+    /// How many elements have turned over or, if none has, are flat; empty if unknown.
     count: String,
     is_alarm: bool,
     /// A diagnostic; empty for none.
     number: String,
-    /// When the run diverged (s).
-    diverged: Option<f64>,
+    /// That the run diverges, in words and in fewer words; empty if it does not.
+    diverged: Vec<String>,
 }
 
 impl Below {
@@ -64,22 +64,31 @@ impl Below {
         run: &RunFrame,
         number: Option<Diagnostic>,
     ) -> Self {
-        let over = &run.snapshot.turned_over;
-        let diverged = match run.snapshot.status {
-            Status::Diverged(divergence) => Some(divergence.time),
-            Status::Ok => None,
+        let Snapshot { turned_over: over, flat, .. } = &run.snapshot;
+        let diverged = match run.shown().status {
+            Status::Diverged(divergence) => {
+                let when = format!("{} at {}", diverged(run), number::time(divergence.time));
+                let whole = wider(run).map(|wider| format!("{when}, {wider}"));
+                whole.into_iter().chain([when, diverged(run).to_owned()]).collect()
+            }
+            Status::Ok => Vec::new(),
         };
         let (mut tally, mut tally_width) = (Vec::new(), 0.0);
         if !over.is_empty() {
             let scale = writer.scale.with_unit(TALLY * writer.scale.unit);
             let room = TALLY_SHARE * plan.words_width(writer.scale);
-            tally_width = composer.tally.draw(over, writer.palette, scale, room, [0.0; 2], &mut tally);
+            tally_width = composer.tally.draw([over, flat], writer.palette, scale, room, [0.0; 2], &mut tally);
         }
         let count = run.snapshot.diagnostics.turned_over;
+        let flattened = flat.iter().filter(|&&flat| flat).count();
         Self {
             tally,
             tally_width,
-            count: if over.is_empty() { String::new() } else { count.to_string() },
+            count: match count {
+                _ if over.is_empty() => String::new(),
+                0 if flattened > 0 => format!("{flattened} flat"),
+                count => count.to_string(),
+            },
             is_alarm: count > 0,
             number: number.and_then(|diagnostic| text(diagnostic, composer.scene, run)).unwrap_or_default(),
             diverged,
@@ -110,10 +119,9 @@ impl Below {
         let [left, top, width, height] = plan.tile(row, column).map(f64::from);
         let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
         let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * size;
-        if let Some(time) = self.diverged {
-            let wordings = [format!("diverged at {}", number::time(time)), "diverged".to_owned()];
+        if !self.diverged.is_empty() {
             let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
-            let Some(text) = wordings.iter().find(|text| wide(text) <= plan.words_width(scale)) else { return };
+            let Some(text) = self.diverged.iter().find(|text| wide(text) <= plan.words_width(scale)) else { return };
             return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
         }
         let small = NUMBER * scale.type_unit();

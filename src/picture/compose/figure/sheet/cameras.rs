@@ -32,7 +32,7 @@ const STEPS: usize = 12;
 /// The points that a tile has to show.
 pub(super) struct Cell {
     scene: usize,
-    /// Corners (m); none of a diverged run.
+    /// Corners (m).
     points: Vec<DVec3>,
 }
 
@@ -50,8 +50,8 @@ pub(super) fn cells(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<V
 
 /// The points of a run at a time (m): nodes and obstacles near them.
 fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVec3> {
-    let snapshot = &run.snapshot;
-    if matches!(snapshot.status, Status::Diverged(_)) || snapshot.position.len() != scene.body.len() {
+    let snapshot = run.shown();
+    if snapshot.position.len() != scene.body.len() {
         return Vec::new();
     }
     let ground = contact::ground(&scene.obstacles, snapshot.time).map(|(normal, _)| normal);
@@ -274,7 +274,7 @@ pub(super) fn collapsed(
 ) -> Option<[DVec2; 2]> {
     let [left, top, ..] = plan.tile(row, column).map(f64::from);
     let lens = TileCamera { scene, plan }.lens(framing);
-    let nodes = run.snapshot.position.iter();
+    let nodes = run.shown().position.iter();
     let pixels: Option<Vec<_>> =
         nodes.map(|&node| Some(DVec2::from(lens.project(node)?.0) + DVec2::new(left, top))).collect();
     let pixels = pixels.filter(|_| run.snapshot.status == Status::Ok)?;

@@ -57,7 +57,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
     let scenes = plain(figure, sheet);
 
-    let header = header::write(&mut writer, figure, &below::key(&scenes));
+    let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
+    let header = header::write(&mut writer, figure, &below::key(&scenes), has_flat);
     let legend = legend(&scenes, size, scale);
     let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &writer, f64::from(size[0])));
     let with_sample = charts.is_some() || scenes.iter().any(|scene| matches!(scene.view.ghost, Some(Ghost::Run(_))));

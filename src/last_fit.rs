@@ -1,0 +1,130 @@
+//! The state that pictures show of a run that diverged: the last one that is not much wider than the body.
+
+use crate::scene::Scene;
+use crate::sim::crew::Crew;
+use crate::sim::snapshot::{LastFit, Status};
+use glam::DVec3;
+
+/// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is
+/// larger. A motion that ends well stretches few bodies so far; one that diverges has hardly begun to.
+const FITS: f64 = 1.5;
+/// Number of steps after which it is tested whether a state fits. From the last of these that does on, each step is tested.
+const STRIDE: u64 = 64;
+
+/// Whether a state with nodes at `position` (m) fits.
+pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
+    radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
+}
+
+/// The last state that fits of a run that diverges before the scene ends; `None` for one that does not. Simulates the run
+/// once more, which only runs pay for that diverge or have a state that does not fit.
+pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<LastFit> {
+    let mut world = scene.world(run);
+    world.set_crew(Crew::new(threads));
+    let mut last = world.steps_at(scene.moment(scene.last_frame()));
+    let (mut fitting, mut end) = (world.state().clone(), None);
+    for stride in [STRIDE, 1] {
+        world.set_state(fitting.clone());
+        while world.steps() < last {
+            world.advance(stride.min(last - world.steps()));
+            if let Status::Diverged(divergence) = world.status() {
+                last = divergence.step - 1;
+                end = Some((divergence, radius(&world.state().position)));
+            } else if fits(scene, &world.state().position) {
+                fitting.clone_from(world.state());
+            }
+        }
+        end?;
+    }
+    let (divergence, widest) = end?;
+    world.set_state(fitting);
+    let mut snapshot = world.snapshot();
+    snapshot.status = Status::Diverged(divergence);
+    let times_wider = widest / radius(&snapshot.position);
+    Some(LastFit { snapshot, times_wider })
+}
+
+/// The distance of the farthest point from the mean of all (m): the same however a body is turned.
+fn radius(points: &[DVec3]) -> f64 {
+    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+    points.iter().map(|point| point.distance(middle)).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runner::Runner;
+    use crate::scene::Limits;
+
+    fn scene() -> Scene {
+        let text = include_str!("../scenes/explicit-euler.toml");
+        Scene::parse(text, "explicit-euler.toml", &Limits::default()).expect("the shipped scene is sound")
+    }
+
+    #[test]
+    fn from_the_last_state_that_fits_on_all_frames_show_it() {
+        let scene = scene();
+        let mut runner = Runner::new(&scene, &[0, 2]);
+        let frames: Vec<_> = (0..=scene.last_frame()).map(|frame| runner.frame(frame)).collect();
+        assert!(
+            frames.iter().all(|frame| frame.runs[0].last_fit.is_none()),
+            "a run that does not diverge shows itself"
+        );
+        let alone = Runner::new(&scene, &[2]).frame(scene.last_frame());
+        let last_fit = alone.runs[0].last_fit.as_deref().expect("it diverged");
+        let LastFit { snapshot, times_wider } = last_fit;
+        assert!(fits(&scene, &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.body.rest));
+        for frame in &frames {
+            let run = &frame.runs[1];
+            let expected = (run.snapshot.step > snapshot.step).then_some(last_fit);
+            assert_eq!(run.last_fit.as_deref(), expected, "frame {}", frame.index);
+        }
+        // From the next step on no state fits, up to the last one.
+        let mut world = scene.world(2);
+        world.advance(snapshot.step);
+        assert_eq!(world.state().position, snapshot.position);
+        let mut widest = 0.0;
+        while world.status() == Status::Ok {
+            world.advance(1);
+            assert!(!fits(&scene, &world.state().position), "step {}", world.steps());
+            widest = radius(&world.state().position);
+        }
+        assert_eq!(snapshot.status, world.status());
+        assert_eq!(*times_wider, widest / radius(&snapshot.position));
+    }
+
+    #[test]
+    fn where_nothing_is_drawn_it_is_not_looked_for() {
+        let scene = scene();
+        let frame = Runner::new(&scene, &[2]).without_pictures().frame(119);
+        assert!(matches!(frame.runs[0].snapshot.status, Status::Diverged(_)) && frame.runs[0].last_fit.is_none());
+    }
+
+    #[test]
+    fn a_body_that_is_stretched_and_does_not_diverge_shows_itself() {
+        let scene = scene();
+        let mut stretched = scene.clone();
+        // What is wider than the start without end, here by the speed it starts with.
+        stretched.initial.velocity.iter_mut().zip(&scene.initial.position).for_each(|(speed, at)| *speed = *at * 60.0);
+        let mut runner = Runner::new(&stretched, &[0]);
+        let wide = (1..40)
+            .map(|frame| runner.frame(frame))
+            .filter(|frame| !fits(&stretched, &frame.runs[0].snapshot.position));
+        let shown: Vec<_> = wide.map(|frame| frame.runs[0].last_fit.is_none()).collect();
+        assert!(!shown.is_empty() && shown.iter().all(|&itself| itself), "{shown:?}");
+    }
+
+    #[test]
+    fn a_radius_does_not_change_as_a_body_turns() {
+        let corners = |turn: glam::DQuat| {
+            (0..8).map(move |at| {
+                turn * DVec3::new(f64::from(at & 1), f64::from(at >> 1 & 1), f64::from(at >> 2)) + DVec3::X * 7.0
+            })
+        };
+        for turn in [glam::DQuat::IDENTITY, glam::DQuat::from_rotation_z(0.7), glam::DQuat::from_rotation_x(2.0)] {
+            let radius = radius(&corners(turn).collect::<Vec<_>>());
+            assert!((radius - 0.75_f64.sqrt()).abs() < 1e-12, "{radius}");
+        }
+        assert_eq!(radius(&[]), 0.0);
+    }
+}
