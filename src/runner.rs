@@ -90,7 +90,8 @@ impl<'a> Runner<'a> {
     /// # Panics
     /// If the moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
-        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(moment, most_steps));
+        let scene = self.scene;
+        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(scene, moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
@@ -150,7 +151,7 @@ impl<'a> Runner<'a> {
 }
 
 impl Running {
-    fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+    fn advance_towards(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
         while let (Some(&note), None) = (self.notes.get(self.course.times.len()), self.course.divergence) {
             if self.world.steps_at(note) > target {
@@ -162,12 +163,12 @@ impl Running {
                 // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.course.times.len());
                 if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
-                    self.note(last);
+                    self.note(scene, last);
                 }
                 self.course.divergence = Some(divergence);
             } else if is_there {
                 left -= self.world.steps() - before;
-                self.note(self.world.steps());
+                self.note(scene, self.world.steps());
             } else {
                 return false;
             }
@@ -176,9 +177,9 @@ impl Running {
     }
 
     /// Records the present state as that after a step.
-    fn note(&mut self, step: u64) {
-        self.course.times.push(step as f64 * self.step);
-        self.course.diagnostics.push(self.world.some_diagnostics(&self.wanted));
+    fn note(&mut self, scene: &Scene, step: u64) {
+        let diagnostics = self.world.some_diagnostics(&self.wanted);
+        self.course.note(scene, step as f64 * self.step, diagnostics, &self.world.state().position);
     }
 }
 
@@ -334,7 +335,7 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end: what strips show, see [`Composer::set_history`].
+    /// Simulates runs of a scene from start to end: what strips and cameras that follow need, see [`Composer::set_history`].
     ///
     /// [`Composer::set_history`]: crate::picture::Composer::set_history
     ///

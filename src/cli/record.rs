@@ -27,8 +27,8 @@ use std::time::Duration;
 pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
-    /// The diagnostic, if there is one, whose time series over the whole scene is needed before the first frame.
-    fn course(&self) -> Option<Diagnostic>;
+    /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
+    fn course(&self) -> Option<&[Diagnostic]>;
     /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
@@ -208,20 +208,20 @@ impl Recording<'_> {
         mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
-        let course = pictures.as_ref().and_then(|pictures| pictures.course());
+        let course = pictures.as_ref().and_then(|pictures| pictures.course()).map(<[_]>::to_vec);
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_field();
             }
-            if let Some(diagnostic) = course {
-                runner = runner.with_course(&[diagnostic]);
+            if let Some(wanted) = &course {
+                runner = runner.with_course(wanted);
             }
             Frames::new(runner, &self.frames, course.is_some(), self.folder)
         });
         let bar = telling.progress(&self.scene.title, frames.steps()[1]);
         if course.is_some() {
-            bar.set_message("simulating ahead for the strips");
+            bar.set_message("simulating ahead");
         }
         let slice = slice(&self.scene.body);
         while !interrupt::requested() {

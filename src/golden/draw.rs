@@ -175,10 +175,10 @@ fn draw_scene(
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
-    let course = scene.view.strip.filter(|_| artist.is_some());
+    let course = scene.course().filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let runner = match &course {
-        Some(strip) => runner.with_course(std::slice::from_ref(strip)),
+    let runner = match course {
+        Some(wanted) => runner.with_course(wanted),
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();

@@ -7,6 +7,7 @@ pub(crate) mod font;
 mod framing;
 mod inside;
 mod palette;
+mod place;
 pub(crate) mod ramp;
 mod reach;
 mod resolve;
@@ -20,6 +21,7 @@ pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
+pub(crate) use place::Place;
 pub(crate) use ramp::SHADES;
 pub(crate) use resolve::resolve;
 pub(crate) use run_lines::LineStyle;
@@ -27,5 +29,5 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, Follow, FontFiles, Labels, Light, Look, StrainScale, View, Visible,
+    Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Labels, Light, Look, StrainScale, View, Visible,
 };

@@ -241,14 +241,14 @@ impl Writer<'_> {
     }
 
     /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
-    /// room. `usual` is its length (px) where no camera moves: its place and its words follow from that alone.
-    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, [pixels, usual]: [f64; 2]) {
+    /// room.
+    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, pixels: f64) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
         let text = number::plain_metres(metres);
         let wide = self.fonts.width(&text, Weight::Regular, caption);
         let free = between[1] - between[0] - 2.0 * self.scale.gap();
-        if !Scale::legible(caption) || usual.max(wide) > free {
+        if !Scale::legible(caption) || pixels.max(wide) > free {
             return;
         }
         let middle = between[0].midpoint(between[1]);

@@ -333,7 +333,7 @@ fn nothing_overlaps_in_any_arrangement() {
         for columns in [1, 2, 3].into_iter().filter(|&columns| columns < count).chain([count]) {
             for size in [[1280, 720], [640, 360], [720, 1280], [480, 480], [1920, 1080], [300, 200]] {
                 scene.view.size = size;
-                scene.view.columns = columns;
+                scene.view.columns = Some(columns);
                 let picture = compose(&scene, &frame);
                 assert_eq!(picture.panels.len(), count);
                 let clocks = picture.words.iter().filter(|run| run.text == "67 ms").count();

@@ -5,7 +5,7 @@ use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
-use localshape::look::{Follow, FontFiles, Look, Theme};
+use localshape::look::{FontFiles, Look, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
@@ -384,8 +384,7 @@ fn small_bodies_have_narrower_contours_and_large_ones_the_usual() {
 #[test]
 fn the_floor_reaches_as_far_as_the_shadow_of_a_body_that_flies() {
     let fade = |up: f64, aside: f64| {
-        let (mut scene, mut frame) = fig4b(0);
-        scene.view.camera.follow = Follow::Nothing;
+        let (scene, mut frame) = fig4b(0);
         for run in &mut frame.runs {
             run.snapshot.position.iter_mut().for_each(|at| *at += DVec3::new(aside, up, 0.0));
         }

@@ -159,7 +159,7 @@ fn one_to_six_panels_find_their_place() {
     let (mut scene, frame) = fig4b(0);
     for count in 1..=6 {
         for columns in 1..=4 {
-            scene.view.columns = columns;
+            scene.view.columns = Some(columns);
             let runs = (0..count).map(|at| frame.runs[at % 2].clone()).collect();
             let picture = compose(&scene, &Frame { runs, ..frame.clone() });
             assert_eq!(picture.panels.len(), count);

@@ -127,8 +127,8 @@ impl Draft<'_> {
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
     /// panel.
     pub(super) fn widening(&self) -> f64 {
-        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.composer.extent * self.composer.spread);
-        (self.framing.distance / usual).sqrt()
+        let usual = USUAL_DISTANCE * self.composer.extent * self.composer.spread;
+        (self.framing.distance / usual).max(1.0).sqrt()
     }
 
     /// The distance of the grid's lines (sides).

@@ -7,29 +7,30 @@ mod panel;
 mod region;
 
 use super::arrows;
-use super::camera::{self, Lens, Middles};
+use super::camera::Lens;
 use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
-use super::plane::LEVEL;
+use super::locator::{Locator, Silhouette};
 use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
 use super::text::{Fonts, Weight};
+use super::tracking::{Shot, Tracking};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
-use crate::history::History;
+use crate::history::{History, Reach};
 use crate::look::ramp::ramp;
-use crate::look::{LineStyle, Palette, StrainScale};
+use crate::look::{LineStyle, Palette, Place, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
-use crate::sim::snapshot::{Frame, Snapshot, Status};
+use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
@@ -42,6 +43,10 @@ const SOFT_SHARE: f64 = 4.5;
 const MOST_LINES: usize = 200;
 /// The scale bar is at most this long (px in the reference picture).
 const SCALE_BAR: f64 = 120.0;
+/// Panels that a scene leaves to be arranged stand in at most so many columns, and in fewer than possible only where that
+/// makes bodies so many times larger.
+const MOST_COLUMNS: usize = 64;
+const LARGER: f64 = 1.02;
 
 /// Composes frames of one scene.
 #[derive(Debug)]
@@ -79,19 +84,24 @@ pub struct Composer<'a> {
     extent: f64,
     /// How many times larger it is drawn where its elements are drawn apart.
     spread: f64,
-    /// The middle of the nodes at the start (m).
-    start: DVec3,
     /// The box around the nodes at the start (m).
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
     /// The curves below the panels, once the time series are set.
     strips: Option<Strips>,
+    /// How the camera follows, if it does.
+    tracking: Option<Tracking>,
+    /// The overview of a camera that follows, once the time series are set.
+    locator: Option<Locator>,
+    /// Where nodes have come near plates and walls, once the time series are set.
+    reach: Reach,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
 ///
-/// The places of strips stay empty: they need [`Composer::set_history`].
+/// The time series of the scene are not known ([`Composer::set_history`]): the places of strips stay empty, and a camera that
+/// follows takes its scale from the start.
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
     Composer::new(scene).compose(frame)
 }
@@ -100,8 +110,8 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
-    /// places stay empty.
+    /// A scene with strips ([`crate::look::View::strip`]) or a camera that follows ([`crate::look::Camera::follow`]) needs
+    /// [`Composer::set_history`], too; without it the strips' places stay empty, and the camera's scale is that of the start.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
     }
@@ -157,34 +167,45 @@ impl<'a> Composer<'a> {
             extent,
             spread: 1.0 + apart,
             start_box: bounds(&start).into(),
-            start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             strips: None,
+            tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
+            locator: None,
+            reach: Reach::default(),
             grips,
             exploded,
         }
     }
 
-    /// Sets the time series for the strips below the panels: those of all runs to be shown, over the whole scene. Scenes
-    /// without strips do not need them.
+    /// Sets the time series: those of all runs to be shown, over the whole scene. Strips show them, a camera that follows
+    /// takes its path and its scale from them, and plates and walls their size.
     pub fn set_history(&mut self, history: &History) {
-        self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
+        let scene = self.scene;
+        self.strips = scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, scene));
+        self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
+        self.locator = self.tracking.as_ref().map(|tracking| Locator::new(scene, tracking));
+        self.reach = Reach::default();
+        history.courses.iter().for_each(|course| self.reach.merge(&course.reach));
     }
 
     /// Composes one frame.
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let legend = self.legend(frame.runs.len());
-        let caption = self.caption(frame.runs.len());
-        let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
+        let runs = frame.runs.len();
+        let columns = self.columns(runs);
+        let legend = self.legend(runs, columns);
+        let caption = self.caption(runs, columns);
+        let layout = Layout::new(view, runs, columns, legend.map_or(0, |legend| legend.height), caption.len());
         let legend = legend.filter(|_| layout.has_legend);
-        let (scale, framing) = (layout.scale, self.framing(frame));
+        let scale = layout.scale;
+        let shot = layout.panels.first().and_then(|place| self.shot(place.viewport, scale));
+        let framings: Vec<_> = frame.runs.iter().map(|run| self.framing(shot.as_ref(), run)).collect();
         let (marks, curves, words) = Default::default();
         let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        self.write(frame, &layout, &framing, &mut writer);
+        self.write(frame, &layout, columns, framings.first(), &mut writer);
         if let Some(strips) = &self.strips {
             for (place, run) in layout.panels.iter().zip(&frame.runs) {
                 place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
@@ -194,16 +215,20 @@ impl<'a> Composer<'a> {
             writer.title(layout.around, f64::from(size[0]), &view.title);
         }
         writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
-        if let Some((legend, place)) = legend.zip(layout.panels.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
+        if let Some(((legend, place), framing)) = legend.zip(layout.panels.first()).zip(framings.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, framing, scale));
             let bars = self.bars(frame);
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &bars);
         }
+        let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs));
+        for ((place, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
+            let draft = Draft::new(self, place.viewport, run, framing, scale);
+            panels.push(draft.panel(&mut under, &mut marks));
+            if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
+                self.locate(&draft, shot, tracking, &mut writer);
+            }
+        }
         let Writer { marks: above, curves, mut words, .. } = writer;
-        let (mut under, mut marks) = (Vec::new(), hairlines);
-        let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
-        let viewports = layout.panels.iter().map(|place| place.viewport);
-        let panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
@@ -213,10 +238,72 @@ impl<'a> Composer<'a> {
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
     }
 
-    /// The lines of the caption.
-    fn caption(&self, runs: usize) -> Vec<String> {
+    /// In how many columns panels stand: as the scene says, or so that bodies are largest.
+    fn columns(&self, runs: usize) -> usize {
         let view = &self.scene.view;
-        let around = Layout::around(view, runs);
+        let pixels = |columns: usize| {
+            let legend = self.legend(runs, columns).map_or(0, |legend| legend.height);
+            let layout = Layout::new(view, runs, columns, legend, 0);
+            let viewport = layout.panels.first()?.viewport;
+            let shot = self.shot(viewport, layout.scale).map(|shot| shot.pixels);
+            let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
+            Some(shot.unwrap_or_else(still))
+        };
+        let most = runs.clamp(1, MOST_COLUMNS);
+        let chosen = || {
+            let mut best = (most, pixels(most).unwrap_or(0.0));
+            for columns in (1..most).rev() {
+                let pixels = pixels(columns).unwrap_or(0.0);
+                // Side by side unless that costs much.
+                best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };
+            }
+            best.0
+        };
+        view.columns.map_or_else(chosen, |columns| columns.clamp(1, runs.max(1)))
+    }
+
+    /// How a camera that follows sees a panel.
+    fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
+        let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
+        Some(self.tracking.as_ref()?.shot(self.scene, viewport, scale, taken))
+    }
+
+    /// What the camera of a run looks at.
+    fn framing(&self, shot: Option<&Shot>, run: &RunFrame) -> Framing {
+        let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else {
+            return Framing::still(&self.scene.view.camera);
+        };
+        let Scene { view, body, obstacles, .. } = self.scene;
+        let position = &run.snapshot.position;
+        let is_known = position.len() == body.len();
+        let place = is_known.then(|| Place::new(view, body.dimension, obstacles, position)).flatten();
+        tracking.framing(shot, run, place)
+    }
+
+    /// Draws the overview of a panel, if its camera moves.
+    fn locate(&self, draft: &Draft<'_>, shot: &Shot, tracking: &Tracking, writer: &mut Writer<'_>) {
+        let (view, viewport) = (&self.scene.view, draft.viewport);
+        let Some(locator) = self.locator.as_ref().filter(|_| !shot.is_still) else { return };
+        let Some(place) = locator.place(view, viewport, writer.scale) else { return };
+        if draft.position.is_empty() {
+            return;
+        }
+        let at = |&node: &u32| draft.position[node as usize];
+        let bars = self.bare.iter().flat_map(|&element| draft.body.topology().edges_of(element));
+        let body = Silhouette {
+            points: self.skin.nodes.iter().map(at).collect(),
+            triangles: &self.skin.triangles,
+            bars: bars.map(|ends| ends.map(|node| at(&node))).collect(),
+        };
+        let shown = draft.lens.shown(viewport.map(f64::from), shot.pixels);
+        let colour = self.scene.runs.get(draft.run.run).map_or(self.palette.text, |run| run.line(&self.palette).colour);
+        locator.draw(writer, place, tracking, draft.run, &body, shown, colour);
+    }
+
+    /// The lines of the caption.
+    fn caption(&self, runs: usize, columns: usize) -> Vec<String> {
+        let view = &self.scene.view;
+        let around = Layout::around(view, runs, columns);
         if !Scale::legible(around.caption()) {
             return Vec::new();
         }
@@ -226,19 +313,19 @@ impl<'a> Composer<'a> {
         lines.into_iter().take(MOST_LINES).collect()
     }
 
-    /// What the camera of all panels looks at.
-    fn framing(&self, frame: &Frame) -> Framing {
-        let middles = Middles::new(frame.runs.iter().filter_map(|run| middle(&run.snapshot)), self.start);
-        let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
-        camera::framing(&self.scene.view.camera, &middles, !level)
-    }
-
     /// Writes the words of all panels.
-    fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, writer: &mut Writer<'_>) {
+    fn write(
+        &self,
+        frame: &Frame,
+        layout: &Layout,
+        columns: usize,
+        framing: Option<&Framing>,
+        writer: &mut Writer<'_>,
+    ) {
         let view = &self.scene.view;
         let labels = view.labels;
         // One clock, upper right.
-        let clock = view.columns.clamp(1, layout.panels.len().max(1)) - 1;
+        let clock = columns.min(layout.panels.len().max(1)) - 1;
         for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let viewport = place.viewport;
             let has_clock = labels.clock && at == clock;
@@ -267,8 +354,8 @@ impl<'a> Composer<'a> {
                 Status::Ok => {}
             }
             to = to.min(writer.left_of_numbers(viewport, &usual));
-            // One camera for all panels, and so one bar.
-            if view.scale_bar && at == 0 {
+            // One scale for all panels, and so one bar.
+            if let Some(framing) = framing.filter(|_| view.scale_bar && at == 0) {
                 let room = to - from - 2.0 * writer.scale.gap();
                 let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
                 writer.scale_bar(viewport, [from, to], metres, pixels);
@@ -287,32 +374,29 @@ impl<'a> Composer<'a> {
         })
     }
 
-    /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).
-    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, [f64; 2]) {
-        let [now, usual] = self.pixels_a_metre(viewport, framing, scale);
-        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / usual);
-        (metres, [now, usual].map(|pixels| metres * pixels))
+    /// What a scale bar in a room (px) stands for (m), and how long it is (px).
+    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, f64) {
+        let pixels = self.pixels_a_metre(viewport, framing, scale);
+        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / pixels);
+        (metres, metres * pixels)
     }
 
-    /// The pixels of a metre at the point looked at, in this frame and without a moving camera.
-    fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> [f64; 2] {
+    /// The pixels of a metre at the point looked at.
+    fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> f64 {
         let Self { scene, .. } = self;
-        let edges = viewport.map(f64::from);
-        let pixels = |framing: &Framing| {
-            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
-            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
-        };
-        [pixels(framing), pixels(&Framing::still(&scene.view.camera))]
+        let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
+        lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
     }
 
     /// The key of colours and arrows, if there are any.
-    fn legend(&self, runs: usize) -> Option<Legend> {
+    fn legend(&self, runs: usize, columns: usize) -> Option<Legend> {
         let view = &self.scene.view;
         let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
         if !view.legend || !view.visible.displacements && bars == 0 {
             return None;
         }
-        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), view.visible.displacements, bars)
+        let around = Layout::around(view, runs, columns);
+        Legend::new(view.size.map(|length| length.max(1)), around, view.visible.displacements, bars)
     }
 
     /// The scales of colours in a frame.
@@ -334,14 +418,13 @@ impl<'a> Composer<'a> {
         of_field.into_iter().chain(of_springs).collect()
     }
 
-    /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
-    /// how large it is beside those of the reference picture.
+    /// What the arrow of the key stands for (m), its length (px), and how large it is beside those of the reference picture.
     fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
-        let [now, usual] = self.pixels_a_metre(viewport, seen, scale);
+        let pixels = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
-        let metres = legend.arrow_metres(usual * times);
-        let size = arrows::size(now * self.scene.view.side, scale.unit) * scale.line_factor;
-        [metres, metres * now * times, size]
+        let metres = legend.arrow_metres(pixels * times);
+        let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
+        [metres, metres * pixels * times, size]
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
@@ -379,15 +462,4 @@ fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
 fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
-}
-
-/// The middle of a body's nodes (m); `None` for a diverged run, which the camera does not follow.
-fn middle(snapshot: &Snapshot) -> Option<DVec3> {
-    let followed = !matches!(snapshot.status, Status::Diverged(_));
-    mean(&snapshot.position).filter(|middle| followed && middle.is_finite())
-}
-
-/// The mean of points; `None` if there are none.
-fn mean(points: &[DVec3]) -> Option<DVec3> {
-    (!points.is_empty()).then(|| points.iter().sum::<DVec3>() / points.len() as f64)
 }
