@@ -61,7 +61,10 @@ fn cut(summary: &Summary) -> String {
         let first = run.cut.first()?;
         let (count, all) = (run.cut.len(), summary.frames.recorded);
         let help = "move the camera back, or let it follow: `view.camera` without `target` and `distance`";
-        Some(format!("warning: {} leaves its panel in {count} of {all} frames, first in frame {first}; {help}\n", run.name))
+        Some(format!(
+            "warning: {} leaves its panel in {count} of {all} frames, first in frame {first}; {help}\n",
+            run.name
+        ))
     };
     summary.runs.iter().filter_map(warning).collect()
 }

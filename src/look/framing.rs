@@ -44,15 +44,27 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
         distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene) * (1.0 + apart)),
         rise: 0.0,
         follow: typed.follow && target.is_none() && typed.distance.is_none(),
+        near: Vec::new(),
     };
+    let near = near(start, standing, scene);
     match target {
         Some(target) => chosen.target = target,
         None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
     }
     if target.is_none() && typed.distance.is_none() {
-        show_reach(&mut chosen, start, standing, scene);
+        show_reach(&mut chosen, start, standing, &near, dimension);
+    }
+    if chosen.follow {
+        chosen.near = near;
     }
     chosen
+}
+
+/// What comes near a body where it starts and where it will stand (m).
+fn near(start: &[DVec3], standing: DVec3, scene: &Subject<'_>) -> Vec<DVec3> {
+    let (low, high) = bounds(start);
+    let drop = standing - (low + high) / 2.0;
+    reach::near(scene, [low.min(low + drop), high.max(high + drop)], size(scene))
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
@@ -102,14 +114,13 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 
 /// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
 /// already, or if there is nothing near, the camera stays.
-fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Subject<'_>) {
-    let (low, high) = bounds(start);
-    let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
-    let around = [low.min(low + drop), high.max(high + drop)];
-    let mut shown = reach::near(scene, around, size(scene));
-    if shown.is_empty() || least_distance(camera, shown.iter().copied(), dimension) <= camera.distance {
+fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, near: &[DVec3], dimension: Dimension) {
+    if near.is_empty() || least_distance(camera, near.iter().copied(), dimension) <= camera.distance {
         return;
     }
+    let (low, high) = bounds(start);
+    let drop = standing - (low + high) / 2.0;
+    let mut shown = near.to_vec();
     shown.extend(start.iter().flat_map(|&at| [at, at + drop]));
     // The middle depends a little on the distance, so iterate.
     for _ in 0..4 {

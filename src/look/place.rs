@@ -11,10 +11,10 @@ use glam::DVec3;
 pub(crate) struct Place {
     /// The mean of its nodes (m).
     pub(crate) centre: DVec3,
-    /// The box around it, from the centre along the camera's axes: to the right, up and towards the camera (m).
-    pub(crate) low: DVec3,
-    /// Its highest corner (m).
-    pub(crate) high: DVec3,
+    /// The middle of the box around it (m), whose sides lie along the camera's axes.
+    pub(crate) middle: DVec3,
+    /// Half the sides of that box: to the right, up and towards the camera (m).
+    pub(crate) half: DVec3,
 }
 
 impl Place {
@@ -31,11 +31,13 @@ impl Place {
             let seen = DVec3::new(way.dot(right), way.dot(up), way.dot(towards));
             (low, high) = (low.min(seen), high.max(seen));
         }
-        (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, low, high })
+        let (off, half) = (low.midpoint(high), 0.5 * (high - low));
+        let middle = centre + off.x * right + off.y * up + off.z * towards;
+        (middle.is_finite() && half.is_finite()).then_some(Self { centre, middle, half })
     }
 
     /// The larger of its width and height in the picture (m).
     pub(crate) fn size(&self) -> f64 {
-        (self.high - self.low).truncate().max_element()
+        2.0 * self.half.truncate().max_element()
     }
 }

@@ -79,6 +79,7 @@ impl Default for View {
                 distance: 1.0,
                 rise: 0.0,
                 follow: false,
+                near: Vec::new(),
             },
             clock: String::new(),
             columns: None,
@@ -288,6 +289,9 @@ pub struct Camera {
     /// Whether it follows the centre of each run's body from a distance of its own instead, at which the body fills its
     /// panel at its widest moment.
     pub follow: bool,
+    /// If it follows, points of obstacles and moved nodes that are at any time near where the body starts and stands (m). It
+    /// shows them, too, where it can stand still.
+    pub(crate) near: Vec<DVec3>,
 }
 
 impl Camera {

@@ -131,7 +131,13 @@ impl Summary {
     pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
-            RunSummary { name: run.name.clone(), time_step: run.step, status: RunStatus::Ok, cut: Vec::new(), last: None }
+            RunSummary {
+                name: run.name.clone(),
+                time_step: run.step,
+                status: RunStatus::Ok,
+                cut: Vec::new(),
+                last: None,
+            }
         };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),

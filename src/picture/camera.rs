@@ -161,6 +161,7 @@ mod tests {
                 distance: 2.55,
                 rise: 0.0,
                 follow: false,
+                near: Vec::new(),
             },
             columns: Some(2),
             side: 0.1,

@@ -137,7 +137,8 @@ impl Locator {
             writer.curves.extend(polyline(&line_of_floor, ends, FLOOR * line, palette.axis, 1.0));
         }
         silhouette(body, &seen, ends, palette.sound_flat, &mut writer.marks);
-        let bars = body.bars.iter().filter_map(|bar| polyline(&bar.map(&seen), ends, BAR * line, palette.sound_flat, 1.0));
+        let bars =
+            body.bars.iter().filter_map(|bar| polyline(&bar.map(&seen), ends, BAR * line, palette.sound_flat, 1.0));
         writer.curves.extend(bars);
         for path in tracking.paths.iter().filter(|path| path.run == run.run) {
             let past: Vec<_> = thinned(path.until(run.snapshot.time).map(&seen));
@@ -198,21 +199,23 @@ fn silhouette(
     for triangle in body.triangles {
         let corners = triangle.map(|at| (points[at as usize] - first) * PARTS as f64);
         let [a, b, c] = corners;
-        let range = |from: f64, to: f64, most: usize| (from - 0.5).ceil().max(0.0) as usize..((to - 0.5).floor() + 1.0).clamp(0.0, most as f64) as usize;
+        let range = |from: f64, to: f64, most: usize| {
+            (from - 0.5).ceil().max(0.0) as usize..((to - 0.5).floor() + 1.0).clamp(0.0, most as f64) as usize
+        };
         for row in range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), rows) {
             let y = row as f64 + 0.5;
             let crossings = [(a, b), (b, c), (c, a)].into_iter().filter(|(a, b)| (a.y > y) != (b.y > y));
             let crossings = crossings.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
-            let (from, to) = crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+            let (from, to) =
+                crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
             if from < to {
                 range(from, to, columns).for_each(|column| cells[row * columns + column] = true);
             }
         }
     }
     let covered = |column: usize, row: usize| {
-        let parts = (0..PARTS * PARTS).filter(|at| {
-            cells[(row * PARTS + at / PARTS) * columns + column * PARTS + at % PARTS]
-        });
+        let parts =
+            (0..PARTS * PARTS).filter(|at| cells[(row * PARTS + at / PARTS) * columns + column * PARTS + at % PARTS]);
         parts.count()
     };
     for row in 0..size[1] {
@@ -242,7 +245,8 @@ mod tests {
             let body = Silhouette { points: points.clone(), triangles, bars: Vec::new() };
             let mut marks = Vec::new();
             silhouette(&body, &|at| at.truncate(), [DVec2::ZERO, DVec2::splat(20.0)], [0; 3], &mut marks);
-            let covered = |mark: &Mark| f64::from(mark.rectangle[2] * mark.rectangle[3]) * f64::from(mark.opacity) / 255.0;
+            let covered =
+                |mark: &Mark| f64::from(mark.rectangle[2] * mark.rectangle[3]) * f64::from(mark.opacity) / 255.0;
             let sum: f64 = marks.iter().map(covered).sum();
             assert!((sum - area).abs() < 0.05 * area, "{sum} of {area}");
         }

@@ -1,8 +1,9 @@
 //! Cameras that follow: one scale for all panels and frames of a scene, from its time series.
 //!
 //! At that scale the widest moment of all runs takes [`FILLED`] of the width of a panel, if its height leaves room for
-//! the words. Where the whole course of all runs stays in view the camera stands still. Otherwise it goes along with the
-//! centre of each run's body, smoothed over a symmetric window that is the same for all runs.
+//! the words. Where the whole course of all runs stays in view the camera stands still, and shows what comes near them as
+//! long as that makes them little smaller. Otherwise it goes along with the middle of each run's body, smoothed over a
+//! symmetric window that is the same for all runs.
 
 use super::camera::{Framing, Lens};
 use super::layout::{self, Rectangle, Scale};
@@ -24,7 +25,7 @@ const BEYOND: [f64; 2] = [1.25, 2.0];
 /// would be too small.
 const MOST_GROWTH: f64 = 1.7;
 /// How far smoothing may move a body from its place in the panel (parts of its width at the widest moment).
-const SLACK: f64 = 0.06;
+const SLACK: f64 = 0.03;
 /// The longest window of smoothing, to either side (s), and into how many parts it is cut.
 const LONGEST: f64 = 0.25;
 const PARTS: i32 = 6;
@@ -36,33 +37,32 @@ pub(super) struct Tracking {
     pub(super) paths: Vec<Path>,
     /// The camera's axes: to the right, up and towards it.
     axes: [DVec3; 3],
-    /// The box that holds the body at any time, from its centre along the axes (m).
-    low: DVec3,
-    high: DVec3,
+    /// Half the sides of the box that holds the body at any time, along the axes (m).
+    half: DVec3,
     /// Its width at its widest moment (m).
     pub(super) widest: f64,
-    /// The box around all that all runs ever reach, along the axes (m).
-    all: [DVec3; 2],
+    /// The box around all that all runs ever reach, and the same with what comes near them, along the axes (m).
+    all: [[DVec3; 2]; 2],
     /// Half the window of smoothing (s).
     window: f64,
 }
 
-/// The course of the centre of a body.
+/// The course of a body.
 #[derive(Debug)]
 pub(super) struct Path {
     pub(super) run: usize,
     /// Times (s), rising.
     times: Vec<f64>,
-    /// The centre at each of them (m).
+    /// The mean of its nodes at each of them (m).
     pub(super) centres: Vec<DVec3>,
+    /// The middle of the box around it at each of them (m).
+    middles: Vec<DVec3>,
 }
 
 /// How one panel is seen; all panels of a picture alike.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shot {
-    /// Distance from the point looked at (m).
-    distance: f64,
-    /// The point looked at, from the centre that is followed, or from the origin if none is (m).
+    /// The point looked at, from the body's middle if that is followed, or else from the origin (m).
     offset: DVec3,
     pub(super) is_still: bool,
     /// Pixels of a metre at the point looked at.
@@ -90,21 +90,21 @@ impl Tracking {
         let mut all = Self {
             paths,
             axes,
-            low: DVec3::ZERO,
-            high: DVec3::ZERO,
+            half: DVec3::ZERO,
             widest: 0.0,
-            all: [DVec3::INFINITY, DVec3::NEG_INFINITY],
+            all: [[DVec3::INFINITY, DVec3::NEG_INFINITY]; 2],
             window: 0.0,
         };
-        for Place { centre, low, high } in places {
-            // As much of a body that grows as counts, around its centre.
-            let times = (most / (high - low).truncate().max_element()).min(1.0);
-            let [low, high] = [times * low, times * high];
-            (all.low, all.high) = (all.low.min(low), all.high.max(high));
-            all.widest = all.widest.max(high.x - low.x);
-            let centre = all.along(centre);
-            all.all = [all.all[0].min(centre + low), all.all[1].max(centre + high)];
+        for place in places {
+            // As much of a body that grows as counts.
+            let half = (most / place.size()).min(1.0) * place.half;
+            all.half = all.half.max(half);
+            all.widest = all.widest.max(2.0 * half.x);
+            let (middle, [low, high]) = (all.along(place.middle), all.all[0]);
+            all.all[0] = [low.min(middle - half), high.max(middle + half)];
         }
+        let near = view.camera.near.iter().map(|&point| all.along(point));
+        all.all[1] = near.fold(all.all[0], |[low, high], at| [low.min(at), high.max(at)]);
         // A body seen as a point or a line has some width all the same.
         all.widest = all.widest.max(0.2 * usual);
         all.window = all.longest_window(scene.frames_per_second);
@@ -131,7 +131,7 @@ impl Tracking {
     fn longest_window(&self, frames_per_second: f64) -> f64 {
         let fits = |window: f64| {
             let mut moments = self.paths.iter().flat_map(|path| path.times.iter().map(move |&time| (path, time)));
-            moments.all(|(path, time)| path.smooth(time, window).distance(path.at(time)) <= self.slack())
+            moments.all(|(path, time)| path.smooth(time, window).distance(path.middle(time)) <= self.slack())
         };
         let halved = std::iter::successors(Some(LONGEST), |window| Some(0.5 * window));
         halved.take_while(|window| *window > 0.25 / frames_per_second).find(|&window| fits(window)).unwrap_or(0.0)
@@ -141,50 +141,54 @@ impl Tracking {
     /// free, if that is possible (px: left, top, width and height).
     pub(super) fn shot(&self, scene: &Scene, viewport: Rectangle, scale: Scale, taken: Option<[f64; 4]>) -> Shot {
         let (view, dimension) = (&scene.view, scene.body.dimension);
-        let near = Framing { target: DVec3::ZERO, distance: 1.0, rise: 0.0, moves: false };
-        let lens = Lens::new(view, &near, dimension, viewport.map(f64::from), scale.unit);
-        let room = layout::clear_of_words(viewport, scale, layout::rooms(view)).map(|length| f64::from(length).max(1.0));
+        let lens = near(scene, viewport, scale);
+        let room =
+            layout::clear_of_words(viewport, scale, layout::rooms(view)).map(|length| f64::from(length).max(1.0));
         // What is nearer than the point looked at is seen larger.
-        let depth = |[low, high]: [DVec3; 2]| match dimension {
-            Dimension::Space => high.z.max(0.5 * (high.z - low.z)) / lens.focal,
-            Dimension::Plane => 0.0,
+        let depth = |half: DVec3| if dimension == Dimension::Space { half.z / lens.focal } else { 0.0 };
+        let fit = |half: DVec3| {
+            let depth = depth(half);
+            (room[2] / (2.0 * half.x + room[2] * depth)).min(room[3] / (2.0 * half.y + room[3] * depth))
         };
-        let fit = |[low, high]: [DVec3; 2], [beside, above]: [f64; 2]| {
-            let depth = depth([low, high]);
-            let [across, along] = [high.x - low.x + beside, high.y - low.y + above];
-            (room[2] / (across + room[2] * depth)).min(room[3] / (along + room[3] * depth))
-        };
-        let slack = 2.0 * self.slack();
-        let following = (FILLED * f64::from(viewport[2]) / self.widest).min(fit([self.low, self.high], [slack; 2]));
-        let [low, high] = self.all;
-        let middle = low.midpoint(high);
-        let standing = fit([low - middle, high - middle], [0.0; 2]).min(following);
-        let is_still = !self.paths.is_empty() && standing >= STILL * following;
-        let pixels = if is_still { standing } else { following };
+        let following = (FILLED * f64::from(viewport[2]) / self.widest).min(fit(self.half + self.slack()));
+        let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
+        let [body, with_near] = self.all;
+        let standing = [with_near, body].map(standing).into_iter().find(|(pixels, _)| *pixels >= STILL * following);
+        let standing = standing.filter(|_| !self.paths.is_empty());
+        let is_still = standing.is_some();
         // The middle of the box stands in the middle of the room.
-        let middle = if is_still { middle } else { self.low.midpoint(self.high).with_z(0.0) };
+        let (pixels, middle) = standing.unwrap_or((following, DVec3::ZERO));
         let mut at = DVec2::new(room[0] + 0.5 * room[2], room[1] + 0.5 * room[3]);
         if let Some([left, top, _, height]) = taken.filter(|_| !is_still) {
-            let half = 0.5 * pixels * (self.high - self.low).truncate();
+            let half = pixels * self.half.truncate();
             if at.y - half.y < top + height {
                 at.x -= (at.x + half.x - left).clamp(0.0, (at.x - half.x - room[0]).max(0.0));
             }
         }
         let off = (at - DVec2::from(lens.centre)) / pixels;
-        Shot { distance: lens.focal / pixels, offset: self.across(middle + DVec3::new(-off.x, off.y, 0.0)), is_still, pixels }
+        Shot { offset: self.across(middle + DVec3::new(-off.x, off.y, 0.0)), is_still, pixels }
     }
 
-    /// What the camera of a run looks at, whose body is at `place` now.
-    pub(super) fn framing(&self, shot: &Shot, run: &RunFrame, place: Option<Place>) -> Framing {
-        let target = if shot.is_still { shot.offset } else { self.centre(run, place) + shot.offset };
-        Framing { target, distance: shot.distance, rise: 0.0, moves: !shot.is_still }
+    /// What the camera of a run looks at, whose body is at `place` now, in a panel.
+    pub(super) fn framing(
+        &self,
+        scene: &Scene,
+        shot: &Shot,
+        run: &RunFrame,
+        place: Option<Place>,
+        (viewport, scale): (Rectangle, Scale),
+    ) -> Framing {
+        let target = if shot.is_still { shot.offset } else { self.middle(run, place) + shot.offset };
+        // Panels may differ by a pixel in width; their scale does not.
+        let distance = near(scene, viewport, scale).focal / shot.pixels;
+        Framing { target, distance, rise: 0.0, moves: !shot.is_still }
     }
 
     /// The point that the camera of a run follows (m).
-    fn centre(&self, run: &RunFrame, place: Option<Place>) -> DVec3 {
+    fn middle(&self, run: &RunFrame, place: Option<Place>) -> DVec3 {
         let path = self.paths.iter().find(|path| path.run == run.run && !path.times.is_empty());
-        let (Some(path), now) = (path, place.map(|place| place.centre)) else {
-            return place.map_or(DVec3::ZERO, |place| place.centre);
+        let (Some(path), now) = (path, place.map(|place| place.middle)) else {
+            return place.map_or(DVec3::ZERO, |place| place.middle);
         };
         let smooth = path.smooth(run.snapshot.time, self.window);
         match now {
@@ -197,6 +201,12 @@ impl Tracking {
     }
 }
 
+/// The camera of a panel at a distance of a metre.
+fn near(scene: &Scene, viewport: Rectangle, scale: Scale) -> Lens {
+    let framing = Framing { target: DVec3::ZERO, distance: 1.0, rise: 0.0, moves: false };
+    Lens::new(&scene.view, &framing, scene.body.dimension, viewport.map(f64::from), scale.unit)
+}
+
 impl Path {
     /// The course of a run, for a diverged one up to the first moment at which its body is larger than a limit (m).
     fn new(course: &Course, limit: f64) -> Self {
@@ -204,8 +214,13 @@ impl Path {
             Some(_) => course.places.iter().take_while(|(_, place)| place.size() <= limit).count(),
             None => course.places.len(),
         };
-        let (times, centres) = course.places[..count].iter().map(|(time, place)| (*time, place.centre)).unzip();
-        Self { run: course.run, times, centres }
+        let places = &course.places[..count];
+        Self {
+            run: course.run,
+            times: places.iter().map(|(time, _)| *time).collect(),
+            centres: places.iter().map(|(_, place)| place.centre).collect(),
+            middles: places.iter().map(|(_, place)| place.middle).collect(),
+        }
     }
 
     /// Whether it is known at a time (s).
@@ -216,35 +231,40 @@ impl Path {
     /// The centres up to a time (s), and where it is then.
     pub(super) fn until(&self, time: f64) -> impl Iterator<Item = DVec3> + '_ {
         let count = self.times.partition_point(|&at| at < time);
-        self.centres[..count].iter().copied().chain([self.at(time)])
+        self.centres[..count].iter().copied().chain([self.at(&self.centres, time)])
     }
 
-    /// The centre at a time (s); before and after the path, at its ends (m).
-    fn at(&self, time: f64) -> DVec3 {
+    /// Which of the points of a path (m) belongs to a time (s); before and after the path, those at its ends.
+    fn at(&self, points: &[DVec3], time: f64) -> DVec3 {
         let after = self.times.partition_point(|&at| at <= time);
-        match (after.checked_sub(1), self.centres.get(after)) {
+        match (after.checked_sub(1), points.get(after)) {
             (None, first) => first.copied().unwrap_or_default(),
-            (Some(before), None) => self.centres[before],
+            (Some(before), None) => points[before],
             (Some(before), Some(&next)) => {
                 let [from, to] = [self.times[before], self.times[after]];
-                self.centres[before].lerp(next, (time - from) / (to - from))
+                points[before].lerp(next, (time - from) / (to - from))
             }
         }
     }
 
-    /// The mean of the centres around a time, weighted by a parabola over half a window (s) to either side. Near the ends
+    /// The middle at a time (m).
+    fn middle(&self, time: f64) -> DVec3 {
+        self.at(&self.middles, time)
+    }
+
+    /// The mean of the middles around a time, weighted by a parabola over half a window (s) to either side. Near the ends
     /// of the path the window is narrower, so that the camera starts and ends at the body.
     fn smooth(&self, time: f64, half: f64) -> DVec3 {
         let (Some(&first), Some(&last)) = (self.times.first(), self.times.last()) else { return DVec3::ZERO };
         let half = half.min(time - first).min(last - time);
         if half <= 0.0 {
-            return self.at(time);
+            return self.middle(time);
         }
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         for part in 1 - PARTS..PARTS {
             let share = f64::from(part) / f64::from(PARTS);
             let weight = 1.0 - share * share;
-            sum += weight * self.at(time + share * half);
+            sum += weight * self.middle(time + share * half);
             weights += weight;
         }
         sum / weights
@@ -262,8 +282,8 @@ mod tests {
             let phase = time - time.floor();
             4.0 * phase * (1.0 - phase)
         };
-        let centres = times.iter().map(|&time| DVec3::new(0.3 * time, height(time), 0.0)).collect();
-        Path { run: 0, times, centres }
+        let middles: Vec<_> = times.iter().map(|&time| DVec3::new(0.3 * time, height(time), 0.0)).collect();
+        Path { run: 0, times, centres: middles.clone(), middles }
     }
 
     #[test]
@@ -285,8 +305,40 @@ mod tests {
         // It begins and ends with the body, and stays there.
         for half in [0.0, 0.1, 9.0] {
             for time in [-1.0, 0.0, 3.0, 7.0] {
-                assert_eq!(path.smooth(time, half), path.at(time));
+                assert_eq!(path.smooth(time, half), path.middle(time));
             }
+        }
+    }
+
+    /// Over a whole scene with hard impacts.
+    #[test]
+    fn a_camera_stays_with_its_body_and_never_jumps() {
+        let text = include_str!("../../scenes/fig4b.toml");
+        let scene = Scene::parse(text, "fig4b.toml", &crate::scene::Limits::default()).unwrap();
+        let tracking = Tracking::new(&scene, &History::new(&scene, &[0, 1])).unwrap();
+        let (viewport, scale) = ([0, 0, 640, 600], Scale::at(1.0));
+        let shot = tracking.shot(&scene, viewport, scale, None);
+        assert!(!shot.is_still && tracking.window > 0.0, "{shot:?} {}", tracking.window);
+        let (mut runner, mut last) = (crate::runner::Runner::new(&scene, &[0, 1]), None);
+        for index in 0..=scene.last_frame() {
+            let frame = runner.frame(index);
+            let now: Vec<_> = frame
+                .runs
+                .iter()
+                .map(|run| {
+                    let place = Place::new(&scene.view, scene.body.dimension, &scene.obstacles, &run.snapshot.position);
+                    let seen = tracking.framing(&scene, &shot, run, place, (viewport, scale));
+                    assert!((seen.target - shot.offset).distance(place.unwrap().middle) <= 1.0001 * tracking.slack());
+                    (seen.target, seen.distance)
+                })
+                .collect();
+            // The body arrives at 9.9 m/s, and nothing is faster.
+            let bound = 9.9 / scene.frames_per_second + 2.0 * tracking.slack();
+            for (now, last) in now.iter().zip(last.iter().flatten()) {
+                let (now, last): (&(DVec3, f64), &(DVec3, f64)) = (now, last);
+                assert!(now.0.distance(last.0) < bound && now.1 == last.1, "{index}: {now:?} after {last:?}");
+            }
+            last = Some(now);
         }
     }
 }

@@ -117,8 +117,7 @@ impl Scene {
             Shape::Floor { .. } => one.floor(0.0) != ground,
             _ => false,
         };
-        let needed =
-            view.strip.is_some() || view.camera.follow || (!is_flat && self.obstacles.iter().any(has_size));
+        let needed = view.strip.is_some() || view.camera.follow || (!is_flat && self.obstacles.iter().any(has_size));
         needed.then(|| view.strip.as_slice())
     }
 }

@@ -35,7 +35,8 @@ fn plane(view: &str) -> (Scene, Frame) {
         [view]
         {view}"
     );
-    let scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mut scene = Scene::parse(&text, "plane.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    scene.view.camera.follow = false;
     let frame = Runner::new(&scene, &[0]).frame(0);
     (scene, frame)
 }

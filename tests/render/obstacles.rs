@@ -22,9 +22,16 @@ const SPHERE: &str = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.4, 0.5, 0]\nrad
 const MOVING: &str = "path = { keys = [{ time = 0 }, { time = 1, shift = [0, 0.4, 0] }], ease = 'linear' }\n";
 const PLATE: &str = "[[obstacle]]\nkind = 'plate'\npoint = [0, 0.8, 0]\nnormal = [0, -1, 0]\n";
 
+/// A scene with a camera that stands still.
 fn scene(parts: &[&str]) -> Scene {
     let text = parts.concat();
-    Scene::parse(&text, "obstacles.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+    let mut scene = following(&text);
+    scene.view.camera.follow = false;
+    scene
+}
+
+fn following(text: &str) -> Scene {
+    Scene::parse(text, "obstacles.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn frame(scene: &Scene, index: u64) -> Frame {
@@ -302,7 +309,10 @@ fn scenes_without_obstacles_pay_nothing() {
 
 #[test]
 fn the_camera_shows_what_comes_near_and_nothing_else() {
-    let camera = |parts: &[&str]| scene(&[&[WORLD, CUBE, FLOOR], parts].concat()).view.camera;
+    let camera = |parts: &[&str]| {
+        let camera = scene(&[&[WORLD, CUBE, FLOOR], parts].concat()).view.camera;
+        localshape::look::Camera { near: Vec::new(), ..camera }
+    };
     let alone = camera(&[]);
     // What is in the picture anyway, or far away, does not move the camera.
     let small = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.15, 0.1, 0]\nradius = 0.02\n";
@@ -326,7 +336,7 @@ fn the_camera_shows_what_comes_near_and_nothing_else() {
 fn following_the_body_lets_the_grid_scroll_below() {
     let text = "velocity = [3, 0, 0]";
     let body = CUBE.replace("lowest = 0.1", &format!("lowest = 0.1, {text}"));
-    let body = scene(&[WORLD, &body, FLOOR]);
+    let body = following(&[WORLD, &body, FLOOR].concat());
     let composer = Composer::new(&body);
     let eye = |picture: &Picture| picture.panels[0].sight.eye;
     // Any frame by itself, and in any order.

@@ -258,9 +258,9 @@ fn a_dropped_body_and_the_floor_below_it_are_in_the_first_picture() {
         for elevation in [0.0, 17_f64.to_radians(), 1.0, 1.5] {
             for size in [[1280, 720], [600, 600], [720, 1280], [333, 200]] {
                 let (mut scene, frame) = scene(|text| {
-                    let camera = format!("camera = {{ elevation = {elevation} }}");
+                    let camera = format!("camera = {{ follow = false, elevation = {elevation} }}");
                     text.replace("lowest = 0.0", &format!("lowest = {lowest:?}"))
-                        .replace("camera = { follow = true }", &camera)
+                        .replace("camera.follow = false", &camera)
                 });
                 scene.view.size = size;
                 let picture = compose(&scene, &frame);

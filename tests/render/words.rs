@@ -295,7 +295,7 @@ fn words_stay_where_they_are() {
         ALL.replace("integrator = 'explicit-euler'", "")
             .replace("step = 0.005, ", "")
             .replace("spring_colour = {}", ""),
-        { super::plain().replace("camera = { follow = true }", "camera = { follow = 'body' }") },
+        { super::plain().replace("camera.follow = false", "") },
     ] {
         let scene = load(&text);
         let runs: Vec<_> = (0..scene.runs.len()).collect();

@@ -173,7 +173,9 @@ fn a_falling_body_is_looked_at_where_it_starts_and_where_it_will_stand() {
     assert_eq!((camera.target, camera.rise), (DVec3::new(3.0, 4.5, 0.0), 12.0));
     assert!(camera.distance > 40.0, "{}", camera.distance);
     // It follows unless it is told where to stand.
-    for (view, follows) in [("", true), ("follow = false", false), ("target = [0, 0, 0]", false), ("distance = 9", false)] {
+    for (view, follows) in
+        [("", true), ("follow = false", false), ("target = [0, 0, 0]", false), ("distance = 9", false)]
+    {
         let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera = {{ {view} }}"));
         assert_eq!(scene.view.camera.follow, follows, "{view}");
     }

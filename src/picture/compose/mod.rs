@@ -200,7 +200,9 @@ impl<'a> Composer<'a> {
         let legend = legend.filter(|_| layout.has_legend);
         let scale = layout.scale;
         let shot = layout.panels.first().and_then(|place| self.shot(place.viewport, scale));
-        let framings: Vec<_> = frame.runs.iter().map(|run| self.framing(shot.as_ref(), run)).collect();
+        let places = layout.panels.iter().zip(&frame.runs);
+        let framings: Vec<_> =
+            places.map(|(place, run)| self.framing(shot.as_ref(), run, (place.viewport, scale))).collect();
         let (marks, curves, words) = Default::default();
         let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
         writer.hairlines(&layout);
@@ -252,9 +254,9 @@ impl<'a> Composer<'a> {
         let most = runs.clamp(1, MOST_COLUMNS);
         let chosen = || {
             let mut best = (most, pixels(most).unwrap_or(0.0));
-            for columns in (1..most).rev() {
+            // With as many rows, as even as possible; side by side unless that costs much.
+            for columns in (2..=runs).map(|rows| runs.div_ceil(rows)).filter(|&columns| columns < most) {
                 let pixels = pixels(columns).unwrap_or(0.0);
-                // Side by side unless that costs much.
                 best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };
             }
             best.0
@@ -268,8 +270,8 @@ impl<'a> Composer<'a> {
         Some(self.tracking.as_ref()?.shot(self.scene, viewport, scale, taken))
     }
 
-    /// What the camera of a run looks at.
-    fn framing(&self, shot: Option<&Shot>, run: &RunFrame) -> Framing {
+    /// What the camera of a run looks at in a panel.
+    fn framing(&self, shot: Option<&Shot>, run: &RunFrame, panel: (Rectangle, Scale)) -> Framing {
         let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else {
             return Framing::still(&self.scene.view.camera);
         };
@@ -277,7 +279,7 @@ impl<'a> Composer<'a> {
         let position = &run.snapshot.position;
         let is_known = position.len() == body.len();
         let place = is_known.then(|| Place::new(view, body.dimension, obstacles, position)).flatten();
-        tracking.framing(shot, run, place)
+        tracking.framing(self.scene, shot, run, place, panel)
     }
 
     /// Draws the overview of a panel, if its camera moves.

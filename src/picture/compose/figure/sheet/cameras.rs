@@ -91,8 +91,7 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFr
     };
     let start = bounds(&scene.initial.position).into();
     let position = &snapshot.position;
-    let staging =
-        Staging { site, cell: 1.0, ground: None, position, skin: None, soft: scene.view.side, start, reach };
+    let staging = Staging { site, cell: 1.0, ground: None, position, skin: None, soft: scene.view.side, start, reach };
     let mut near = Vec::new();
     for (at, obstacle) in scene.obstacles.iter().enumerate() {
         let pose = obstacle.pose(snapshot.time);

@@ -77,7 +77,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let framings = cameras::framings(&scenes, &cells, &plan);
     // The tiles of a scene share what is computed for the first of them.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
-    let composers: Vec<_> = scenes.iter().zip(reaches).map(|(scene, reach)| Composer { reach, ..Composer::new(scene) }).collect();
+    let composers: Vec<_> =
+        scenes.iter().zip(reaches).map(|(scene, reach)| Composer { reach, ..Composer::new(scene) }).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
