@@ -188,8 +188,8 @@ pub(crate) struct LightFile {
     /// Azimuth from straight behind the viewer to the left (rad); negative to the right. Default: 62°.
     #[schemars(range(min = -3.15, max = 3.15))]
     pub(crate) azimuth: f64,
-    /// Elevation above the horizon (rad). Default: 50°. The light is steeper for bodies that fly high, whose shadows would
-    /// otherwise leave the picture.
+    /// Elevation above the horizon (rad). Default: 50°. The light is steeper where a camera that stands still shows a body that
+    /// starts high, whose shadow would otherwise leave the picture.
     #[schemars(range(min = 0.2, max = 1.57))]
     pub(crate) elevation: f64,
 }
