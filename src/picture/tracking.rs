@@ -16,8 +16,12 @@ use glam::{DVec2, DVec3};
 
 /// The part of a panel's width that the widest moment takes.
 const FILLED: f64 = 0.55;
-/// A camera stands still if everything stays in view at this part of that scale.
-const STILL: f64 = 0.82;
+/// A camera stands still if everything stays in view at a scale at which the widest moment takes this part of that width, or
+/// as much as it can take.
+const LEAST_FILLED: f64 = 0.45;
+/// At the highest moment bodies come this much nearer to the words than other things that words are kept clear of, above
+/// and below (px in the reference picture).
+const NEARER: [f64; 2] = [5.0, 11.0];
 /// Moments of diverged runs count while they are no larger than this many times the largest moment of the others, or than
 /// the second number of times the start if there are no others.
 const BEYOND: [f64; 2] = [1.25, 2.0];
@@ -142,18 +146,22 @@ impl Tracking {
     pub(super) fn shot(&self, scene: &Scene, viewport: Rectangle, scale: Scale, taken: Option<[f64; 4]>) -> Shot {
         let (view, dimension) = (&scene.view, scene.body.dimension);
         let lens = near(scene, viewport, scale);
-        let room =
+        let [left, top, width, height] =
             layout::clear_of_words(viewport, scale, layout::rooms(view)).map(|length| f64::from(length).max(1.0));
+        let [above, below] = NEARER.map(|length| length * scale.unit);
+        let room = [left, top - above, width, height + above + below];
         // What is nearer than the point looked at is seen larger.
         let depth = |half: DVec3| if dimension == Dimension::Space { half.z / lens.focal } else { 0.0 };
         let fit = |half: DVec3| {
             let depth = depth(half);
             (room[2] / (2.0 * half.x + room[2] * depth)).min(room[3] / (2.0 * half.y + room[3] * depth))
         };
-        let following = (FILLED * f64::from(viewport[2]) / self.widest).min(fit(self.half + self.slack()));
+        let [filled, least] = [FILLED, LEAST_FILLED].map(|part| part * f64::from(viewport[2].max(1)) / self.widest);
+        let following = filled.min(fit(self.half + self.slack()));
+        let least = least.min(following);
         let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
         let [body, with_near] = self.all;
-        let standing = [with_near, body].map(standing).into_iter().find(|(pixels, _)| *pixels >= STILL * following);
+        let standing = [with_near, body].map(standing).into_iter().find(|(pixels, _)| *pixels >= least);
         let standing = standing.filter(|_| !self.paths.is_empty());
         let is_still = standing.is_some();
         // The middle of the box stands in the middle of the room.
