@@ -22,9 +22,9 @@ const LEAST_FILLED: f64 = 0.45;
 /// At the highest moment bodies come this much nearer to the words than other things that words are kept clear of, above
 /// and below (px in the reference picture).
 const NEARER: [f64; 2] = [5.0, 11.0];
-/// Moments of diverged runs count while they are no larger than this many times the largest moment of the others, or than
-/// the second number of times the start if there are no others.
-const BEYOND: [f64; 2] = [1.25, 2.0];
+/// Moments of diverged runs count while they are no larger than the largest moment of the others, or than this many times
+/// the start if there are no others.
+const BEYOND: f64 = 2.0;
 /// Bodies that grow count up to this many times their largest side at the start and at rest: others, which do not grow,
 /// would be too small.
 const MOST_GROWTH: f64 = 1.7;
@@ -82,7 +82,7 @@ impl Tracking {
         let largest = |course: &Course| course.places.iter().map(|(_, place)| place.size()).fold(0.0, f64::max);
         let sound = history.courses.iter().filter(|course| course.divergence.is_none());
         let largest = sound.map(largest).reduce(f64::max);
-        let limit = largest.map_or(BEYOND[1] * usual, |largest| BEYOND[0] * largest.max(usual));
+        let limit = largest.map_or(BEYOND * usual, |largest| largest.max(usual));
         let paths: Vec<_> = history.courses.iter().map(|course| Path::new(course, limit)).collect();
         let counted = history.courses.iter().zip(&paths).flat_map(|(course, path)| &course.places[..path.times.len()]);
         let places: Vec<_> = counted.map(|(_, place)| *place).chain([start]).collect();

@@ -287,7 +287,7 @@ fn says_which_runs_leave_their_panels() {
         return;
     }
     let place = Place::with_small();
-    place.write("beside.toml", &SMALL.replace("[view]", "[view]\ncamera.target = [0.5, 0, 0]"));
+    place.write("beside.toml", &SMALL.replace("[view]", "[view]\ncamera.target = [2, 0, 0]"));
     let ran = place.run("render beside.toml --frames 0,3 --samples 1").good();
     assert!(
         ran.out.contains("warning: Mass-spring leaves its panel in 2 of 2 frames, first in frame 0"),

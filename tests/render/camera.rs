@@ -148,7 +148,7 @@ fn what_leaves_its_panel_is_known() {
         ))
     };
     for (camera, cut) in
-        [("", false), ("target = [0, 0, 0]", false), ("target = [0.5, 0, 0]", true), ("distance = 0.3", true)]
+        [("", false), ("target = [0, 0, 0]", false), ("target = [2, 0, 0]", true), ("distance = 0.3", true)]
     {
         let scene = with(camera);
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
