@@ -73,7 +73,7 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let radius = length(at - ground.middle);
     let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
-    let bottom = smoothstep(0.0, ground.shadow.w, size.y - pixel.y);
+    let bottom = smoothstep(0.55 * ground.shadow.w, ground.shadow.w, size.y - pixel.y);
     let fade = round * side * bottom;
 
     var colour = ground.floor.rgb;

@@ -24,6 +24,13 @@ pub(crate) struct Composed {
     pictures: Vec<Picture>,
 }
 
+impl Composed {
+    /// For each panel, whether its body leaves it.
+    pub(crate) fn cut(&self) -> impl Iterator<Item = bool> + '_ {
+        self.pictures.first().into_iter().flat_map(|picture| &picture.panels).map(|panel| panel.is_cut)
+    }
+}
+
 impl<'a> Artist<'a> {
     /// For frames of a scene, with so many samples per pixel.
     ///

@@ -1,7 +1,10 @@
-//! The time series of a scene: its diagnostics from start to end, for strips and other charts. They depend on the scene
-//! only and not on the requested frames.
+//! The time series of a scene: its diagnostics from start to end, for strips and other charts, and where its bodies are,
+//! for cameras that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the
+//! requested frames.
 
+use crate::look::Place;
 use crate::scene::Scene;
+use crate::sim::contact::{self, Shape};
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 use glam::DVec3;
@@ -35,6 +38,10 @@ pub struct TimeSeries {
     pub diagnostics: Vec<Diagnostics>,
     /// For each point of the body that leaves a path ([`crate::look::View::paths`]), where it was at each of these times (m).
     pub paths: Vec<Vec<DVec3>>,
+    /// Times (s) and places of the body at each of them, if the scene's camera follows it.
+    pub(crate) places: Vec<(f64, Place)>,
+    /// Where its nodes have come near plates and walls.
+    pub(crate) reach: Reach,
     /// Where the run diverged, if it did.
     pub divergence: Option<Divergence>,
 }
@@ -42,7 +49,66 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
-        Self { run, times: Vec::new(), diagnostics: Vec::new(), paths: Vec::new(), divergence: None }
+        let (times, diagnostics, paths, places, reach) = Default::default();
+        Self { run, times, diagnostics, paths, places, reach, divergence: None }
+    }
+
+    /// Records the state at a time (s): diagnostics, and nodes at positions (m).
+    pub(crate) fn note(&mut self, scene: &Scene, time: f64, diagnostics: Diagnostics, position: &[DVec3]) {
+        self.times.push(time);
+        self.diagnostics.push(diagnostics);
+        if scene.view.camera.follow {
+            let place = Place::new(&scene.view, scene.body.dimension, &scene.obstacles, position);
+            self.places.extend(place.map(|place| (time, place)));
+        }
+        self.reach.add(scene, time, position);
+    }
+}
+
+/// For each obstacle of a scene the box around all nodes that have been near it (m), where the obstacle was at the start;
+/// `None` for all but plates and walls.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Reach(Vec<Option<[DVec3; 2]>>);
+
+impl Reach {
+    /// Nodes no farther from a plate or a wall than this are near it (sizes of the body).
+    const NEAR: f64 = 0.6;
+
+    /// Adds nodes at positions (m) at a time (s).
+    pub(crate) fn add(&mut self, scene: &Scene, time: f64, position: &[DVec3]) {
+        self.0.resize(scene.obstacles.len(), None);
+        let near = Self::NEAR * scene.body.extent();
+        let ground = contact::ground(&scene.obstacles, time);
+        for (obstacle, reached) in scene.obstacles.iter().zip(&mut self.0) {
+            let (normal, height) = match obstacle.shape {
+                Shape::Plate { point, normal } => (normal, normal.dot(point)),
+                Shape::Floor { normal, height } if obstacle.floor(time) != ground => (normal, height),
+                _ => continue,
+            };
+            let pose = obstacle.pose(time);
+            for at in position.iter().map(|&node| pose.undo(obstacle.pivot, node)) {
+                if (normal.dot(at) - height).abs() < near {
+                    let [low, high] = reached.unwrap_or([at; 2]);
+                    *reached = Some([low.min(at), high.max(at)]);
+                }
+            }
+        }
+    }
+
+    /// Adds what another run has reached.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.0.resize(self.0.len().max(other.0.len()), None);
+        for (one, other) in self.0.iter_mut().zip(&other.0) {
+            *one = match (*one, *other) {
+                (Some([low, high]), Some(other)) => Some([low.min(other[0]), high.max(other[1])]),
+                (one, other) => one.or(other),
+            };
+        }
+    }
+
+    /// The box of an obstacle, by its index.
+    pub(crate) fn of(&self, obstacle: usize) -> Option<[DVec3; 2]> {
+        self.0.get(obstacle).copied().flatten()
     }
 }
 

@@ -158,7 +158,8 @@ impl<'a> Runner<'a> {
     }
 
     fn advance_runs(&mut self, moment: Moment, most_steps: u64) -> bool {
-        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(moment, most_steps));
+        let scene = self.scene;
+        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(scene, moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
@@ -251,7 +252,7 @@ impl Running {
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
-    fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+    fn advance_towards(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
         while let (Some(&note), None) = (self.notes.get(self.series.times.len()), self.series.divergence) {
             if self.world.steps_at(note) > target {
@@ -263,12 +264,12 @@ impl Running {
                 // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.series.times.len());
                 if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
-                    self.note(last);
+                    self.note(scene, last);
                 }
                 self.series.divergence = Some(divergence);
             } else if is_there {
                 left -= self.world.steps() - before;
-                self.note(self.world.steps());
+                self.note(scene, self.world.steps());
             } else {
                 return false;
             }
@@ -277,11 +278,12 @@ impl Running {
     }
 
     /// Records the present state as that after a step.
-    fn note(&mut self, step: u64) {
-        self.series.times.push(step as f64 * self.step);
-        self.series.diagnostics.push(self.world.some_diagnostics(&self.wanted));
+    fn note(&mut self, scene: &Scene, step: u64) {
+        let diagnostics = self.world.some_diagnostics(&self.wanted);
+        let position = &self.world.state().position;
+        self.series.note(scene, step as f64 * self.step, diagnostics, position);
         for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {
-            path.push(traced.of(&self.body, &self.world.state().position));
+            path.push(traced.of(&self.body, position));
         }
     }
 }
@@ -438,7 +440,7 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end: what strips show, see [`Composer::set_history`].
+    /// Simulates runs of a scene from start to end: what strips and cameras that follow need, see [`Composer::set_history`].
     ///
     /// [`Composer::set_history`]: crate::picture::Composer::set_history
     ///

@@ -4,6 +4,10 @@ use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::options::{PrintOptions, SceneOptions};
 use super::scenes::{status_of, worse};
+use crate::reading::Mistake;
+#[cfg(feature = "render")]
+use crate::runner::Runner;
+use crate::scene::Scene;
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -30,12 +34,14 @@ impl Check {
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
             match self.scenes.load(path) {
-                Ok(scene) if self.printing.json => {
-                    let (scene, warnings) = (scene.summary(), &scene.warnings);
-                    documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
-                }
-                Ok(_) if self.printing.quiet => {}
-                Ok(scene) => {
+                Ok(_) if self.printing.quiet && !self.printing.json => {}
+                Ok(mut scene) => {
+                    scene.warnings.extend(cut(&scene));
+                    if self.printing.json {
+                        let (scene, warnings) = (scene.summary(), &scene.warnings);
+                        documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
+                        continue;
+                    }
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
                     warn(path, &scene);
@@ -56,4 +62,28 @@ impl Check {
         }
         Ok(failed.unwrap_or(Status::Done))
     }
+}
+
+/// A warning if a body leaves its panel at the start, before a camera that stands still.
+#[cfg(feature = "render")]
+fn cut(scene: &Scene) -> Option<Mistake> {
+    if scene.view.camera.follow {
+        return None;
+    }
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let picture = crate::picture::compose(scene, &Runner::new(scene, &runs).frame(0));
+    picture.panels.iter().any(|panel| panel.is_cut).then(|| Mistake {
+        line: 0,
+        column: 0,
+        place: "view.camera".to_owned(),
+        message: "the body leaves its panel at the start".to_owned(),
+        help: Some("move the camera back, or let it follow: leave out `target` and `distance`".to_owned()),
+        excerpt: String::new(),
+        marked: 0..0,
+    })
+}
+
+#[cfg(not(feature = "render"))]
+fn cut(_: &Scene) -> Option<Mistake> {
+    None
 }

@@ -27,8 +27,8 @@ use std::time::Duration;
 pub(super) trait Pictures {
     /// Writes down in the summary how the pictures are made.
     fn describe(&self, summary: &mut Summary);
-    /// The diagnostic, if there is one, whose time series over the whole scene is needed before the first frame.
-    fn strip(&self) -> Option<Diagnostic>;
+    /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
+    fn time_series(&self) -> Option<&[Diagnostic]>;
     /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
@@ -208,21 +208,20 @@ impl Recording<'_> {
         mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let needs_field = pictures.is_some();
-        let strip = pictures.as_ref().and_then(|pictures| pictures.strip());
-        let ahead = strip.is_some() || needs_field && self.scene.view.looks_ahead();
+        let wanted = pictures.as_ref().and_then(|pictures| pictures.time_series()).map(<[_]>::to_vec);
         let mut frames = pool.install(|| {
             let mut runner = Runner::new(self.scene, &self.runs);
             if !needs_field {
                 runner = runner.without_pictures();
             }
-            if ahead {
-                runner = runner.with_time_series(strip.as_slice()).with_difference();
+            if let Some(wanted) = &wanted {
+                runner = runner.with_time_series(wanted).with_difference();
             }
-            Frames::new(runner, &self.frames, ahead, self.folder)
+            Frames::new(runner, &self.frames, wanted.is_some(), self.folder)
         });
         let bar = printing.progress(&self.scene.title, frames.steps()[1]);
-        if ahead {
-            bar.set_message("simulating ahead for the strips");
+        if wanted.is_some() {
+            bar.set_message("simulating ahead");
         }
         let slice = slice(&self.scene.body);
         while !interrupt::requested() {

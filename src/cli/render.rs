@@ -270,6 +270,7 @@ impl Studio for Device {
             samples: self.samples,
             compose: Spent::default(),
             draw: Spent::default(),
+            cut: Vec::new(),
         }))
     }
 }
@@ -286,6 +287,8 @@ struct Drawing<'a> {
     samples: u32,
     compose: Spent,
     draw: Spent,
+    /// Runs and frames in which their bodies leave their panels.
+    cut: Vec<(usize, u64)>,
 }
 
 impl Pictures for Drawing<'_> {
@@ -299,8 +302,8 @@ impl Pictures for Drawing<'_> {
         }
     }
 
-    fn strip(&self) -> Option<Diagnostic> {
-        self.scene.view.strip
+    fn time_series(&self) -> Option<&[Diagnostic]> {
+        self.scene.time_series()
     }
 
     fn take_history(&mut self, history: &History) {
@@ -311,6 +314,8 @@ impl Pictures for Drawing<'_> {
         let clock = Clock::thread();
         let composed = self.artist.compose(frame);
         self.compose += clock.spent();
+        let cut = frame.runs.iter().zip(composed.cut()).filter(|(_, is_cut)| *is_cut);
+        self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
         let clock = Clock::thread();
         let pixels = self.artist.draw(&composed)?;
         self.draw += clock.spent();
@@ -322,6 +327,10 @@ impl Pictures for Drawing<'_> {
         let (written, encode, result) = self.writer.finish();
         let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
+        for run in &mut summary.runs {
+            let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
+            run.cut = of_run.map(|(_, frame)| *frame).collect();
+        }
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
         result?;
         filmed

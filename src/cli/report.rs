@@ -14,6 +14,7 @@ pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String 
     let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);
     let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().map(row)).collect();
     text += &columns(&rows, [false, false, true, true]);
+    text += &cut(summary);
     text += &times(summary);
     if timings {
         text += &all_times(summary);
@@ -54,6 +55,20 @@ fn row(run: &RunSummary) -> [String; 4] {
         None => Default::default(),
     };
     [run.name.clone(), status, turned_over, shape_error]
+}
+
+/// A warning for each run whose body leaves its panel.
+fn cut(summary: &Summary) -> String {
+    let warning = |run: &RunSummary| {
+        let first = run.cut.first()?;
+        let (count, all) = (run.cut.len(), summary.frames.recorded);
+        let help = "move the camera back, or let it follow: `view.camera` without `target` and `distance`";
+        Some(format!(
+            "warning: {} leaves its panel in {count} of {all} frames, first in frame {first}; {help}\n",
+            run.name
+        ))
+    };
+    summary.runs.iter().filter_map(warning).collect()
 }
 
 fn times(summary: &Summary) -> String {

@@ -176,12 +176,14 @@ fn draw_scene(
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
     // Strips show the whole time series, which is simulated before the first frame is drawn.
-    let strip = scene.view.strip.filter(|_| artist.is_some());
+    let wanted = scene.time_series().filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
-    let ahead = artist.is_some() && (strip.is_some() || scene.view.looks_ahead());
-    let runner = if ahead { runner.with_time_series(strip.as_slice()).with_difference() } else { runner };
+    let runner = match wanted {
+        Some(wanted) => runner.with_time_series(wanted).with_difference(),
+        None => runner,
+    };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, ahead, &std::env::temp_dir());
+    let mut frames = Frames::new(runner, &frames, wanted.is_some(), &std::env::temp_dir());
     loop {
         if !go_on() {
             return Ok(None);

@@ -2,7 +2,7 @@
 
 use super::palette::Theme;
 use super::typed::{BackgroundFile, ColoursFile, FontFile};
-use super::view::{ColourMap, FloorStyle, Follow, Light};
+use super::view::{ColourMap, FloorStyle, Light};
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -43,10 +43,10 @@ pub(crate) struct ViewFile {
     /// `after the start`.
     #[schemars(length(max = 80))]
     pub(crate) clock: Option<String>,
-    /// Number of panels in a row. Default: all runs, up to 3. Not together with `panels`.
+    /// Number of panels in a row. Default: as many as make bodies largest. Not together with `panels`.
     #[schemars(range(min = 1, max = 64))]
     pub(crate) columns: Option<u32>,
-    /// Arrangement of the panels. Not together with `columns`.
+    /// Arrangement of the panels. Default: in as many rows as make bodies largest. Not together with `columns`.
     pub(crate) panels: Option<ArrangementFile>,
     /// What is drawn of the body. Without `surfaces`, lines are drawn instead: springs if they are shown and the model
     /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: surfaces,
@@ -270,8 +270,6 @@ pub(crate) enum ArrangementFile {
     Row,
     /// One below the other.
     Column,
-    /// In the number of rows that leaves them most room.
-    Grid,
 }
 
 /// A part of the body that can be drawn.
@@ -305,9 +303,8 @@ pub(crate) struct ColourFile {
     pub(crate) map: ColourMap,
 }
 
-/// A perspective camera that looks at a point. A body in the plane is seen from the front without perspective; `distance` and
-/// `field_of_view` together then give the scale.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+/// A perspective camera. A body in the plane is seen from the front without perspective.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CameraFile {
     /// Azimuth to the right, from looking along −z (rad). Default: 0.541, which is 31°. Not in the plane.
@@ -319,54 +316,26 @@ pub(crate) struct CameraFile {
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
     #[schemars(range(min = 0.001, max = 3.0))]
     pub(crate) field_of_view: Option<f64>,
-    /// The point looked at (m). Default: the centre of the body as it would stand on the first floor below it, or where it
-    /// starts if there is none. If `distance` is not given either, the target is chosen so that plates, spheres, capsules,
-    /// boxes and moved nodes near the body are in the picture, too.
+    /// The point looked at (m) by a camera that stands still. Default: the centre of the body as it would stand on the first
+    /// floor below it, or where it starts if there is none. If `distance` is not given either, the target is chosen so that
+    /// plates, spheres, capsules, boxes and moved nodes near the body are in the picture, too.
     pub(crate) target: Option<Coordinates>,
-    /// Distance from the target (m). Default: 8.5 times the longest side of the bounding box at the start, and more if the
-    /// body starts higher than that shows. If `target` is not given either, the picture also shows all parts of plates,
-    /// spheres, capsules, boxes and moved nodes that are at any time within 1.25 body sizes of where the body starts and
-    /// stands.
+    /// Distance (m) of a camera that stands still from its target; in the plane, `distance` and `field_of_view` together give
+    /// the scale. Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts higher
+    /// than that shows. If `target` is not given either, the picture also shows all parts of plates, spheres, capsules, boxes
+    /// and moved nodes that are at any time within 1.25 body sizes of where the body starts and stands.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
-    /// Whether the camera follows the bodies shown, in the same way in all panels. With `true` or `"height"` it rises and
-    /// draws back with the highest body; without a floor it sinks with the lowest. With `"body"` it also follows their
-    /// common centre horizontally.
-    pub(crate) follow: FollowFile,
+    /// Whether the camera follows the centre of each run's body. All panels and frames then have one scale, at which the body
+    /// takes about 55 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the camera
+    /// stands still; otherwise a small overview in each panel shows the body, the path of its centre and the floor, with the
+    /// same axes in all panels. The whole scene is simulated before the first frame is drawn. A camera with a `target` or a
+    /// `distance` stands still.
+    pub(crate) follow: bool,
 }
 
-/// How the camera follows, as typed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(crate) enum FollowFile {
-    /// `true` for the height, `false` for nothing.
-    Switch(bool),
-    /// What it follows.
-    What(FollowedFile),
-}
-
-/// What the camera follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum FollowedFile {
-    /// The height of the bodies.
-    Height,
-    /// Their height and, horizontally, their common centre.
-    Body,
-}
-
-impl Default for FollowFile {
+impl Default for CameraFile {
     fn default() -> Self {
-        Self::Switch(false)
-    }
-}
-
-impl From<FollowFile> for Follow {
-    fn from(typed: FollowFile) -> Self {
-        match typed {
-            FollowFile::Switch(false) => Self::Nothing,
-            FollowFile::Switch(true) | FollowFile::What(FollowedFile::Height) => Self::Height,
-            FollowFile::What(FollowedFile::Body) => Self::Body,
-        }
+        Self { azimuth: None, elevation: None, field_of_view: None, target: None, distance: None, follow: true }
     }
 }

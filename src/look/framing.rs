@@ -3,7 +3,7 @@
 use super::file::CameraFile;
 use super::reach;
 use super::subject::Subject;
-use super::view::{Camera, Follow, axes};
+use super::view::{Camera, axes};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use glam::{DVec2, DVec3};
@@ -43,18 +43,28 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
         target: standing,
         distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene) * (1.0 + apart)),
         rise: 0.0,
-        follow: typed.follow.into(),
+        follow: typed.follow && target.is_none() && typed.distance.is_none(),
+        near: Vec::new(),
     };
+    let near = near(start, standing, scene);
     match target {
         Some(target) => chosen.target = target,
-        // A camera that follows shows the height of a body anyway.
-        None if chosen.follow != Follow::Nothing => {}
         None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
     }
     if target.is_none() && typed.distance.is_none() {
-        show_reach(&mut chosen, start, standing, scene);
+        show_reach(&mut chosen, start, standing, &near, dimension);
+    }
+    if chosen.follow {
+        chosen.near = near;
     }
     chosen
+}
+
+/// What comes near a body where it starts and where it will stand (m).
+fn near(start: &[DVec3], standing: DVec3, scene: &Subject<'_>) -> Vec<DVec3> {
+    let (low, high) = bounds(start);
+    let drop = standing - (low + high) / 2.0;
+    reach::near(scene, [low.min(low + drop), high.max(high + drop)], size(scene))
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
@@ -64,8 +74,8 @@ fn size(scene: &Subject<'_>) -> f64 {
     if start > 0.0 { start } else { scene.body.extent() }
 }
 
-/// The start of a body that is drawn with its elements apart, a little larger than it is drawn.
-fn spread<'s>(start: &'s [DVec3], apart: f64, obstacles: &[Obstacle]) -> Cow<'s, [DVec3]> {
+/// The nodes (m) of a body that is drawn with its elements apart, a little larger than it is drawn.
+pub(super) fn spread<'s>(start: &'s [DVec3], apart: f64, obstacles: &[Obstacle]) -> Cow<'s, [DVec3]> {
     if apart == 0.0 || start.is_empty() {
         return Cow::Borrowed(start);
     }
@@ -104,19 +114,14 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
 
 /// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
 /// already, or if there is nothing near, the camera stays.
-fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, scene: &Subject<'_>) {
-    let (low, high) = bounds(start);
-    let (dimension, drop) = (scene.body.dimension, standing - (low + high) / 2.0);
-    let is_shown_at_start = camera.follow == Follow::Nothing;
-    let around = match is_shown_at_start {
-        true => [low.min(low + drop), high.max(high + drop)],
-        false => [low + drop, high + drop],
-    };
-    let mut shown = reach::near(scene, around, size(scene));
-    if shown.is_empty() || least_distance(camera, shown.iter().copied(), dimension) <= camera.distance {
+fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, near: &[DVec3], dimension: Dimension) {
+    if near.is_empty() || least_distance(camera, near.iter().copied(), dimension) <= camera.distance {
         return;
     }
-    shown.extend(start.iter().flat_map(|&at| is_shown_at_start.then_some(at).into_iter().chain([at + drop])));
+    let (low, high) = bounds(start);
+    let drop = standing - (low + high) / 2.0;
+    let mut shown = near.to_vec();
+    shown.extend(start.iter().flat_map(|&at| [at, at + drop]));
     // The middle depends a little on the distance, so iterate.
     for _ in 0..4 {
         let step = middle_of(camera, &shown, dimension);

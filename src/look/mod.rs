@@ -8,6 +8,7 @@ pub(crate) mod font;
 mod framing;
 mod palette;
 pub(crate) mod points;
+mod place;
 pub(crate) mod ramp;
 mod reach;
 mod resolve;
@@ -21,6 +22,7 @@ pub use crate::colour::Colour;
 pub(crate) use contrast::check_runs;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
+pub(crate) use place::Place;
 pub(crate) use ramp::SHADES;
 pub(crate) use resolve::{colour, resolve};
 pub(crate) use run_lines::LineStyle;
@@ -28,6 +30,6 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, Difference, FloorStyle, Follow, FontFiles, Ghost, Labels, Light, Points,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, FontFiles, Ghost, Labels, Light, Points,
     StrainScale, Style, Traced, View, Visible,
 };

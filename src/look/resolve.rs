@@ -13,9 +13,6 @@ use crate::sim::body::Dimension;
 use crate::sim::inside::is_inside;
 use crate::sim::words::rounded;
 
-/// How many panels stand beside each other unless the scene says so.
-const COLUMNS: usize = 3;
-
 /// The view, or `None` if there is a mistake in it.
 pub(crate) fn resolve(
     typed: &ViewFile,
@@ -38,20 +35,18 @@ pub(crate) fn resolve(
         None => None,
     };
     let chosen = framing::camera(&typed.camera, target, typed.explode, scene);
-    if dimension == Dimension::Space && is_inside(chosen.eye(), body, &scene.initial.position) {
+    if dimension == Dimension::Space && !chosen.follow && is_inside(chosen.eye(), body, &scene.initial.position) {
         let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
         let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
     }
     let columns = match (typed.columns, typed.panels) {
-        (Some(columns), _) => columns as usize,
-        (None, Some(ArrangementFile::Row)) => panels,
-        (None, Some(ArrangementFile::Column)) => 1,
-        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, panels),
-        (None, None) => columns(panels),
+        (Some(columns), _) => Some(columns as usize),
+        (None, Some(ArrangementFile::Row)) => Some(panels.max(1)),
+        (None, Some(ArrangementFile::Column)) => Some(1),
+        (None, None) => None,
     };
-    let columns = columns.clamp(1, panels.max(1));
     let colour = match &typed.colour {
         Some(typed) => {
             let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
@@ -134,21 +129,6 @@ pub(crate) fn resolve(
         outline: typed.outline,
         hatch: typed.hatch,
     })
-}
-
-/// How many panels stand beside each other of so many, unless a scene says so.
-fn columns(runs: usize) -> usize {
-    COLUMNS.min(runs.max(1))
-}
-
-/// Into how many columns panels are put so that the smaller of their sides is largest.
-fn roomiest([width, height]: [u32; 2], runs: usize) -> usize {
-    let side = |columns: usize| {
-        let rows = runs.div_ceil(columns);
-        (f64::from(width) / columns as f64).min(f64::from(height) / rows as f64)
-    };
-    // Of equal ones the first, with more rows and wider panels.
-    (1..=runs.max(1)).fold(1, |best, columns| if side(columns) > side(best) { columns } else { best })
 }
 
 /// The strains at the ends of the scale that colours springs.

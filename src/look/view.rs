@@ -21,8 +21,8 @@ pub struct View {
     pub camera: Camera,
     /// What the clock counts from, shown under the time, such as `after first contact`.
     pub clock: String,
-    /// How many panels stand beside each other before a new row begins.
-    pub columns: usize,
+    /// How many panels stand beside each other before a new row begins; `None` for as many as make bodies largest.
+    pub columns: Option<usize>,
     /// What is drawn of the body.
     pub visible: Visible,
     /// The field that colours its surface, if any.
@@ -93,10 +93,11 @@ impl Default for View {
                 target: DVec3::ZERO,
                 distance: 1.0,
                 rise: 0.0,
-                follow: Follow::Nothing,
+                follow: false,
+                near: Vec::new(),
             },
             clock: String::new(),
-            columns: 1,
+            columns: None,
             visible: Visible { surfaces: true, ..Visible::default() },
             colour: None,
             arrow_scale: 1.0,
@@ -357,12 +358,16 @@ pub struct Camera {
     pub distance: f64,
     /// How much higher the body starts than it would stand, where target and distance were chosen to show both (m).
     pub rise: f64,
-    /// How it goes along with the bodies shown, alike in all panels.
-    pub follow: Follow,
+    /// Whether it follows the centre of each run's body from a distance of its own instead, at which the body fills its
+    /// panel at its widest moment.
+    pub follow: bool,
+    /// If it follows, points of obstacles and moved nodes that are at any time near where the body starts and stands (m). It
+    /// shows them, too, where it can stand still.
+    pub(crate) near: Vec<DVec3>,
 }
 
 impl Camera {
-    /// Where it stands before it follows anything (m).
+    /// Where it stands if it does not follow (m).
     pub(crate) fn eye(&self) -> DVec3 {
         let [_, _, towards] = axes(self.azimuth, self.elevation);
         self.target + self.distance * towards
@@ -376,17 +381,4 @@ pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
     let towards = DVec3::new(across * level, rise, along * level);
     let right = DVec3::new(along, 0.0, -across);
     [right, towards.cross(right), towards]
-}
-
-/// How a camera goes along with the bodies shown. What it does is a function of the frame alone, so that any frame can
-/// be drawn by itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Follow {
-    /// It stays where it is.
-    #[default]
-    Nothing,
-    /// It rises and draws back with the highest body; without a level floor it sinks with the lowest.
-    Height,
-    /// It does that, and goes along level with the common middle of the bodies.
-    Body,
 }

@@ -88,6 +88,9 @@ pub(crate) struct RunSummary {
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
+    /// The frames in which its body leaves its panel; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cut: Vec<u64>,
     /// The last recorded frame; `null` before the first.
     pub last: Option<LastState>,
 }
@@ -128,7 +131,13 @@ impl Summary {
     pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
-            RunSummary { name: run.name.clone(), time_step: run.step, status: RunStatus::Ok, last: None }
+            RunSummary {
+                name: run.name.clone(),
+                time_step: run.step,
+                status: RunStatus::Ok,
+                cut: Vec::new(),
+                last: None,
+            }
         };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),

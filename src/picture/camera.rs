@@ -2,7 +2,7 @@
 
 use super::layout;
 use super::narrow::narrow_row;
-use crate::look::{Camera, Follow, View, axes};
+use crate::look::{Camera, View, axes};
 use crate::sim::body::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
@@ -13,96 +13,28 @@ const LOWERED: f64 = 0.037;
 const REFERENCE_ROOM: f64 = 0.75;
 /// The narrowest panel that shows a body at full size, in heights; in narrower ones everything shrinks alike.
 const FULL_ASPECT: f64 = 640.0 / 720.0;
-/// Which part of a panel's height bodies may use between titles and captions.
-const USABLE_HEIGHT: f64 = 0.70;
-/// How far aside of the middle bodies may be, in heights of a panel.
-const USABLE_WIDTH: f64 = 0.39;
-/// Below this rise, in distances of the camera, following hardly begins.
-const GENTLE_RISE: f64 = 0.045;
-/// The highest rise that is followed, in distances of the camera. Bodies that fly higher leave the picture.
-const HIGHEST_RISE: f64 = 40.0;
-/// So far does the camera lag behind a fall, in its own distances.
-const GENTLE_FALL: f64 = 0.025;
-/// The deepest fall that is followed, in distances of the camera.
-const DEEPEST_FALL: f64 = 1e9;
 /// Distance of the nearest thing drawn, as a part of the camera's distance.
 const NEAR: f64 = 0.02;
 
-/// What a camera looks at in one frame, alike in all panels.
+/// What the camera of a panel looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Framing {
-    /// The point looked at (m).
+    /// The point looked at, the origin of the panel (m).
     pub target: DVec3,
-    /// Where the target is, or how deep it has sunk, before it rises with a body (m): the origin of all panels.
-    pub base: DVec3,
     /// Distance from the target (m).
     pub distance: f64,
-    /// How far the camera has risen above where a body stands, twice (m): the height that the picture shows more.
+    /// How much higher than it stands the body starts, where the picture shows both (m).
     pub rise: f64,
+    /// Whether it differs between frames.
+    pub moves: bool,
 }
 
 impl Framing {
-    /// The framing of a camera that does not follow.
+    /// The framing of a camera that stands still.
     pub(crate) fn still(camera: &Camera) -> Self {
         let Camera { target, distance, rise, .. } = *camera;
-        Self { target, base: target, distance, rise }
+        Self { target, distance, rise, moves: false }
     }
-}
-
-/// Where the middles of the bodies shown are in one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Middles {
-    /// The lowest corner of the box around them (m); infinite if no body is shown.
-    pub low: DVec3,
-    /// The highest corner of that box (m).
-    pub high: DVec3,
-    /// Where the middle of the body is at the start of the scene (m).
-    pub start: DVec3,
-}
-
-impl Middles {
-    /// Those of the bodies whose middles are given, in a scene where the body starts with its middle at `start` (m).
-    pub(crate) fn new(middles: impl IntoIterator<Item = DVec3>, start: DVec3) -> Self {
-        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, start };
-        middles.into_iter().fold(none, |all, at| Self { low: all.low.min(at), high: all.high.max(at), start })
-    }
-
-    /// How far their common middle has gone level from the start (m), and half their distance then (m).
-    fn level(&self) -> Option<(DVec3, f64)> {
-        let level = |way: DVec3| DVec3::new(way.x, 0.0, way.z);
-        let (gone, apart) = (level(self.low.midpoint(self.high) - self.start), level(self.high - self.low));
-        (gone.is_finite() && apart.is_finite()).then(|| (gone, apart.length() / 2.0))
-    }
-}
-
-/// Where the camera looks when the bodies shown are at their `middles`.
-///
-/// If it follows the height, it shows as much more height as the highest body has risen above the point looked at: half
-/// of it by looking higher and all of it by drawing back. Where there is nothing that ends a fall (`bottomless`), it
-/// first sinks with the lowest body. All of it begins gently, so that small bounces do not move the camera. If it
-/// follows the body, it also goes along level with the common middle, at once and all the way, and draws back as far as
-/// the bodies of the panels part.
-pub(crate) fn framing(camera: &Camera, middles: &Middles, bottomless: bool) -> Framing {
-    let Camera { target, distance, rise, .. } = *camera;
-    let heights = [middles.low.y, middles.high.y];
-    let pull = |length: f64, gentle: f64, most: f64| {
-        let length = length.min(most * distance);
-        if length > 0.0 { length * length / (length + gentle * distance) } else { 0.0 }
-    };
-    let (gone, apart) = match camera.follow {
-        Follow::Nothing => return Framing::still(camera),
-        Follow::Height => (DVec3::ZERO, 0.0),
-        Follow::Body => middles.level().unwrap_or_default(),
-    };
-    let farthest = DEEPEST_FALL * distance;
-    let target = target + gone.clamp(DVec3::splat(-farthest), DVec3::splat(farthest));
-    let sink = if bottomless { pull(target.y - heights[0], GENTLE_FALL, DEEPEST_FALL) } else { 0.0 };
-    let base = target - sink * DVec3::Y;
-    let risen = pull(heights[1] - base.y, GENTLE_RISE, HIGHEST_RISE);
-    let slope = 2.0 * libm::tan(camera.field_of_view / 2.0);
-    let back = risen * libm::cos(camera.elevation) / (slope * USABLE_HEIGHT);
-    let aside = pull(apart, GENTLE_RISE, HIGHEST_RISE) / (slope * USABLE_WIDTH);
-    Framing { target: base + 0.5 * risen * DVec3::Y, base, distance: distance + back + aside, rise: rise + risen }
 }
 
 /// A camera at work on one panel: maps points of the world (m) to pixels of the picture.
@@ -158,6 +90,15 @@ impl Lens {
         }
     }
 
+    /// The point (m) in the middle of a panel at the distance of the point looked at, where a metre is so many pixels; and
+    /// how much of the world the panel shows there, across and along (m).
+    pub(crate) fn shown(&self, [left, top, width, height]: [f64; 4], pixels: f64) -> (DVec3, [f64; 2]) {
+        let off = [left + 0.5 * width - self.centre[0], top + 0.5 * height - self.centre[1]].map(|off| off / pixels);
+        let distance = if self.orthographic { 1.0 } else { self.focal / pixels };
+        let target = self.eye + distance * self.forward;
+        (target + off[0] * self.right - off[1] * self.up, [width / pixels, height / pixels])
+    }
+
     /// The pixel of a point, and its distance along the view (m); `None` for points not in front of the camera.
     pub(crate) fn project(&self, point: DVec3) -> Option<([f64; 2], f64)> {
         let from_eye = point - self.eye;
@@ -208,11 +149,6 @@ mod tests {
     use super::*;
     use crate::picture::narrow::narrow_point;
 
-    fn at_heights(heights: [f64; 2]) -> Middles {
-        let [low, high] = heights.map(|height| height * DVec3::Y);
-        Middles { low, high, start: DVec3::ZERO }
-    }
-
     const PANEL: [f64; 4] = [640.0, 0.0, 640.0, 720.0];
 
     fn view() -> View {
@@ -224,36 +160,37 @@ mod tests {
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
                 rise: 0.0,
-                follow: Follow::Height,
+                follow: false,
+                near: Vec::new(),
             },
-            columns: 2,
+            columns: Some(2),
             side: 0.1,
             ..View::default()
         }
     }
 
-    fn lens(highest: f64) -> Lens {
+    fn lens() -> Lens {
         let view = view();
-        Lens::new(&view, &framing(&view.camera, &at_heights([highest; 2]), false), Dimension::Space, PANEL, 1.0)
+        Lens::new(&view, &Framing::still(&view.camera), Dimension::Space, PANEL, 1.0)
     }
 
     #[test]
     fn the_target_stands_a_little_below_the_middle() {
-        let (pixel, distance) = lens(0.0).project(DVec3::new(0.0, 0.15, 0.0)).unwrap();
+        let (pixel, distance) = lens().project(DVec3::new(0.0, 0.15, 0.0)).unwrap();
         assert!((pixel[0] - 960.0).abs() < 1e-9 && (pixel[1] - 0.535 * 720.0).abs() < 1.0, "{pixel:?}");
         assert!((distance - 2.55).abs() < 1e-12);
     }
 
     #[test]
     fn a_body_at_rest_fills_a_third_of_the_height() {
-        let lens = lens(0.15);
+        let lens = lens();
         let [low, high] = [0.0, 0.3].map(|y| lens.project(DVec3::new(0.0, y, 0.0)).unwrap().0[1]);
         assert!((225.0..245.0).contains(&(low - high)), "{}", low - high);
     }
 
     #[test]
     fn matrix_and_projection_agree() {
-        let lens = lens(0.7);
+        let lens = lens();
         let (origin, unit) = (DVec3::new(0.1, 0.2, 0.3), 0.1);
         let clip = lens.clip(origin, unit, PANEL);
         for point in [DVec3::ZERO, DVec3::new(0.2, 0.4, -0.1), DVec3::new(-0.3, 1.0, 0.4)] {
@@ -268,93 +205,9 @@ mod tests {
     }
 
     #[test]
-    fn following_keeps_a_rising_body_and_the_floor_in_the_picture() {
-        for step in 0..=140 {
-            let height = 0.15 + f64::from(step) * 0.01;
-            let lens = lens(height);
-            for corner in 0..8 {
-                let sign = |bit: usize| if corner >> bit & 1 == 1 { 0.15 } else { -0.15 };
-                for centre in [0.15, height] {
-                    let point = DVec3::new(sign(0), centre + sign(1), sign(2));
-                    let (pixel, _) = lens.project(point).unwrap();
-                    assert!((640.0 + 60.0..1280.0 - 60.0).contains(&pixel[0]), "{height}: {pixel:?}");
-                    assert!((100.0..640.0).contains(&pixel[1]), "{height}: {pixel:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn following_keeps_a_falling_body_in_the_picture() {
-        let view = view();
-        for step in 0..400 {
-            let fallen = f64::from(step * step) * 0.01;
-            for apart in [0.0, 0.5] {
-                let heights = [0.15 - fallen, 0.15 - fallen + apart];
-                let framing = framing(&view.camera, &at_heights(heights), true);
-                let lens = Lens::new(&view, &framing, Dimension::Space, PANEL, 1.0);
-                for corner in 0..16 {
-                    let sign = |bit: usize| if corner >> bit & 1 == 1 { 0.15 } else { -0.15 };
-                    let point = DVec3::new(sign(0), heights[corner >> 3] + sign(1), sign(2));
-                    let (pixel, _) = lens.project(point).unwrap();
-                    assert!((100.0..640.0).contains(&pixel[1]), "{fallen} {apart}: {pixel:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn following_is_smooth_and_rests_near_the_floor() {
-        let camera = view().camera;
-        assert_eq!(framing(&camera, &at_heights([0.1; 2]), false).distance, camera.distance);
-        assert!(framing(&camera, &at_heights([0.17; 2]), false).distance < 1.03 * camera.distance);
-        let distances: Vec<_> =
-            (0..3000).map(|step| framing(&camera, &at_heights([f64::from(step) * 0.001; 2]), false).distance).collect();
-        for three in distances.windows(3) {
-            let (first, second) = (three[1] - three[0], three[2] - three[1]);
-            assert!(first >= 0.0 && (second - first).abs() < 1e-3 * camera.distance, "{three:?}");
-        }
-        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
-            for follow in [Follow::Height, Follow::Body] {
-                for bottomless in [false, true] {
-                    let camera = Camera { follow, ..camera.clone() };
-                    let middles = Middles { low: DVec3::splat(odd), high: DVec3::splat(odd), start: DVec3::ZERO };
-                    let framing = framing(&camera, &middles, bottomless);
-                    assert!(framing.target.is_finite() && framing.distance.is_finite(), "{odd}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn following_the_body_goes_along_level_with_the_common_middle() {
-        let height = view().camera;
-        let camera = Camera { follow: Follow::Body, ..height.clone() };
-        let start = DVec3::new(0.3, 0.15, -0.2);
-        let together = framing(&camera, &Middles::new([start + 7.0 * DVec3::X; 2], start), false);
-        let resting = framing(&height, &Middles::new([start; 2], start), false);
-        assert!((together.target - resting.target).distance(7.0 * DVec3::X) < 1e-12);
-        assert_eq!(together.distance, resting.distance);
-        // Both bodies stay in the picture when they part.
-        let view = View { camera: camera.clone(), ..view() };
-        for step in 0..60 {
-            let apart = 0.05 * f64::from(step);
-            let middles = [-apart, apart].map(|x| DVec3::new(5.0 + x, 0.15, 0.0));
-            let framing = framing(&camera, &Middles::new(middles, DVec3::new(0.0, 0.15, 0.0)), false);
-            let lens = Lens::new(&view, &framing, Dimension::Space, PANEL, 1.0);
-            for middle in middles {
-                let (pixel, _) = lens.project(middle).unwrap();
-                assert!((640.0 + 70.0..1280.0 - 70.0).contains(&pixel[0]), "{apart}: {pixel:?}");
-            }
-        }
-        // Without any body that could be followed the camera is where it began.
-        assert_eq!(framing(&camera, &Middles::new([], start), false).target, camera.target);
-    }
-
-    #[test]
     fn narrow_panels_show_the_body_smaller_not_cut() {
         let view = view();
-        let framing = framing(&view.camera, &at_heights([0.0; 2]), false);
+        let framing = Framing::still(&view.camera);
         let lens = Lens::new(&view, &framing, Dimension::Space, [0.0, 0.0, 200.0, 720.0], 0.37);
         let [left, right] = [-0.2, 0.2].map(|x| lens.project(DVec3::new(x, 0.15, 0.0)).unwrap().0[0]);
         assert!(20.0 < left && right < 180.0, "{left} {right}");

@@ -245,21 +245,20 @@ impl Writer<'_> {
     }
 
     /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
-    /// room. `usual` is its length (px) where no camera moves: its place and its words follow from that alone. Returns where it
-    /// ends (px).
+    /// room. Returns where it ends (px).
     pub(super) fn scale_bar(
         &mut self,
         panel: Rectangle,
         between: [f64; 2],
         metres: f64,
-        [pixels, usual]: [f64; 2],
+        pixels: f64,
     ) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
         let text = number::plain_metres(metres);
         let wide = self.fonts.width(&text, Weight::Regular, caption);
         let free = between[1] - between[0] - 2.0 * self.scale.gap();
-        if !Scale::legible(caption) || usual.max(wide) > free {
+        if !Scale::legible(caption) || pixels.max(wide) > free {
             return None;
         }
         let middle = between[0].midpoint(between[1]);
@@ -384,13 +383,9 @@ pub(super) fn wider(run: &RunFrame) -> Option<String> {
 
 /// The largest distance of two bodies, of all distances up to another one (m), where bodies have a size (m).
 pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
-    let words = ["largest distance", "distance"].map(str::to_owned);
-    Number {
-        value: number::length(metres, extent),
-        widest: number::length(most, extent),
-        wordings: words,
-        is_loud: false,
-    }
+    let value = number::length(metres, extent);
+    let wordings = ["largest distance", "distance"].map(|words| [value.clone(), words.to_owned()]);
+    Number { widest: number::length(most, extent), wordings: wordings.into(), is_loud: false }
 }
 
 /// The number at the lower right of a run that has not diverged.

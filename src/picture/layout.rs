@@ -101,10 +101,10 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of a view of a number of runs, with room for a key of a height (px) and for lines of a caption.
-    pub(super) fn new(view: &View, runs: usize, legend: u32, caption_lines: usize) -> Self {
+    /// The layout of a view of a number of runs in columns, with room for a key of a height (px) and for lines of a caption.
+    pub(super) fn new(view: &View, runs: usize, columns: usize, legend: u32, caption_lines: usize) -> Self {
         let size = view.size.map(|length| length.max(1));
-        let around = Self::around(view, runs);
+        let around = Self::around(view, runs, columns);
         let rows = |length: f64| (length * around.unit).round() as u32;
         let title =
             if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(around.of_type(TITLE)) };
@@ -123,7 +123,7 @@ impl Layout {
         let caption_lines = (0..=caption_lines).rev().find(fits).unwrap_or(0);
         let caption = caption_height(caption_lines);
         let height = size[1] - title - legend - caption;
-        let panels = panels([size[0], height], runs, view.columns);
+        let panels = panels([size[0], height], runs, columns);
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
         let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
         // The names at the ends of curves have room above each other.
@@ -175,10 +175,10 @@ impl Layout {
         }
     }
 
-    /// Sizes of type and lines around the panels of a view of a number of runs.
-    pub(super) fn around(view: &View, runs: usize) -> Scale {
+    /// Sizes of type and lines around the panels of a view of a number of runs in columns.
+    pub(super) fn around(view: &View, runs: usize, columns: usize) -> Scale {
         let size = view.size.map(|length| length.max(1));
-        panels(size, runs, view.columns).first().map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel)).with(view)
+        panels(size, runs, columns).first().map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel)).with(view)
     }
 }
 
@@ -426,12 +426,11 @@ mod tests {
         for (size, runs) in [([1280, 720], 2), ([640, 360], 2), ([1000, 1400], 6), ([300, 200], 1), ([17, 16], 3)] {
             let view = View {
                 size,
-                columns: 2,
                 title: "Title".to_owned(),
                 strip: Some(crate::sim::snapshot::Diagnostic::TurnedOver),
                 ..View::default()
             };
-            let layout = Layout::new(&view, runs, 40 * size[1] / 720, 2);
+            let layout = Layout::new(&view, runs, 2, 40 * size[1] / 720, 2);
             let [_, top, width, height] = layout.ground;
             assert!(width == size[0] && height >= size[1] / 2 && layout.legend == top + height);
             assert!(layout.caption >= f64::from(layout.legend));

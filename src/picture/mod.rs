@@ -23,6 +23,7 @@ mod ghost;
 mod grip;
 mod layout;
 mod legend;
+mod locator;
 mod narrow;
 mod number;
 mod obstacle;
@@ -37,6 +38,7 @@ mod strip;
 mod surface;
 mod tally;
 mod text;
+mod tracking;
 mod wire;
 
 pub(crate) use crate::colour::Colour;
@@ -103,6 +105,8 @@ pub(crate) struct Panel {
     pub strokes: Vec<Stroke>,
     /// Nodes in space, above the strokes, in the order in which they are drawn.
     pub beads: Vec<Bead>,
+    /// Whether the body leaves the viewport.
+    pub is_cut: bool,
 }
 
 /// The obstacles of a panel.

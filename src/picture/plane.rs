@@ -63,8 +63,8 @@ pub(super) struct Flat<'a> {
     pub(super) position: &'a [DVec3],
     pub(super) turned_over: &'a [bool],
     pub(super) lens: &'a Lens,
-    /// The camera before it follows anything.
-    pub(super) still: &'a Lens,
+    /// Whether the camera moves between frames.
+    pub(super) moves: bool,
     pub(super) viewport: Rectangle,
     /// The part of the viewport that words leave free.
     pub(super) clear: Rectangle,
@@ -137,8 +137,8 @@ impl Flat<'_> {
     /// The offset at which a level floor is drawn (px), so that it lies on whole pixels while neither it nor the camera
     /// moves. It is the same in all frames, so that motion stays even.
     fn alignment(&self, obstacle: &Obstacle) -> f64 {
-        let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL);
-        let pixel = start.and_then(|(_, level)| self.still.project(DVec3::new(self.still.eye.x, level, 0.0)));
+        let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL && !self.moves);
+        let pixel = start.and_then(|(_, level)| self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)));
         pixel.map_or(0.0, |([_, y], _)| y.round() - y)
     }
 

@@ -40,11 +40,12 @@ pub use summary::{RunSummary, SceneSummary};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
 use crate::reading::words::{list, nearest};
-use crate::sim::body::Body;
-use crate::sim::contact::Obstacle;
+use crate::sim::body::{Body, Dimension};
+use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::snapshot::Diagnostic;
 use crate::sim::state::State;
 use crate::sim::world::{Kernel, Moment};
 use glam::DVec3;
@@ -103,6 +104,23 @@ pub struct Run {
     pub(crate) place: usize,
     /// A colour of its own for its lines. Those of other runs keep away from it.
     pub colour: Option<Colour>,
+}
+
+impl Scene {
+    /// The diagnostics whose time series over the whole scene pictures of it need, if they need its course: for strips, for
+    /// cameras that follow, and for the drawn size of plates and walls.
+    pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
+        let view = &self.view;
+        let is_flat = self.body.dimension == Dimension::Plane;
+        let ground = contact::ground(&self.obstacles, 0.0);
+        let has_size = |one: &Obstacle| match one.shape {
+            Shape::Plate { .. } => true,
+            Shape::Floor { .. } => one.floor(0.0) != ground,
+            _ => false,
+        };
+        let needed = view.strip.is_some() || view.looks_ahead() || view.camera.follow || (!is_flat && self.obstacles.iter().any(has_size));
+        needed.then(|| view.strip.as_slice())
+    }
 }
 
 impl Run {

@@ -1,7 +1,6 @@
 //! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::Scene;
-use crate::look::Follow;
 use crate::reading::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
@@ -130,8 +129,9 @@ impl Scene {
         let [width, height] = view.size;
         let panels = match (self.runs.len(), view.columns) {
             (1, _) => "one panel".to_owned(),
-            (runs, columns) if columns >= runs => format!("{runs} panels in a row"),
-            (runs, columns) => format!("{runs} panels, {columns} in a row"),
+            (runs, None) => format!("{runs} panels"),
+            (runs, Some(columns)) if columns >= runs => format!("{runs} panels in a row"),
+            (runs, Some(columns)) => format!("{runs} panels, {columns} in a row"),
         };
         let from = match self.body.dimension {
             Dimension::Plane => "from the front".to_owned(),
@@ -141,13 +141,12 @@ impl Scene {
                 short(view.camera.elevation.to_degrees())
             ),
         };
-        let follow = match view.camera.follow {
-            Follow::Nothing => "",
-            Follow::Height => ", following",
-            Follow::Body => ", following the body",
+        let theme = typed(&view.look.theme);
+        let distance = match view.camera.follow {
+            true => ", following the body".to_owned(),
+            false => format!(", {} m away", short(view.camera.distance)),
         };
-        let (theme, distance) = (typed(&view.look.theme), short(view.camera.distance));
-        format!("{width} × {height} px, {theme}, {panels}, seen {from}, {distance} m away{follow}")
+        format!("{width} × {height} px, {theme}, {panels}, seen {from}{distance}")
     }
 }
 

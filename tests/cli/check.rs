@@ -53,6 +53,20 @@ fn says_where_the_body_starts() {
     assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
 }
 
+#[cfg(feature = "render")]
+#[test]
+fn says_that_a_body_leaves_its_panel() {
+    let place = Place::with_small();
+    place.write("beside.toml", &SMALL.replace("[view]", "[view]\ncamera.target = [2, 0, 0]"));
+    let ran = place.run("check small.toml beside.toml").good();
+    assert_eq!(ran.err.matches("the body leaves its panel at the start").count(), 1, "{}", ran.err);
+    assert!(ran.err.contains("beside.toml: `view.camera`: "), "{}", ran.err);
+    assert_eq!(place.run("check beside.toml --quiet").good().err, "");
+    let scenes = place.run("check small.toml beside.toml --json").good().json();
+    let warnings = |at: usize| scenes["scenes"][at]["warnings"].as_array().map(Vec::len);
+    assert_eq!([warnings(0), warnings(1)], [Some(0), Some(1)]);
+}
+
 /// Runs with the reference kernel are reported, and `kernel = "fast"` is refused where there are no vectorised steps.
 #[test]
 fn says_which_runs_take_the_plain_code() {

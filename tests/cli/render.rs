@@ -260,6 +260,24 @@ fn a_diverged_run_is_drawn_to_the_end() {
     assert_eq!(tags("frame_00200.png").states, tags("frame_00300.png").states);
 }
 
+#[test]
+fn says_which_runs_leave_their_panels() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.write("beside.toml", &SMALL.replace("[view]", "[view]\ncamera.target = [2, 0, 0]"));
+    let ran = place.run("render beside.toml --frames 0,3 --samples 1").good();
+    assert!(
+        ran.out.contains("warning: Mass-spring leaves its panel in 2 of 2 frames, first in frame 0"),
+        "{}",
+        ran.out
+    );
+    assert_eq!(place.json("output/beside/run.json")["runs"][1]["cut"], serde_json::json!([0, 3]));
+    assert!(!place.run("render small.toml --frames 0,3 --samples 1").good().out.contains("warning"));
+    assert_eq!(place.json("output/small/run.json")["runs"][1]["cut"], serde_json::Value::Null);
+}
+
 #[cfg(unix)]
 #[test]
 fn interrupted_while_drawing() {

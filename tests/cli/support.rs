@@ -56,9 +56,11 @@ pub(crate) fn frame_file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> 
 /// The number of frames of [`SMALL`].
 pub(crate) const SMALL_FRAMES: usize = 7;
 
-/// [`SMALL`] with another duration (s), and so another scene.
+/// [`SMALL`] with another duration (s), and so another scene. Its camera stands still, so that it is not simulated ahead.
 pub(crate) fn lasting(duration: &str) -> String {
-    SMALL.replace("duration = 0.1", &format!("duration = {duration}"))
+    SMALL
+        .replace("duration = 0.1", &format!("duration = {duration}"))
+        .replace("[view]", "[view]\ncamera.follow = false")
 }
 
 /// A folder of its own to run the program in; gone when dropped.

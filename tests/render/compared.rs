@@ -16,7 +16,7 @@ use localshape::sim::snapshot::Frame;
 fn with_difference(after_fit: bool) -> (Scene, [Frame; 2], History) {
     let (mut scene, _) = fig4b(0);
     scene.duration = 0.2;
-    scene.view.columns = 3;
+    scene.view.columns = Some(3);
     scene.view.difference = Some(Difference { runs: [1, 0], after_fit });
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = [4, 9].map(|index| runner.frame(index));

@@ -35,7 +35,8 @@ fn plane(view: &str) -> (Scene, Frame) {
         [view]
         {view}"
     );
-    let scene = parse(&text);
+    let mut scene = parse(&text);
+    scene.view.camera.follow = false;
     let frame = Runner::new(&scene, &[0]).frame(0);
     (scene, frame)
 }
@@ -327,7 +328,7 @@ fn nothing_overlaps_in_any_arrangement() {
         for columns in [1, 2, 3].into_iter().filter(|&columns| columns < count).chain([count]) {
             for size in [[1280, 720], [640, 360], [720, 1280], [480, 480], [1920, 1080], [300, 200]] {
                 scene.view.size = size;
-                scene.view.columns = columns;
+                scene.view.columns = Some(columns);
                 let picture = compose(&scene, &frame);
                 assert_eq!(picture.panels.len(), count);
                 let clocks = picture.words.iter().filter(|run| run.text == "67 ms").count();
@@ -409,10 +410,10 @@ fn light_keeps_the_colours_of_the_key() {
     let view = &mut scene.view;
     (view.size, view.edges, view.outline, view.hatch) = ([200, 160], [false; 2], false, false);
     frame.runs.truncate(1);
-    let mut renderer = Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
+    let mut renderer = localshape::render::Renderer::new(gpu, scene.view.size, 1).expect("a size that can be drawn");
     let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];
     for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
-        scene.view.look = Look::of(theme);
+        scene.view.look = Style::of(theme);
         scene.view.colour = Some(ColourScale { field: Field::Speed, range: [0.0, 1.0], map });
         for at in [0, 16, 32, 47, SHADES - 1] {
             frame.runs[0].snapshot.field.fill(at as f64 / (SHADES - 1) as f64);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::history::History;
-use localshape::look::{Follow, FontFiles, Style, Theme};
+use localshape::look::{FontFiles, Style, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
@@ -216,7 +216,7 @@ fn every_line_becomes_thicker_and_no_word_larger() {
 #[test]
 fn the_line_of_the_floor_in_the_plane_becomes_thicker() {
     for (line_scale, expected) in [(1.0, 2.0), (2.0, 3.0), (4.0, 6.0)] {
-        let [_, picture] = thin_and_thick(include_str!("../../scenes/fig4a.toml"), 20, line_scale);
+        let [_, picture] = thin_and_thick(include_str!("../../scenes/fig4a.toml"), 87, line_scale);
         let floors = some(&picture, |mark| mark.shape == MarkShape::Smooth);
         // With a border of half a pixel on both sides.
         assert!(!floors.is_empty() && floors.iter().all(|mark| mark.rectangle[3] == expected + 1.0), "{floors:?}");
@@ -380,8 +380,7 @@ fn small_bodies_have_narrower_contours_and_large_ones_the_usual() {
 #[test]
 fn the_floor_reaches_as_far_as_the_shadow_of_a_body_that_flies() {
     let fade = |up: f64, aside: f64| {
-        let (mut scene, mut frame) = fig4b(0);
-        scene.view.camera.follow = Follow::Nothing;
+        let (scene, mut frame) = fig4b(0);
         for run in &mut frame.runs {
             run.snapshot.position.iter_mut().for_each(|at| *at += DVec3::new(aside, up, 0.0));
         }

@@ -3,6 +3,7 @@
 //! Without a graphics adapter these tests are skipped with a message. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 
 mod compared;
+mod camera;
 mod fields;
 mod fine;
 mod forces;
@@ -42,13 +43,13 @@ fn gpu(test: &str) -> Option<&'static Gpu> {
     GPU.as_ref()
 }
 
-/// The scene of Fig. 4(b) with a view that sets only its size, its clock and a camera that follows.
+/// The scene of Fig. 4(b) with a view that sets only its size, its clock and a camera that stands still.
 fn plain() -> String {
     let text = include_str!("../../scenes/fig4b.toml");
     let (world, view) = text.split_once("[view]").expect("a view");
     let asked = |line: &&str| !["size", "title", "letters", "strip"].iter().any(|key| line.starts_with(key));
     let view: Vec<_> = view.lines().filter(asked).collect();
-    format!("{world}[view]\nsize = [1280, 720]{}\n", view.join("\n"))
+    format!("{world}[view]\nsize = [1280, 720]{}\ncamera.follow = false\n", view.join("\n"))
 }
 
 /// The scene of Fig. 4(b) with default drawing, and one of its frames.

@@ -160,7 +160,7 @@ fn one_to_six_panels_find_their_place() {
     let (mut scene, frame) = fig4b(0);
     for count in 1..=6 {
         for columns in 1..=4 {
-            scene.view.columns = columns;
+            scene.view.columns = Some(columns);
             let runs = (0..count).map(|at| frame.runs[at % 2].clone()).collect();
             let picture = compose(&scene, &Frame { runs, ..frame.clone() });
             assert_eq!(picture.panels.len(), count);
@@ -259,9 +259,9 @@ fn a_dropped_body_and_the_floor_below_it_are_in_the_first_picture() {
         for elevation in [0.0, 17_f64.to_radians(), 1.0, 1.5] {
             for size in [[1280, 720], [600, 600], [720, 1280], [333, 200]] {
                 let (mut scene, frame) = scene(|text| {
-                    let camera = format!("camera = {{ elevation = {elevation} }}");
+                    let camera = format!("camera = {{ follow = false, elevation = {elevation} }}");
                     text.replace("lowest = 0.0", &format!("lowest = {lowest:?}"))
-                        .replace("camera = { follow = true }", &camera)
+                        .replace("camera.follow = false", &camera)
                 });
                 scene.view.size = size;
                 let picture = compose(&scene, &frame);
@@ -502,7 +502,7 @@ fn flat_elements_are_a_state_of_their_own() {
     assert!(picture.panels[0].sound.vertices.iter().all(|vertex| vertex.hatch == 1.0), "dots");
     let squares = |picture: &Picture, colour| {
         let is_one =
-            |mark: &&localshape::picture::Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
+            |mark: &&Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
         picture.marks.iter().filter(is_one).count()
     };
     assert_eq!([picture.palette.axis, picture.palette.tally].map(|colour| squares(&picture, colour)), [27, 0]);

@@ -160,7 +160,7 @@ fn any_size_has_room_for_strips_or_none() {
     for (size, any) in sizes {
         for columns in [1, 2] {
             scene.view.size = size;
-            scene.view.columns = columns;
+            scene.view.columns = Some(columns);
             let mut composer = Composer::new(&scene);
             composer.set_history(&history);
             let picture = composer.compose(&frame);
@@ -270,7 +270,7 @@ pub(crate) fn alike(runs: usize, theme: &str) -> String {
         "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.4, frames_per_second = 20 }}\n\
          body = {{ lattice = {{ cells = [3, 1, 1], side = 0.1 }}, mass = 0.1 }}\n{runs}\
          [[hold]]\nnodes = {{ low = [-0.16, 0, -1], high = [-0.14, 1, 1] }}\n\
-         [view]\nsize = [1600, 900]\ntheme = '{theme}'\nstrip = 'energy'\npanels = 'grid'\n"
+         [view]\nsize = [1600, 900]\ntheme = '{theme}'\nstrip = 'energy'\n"
     )
 }
 
@@ -342,7 +342,9 @@ fn eight_runs_of_one_model_are_told_apart() {
 fn strips_of_many_runs_name_their_curves() {
     for size in [[1280, 720], [1600, 1000]] {
         for runs in 2..=12 {
-            let text = alike(runs, "light").replace("[1600, 900]", &format!("{size:?}")).replace("panels = 'grid'", "");
+            let columns = runs.min(3);
+            let view = format!("{size:?}\ncolumns = {columns}");
+            let text = alike(runs, "light").replace("[1600, 900]", &view);
             let scene = parse(&text);
             let all: Vec<_> = (0..runs).collect();
             let picture = compose(&scene, &Runner::new(&scene, &all).frame(scene.last_frame()));
@@ -350,7 +352,7 @@ fn strips_of_many_runs_name_their_curves() {
             assert_eq!(picture.curves.iter().filter(|curve| curve.alpha == 0.55).count(), runs * (runs - 1), "{case}");
             for (run, panel) in scene.runs.iter().zip(&picture.panels) {
                 let [left, top, width, height] = panel.viewport.map(|length| length as f32);
-                let row = size[1] as f32 / runs.div_ceil(scene.view.columns) as f32;
+                let row = size[1] as f32 / runs.div_ceil(columns) as f32;
                 let is_here = |name: &str| {
                     picture.words.iter().any(|word| {
                         let [x, _, right, bottom] = word.bounds();

@@ -252,7 +252,7 @@ fn words_stay_where_they_are() {
         ALL.replace("integrator = 'explicit-euler'", "")
             .replace("step = 0.005, ", "")
             .replace("spring_colour = {}", ""),
-        { super::plain().replace("camera = { follow = true }", "camera = { follow = 'body' }") },
+        { super::plain().replace("camera.follow = false", "") },
     ] {
         let scene = parse(&text);
         let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &all(&scene)));

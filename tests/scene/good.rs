@@ -2,7 +2,7 @@
 
 use super::{WORLD, good, shipped};
 use glam::DVec3;
-use localshape::look::{Follow, Theme};
+use localshape::look::Theme;
 use localshape::scene::{Limits, Scene, SceneError};
 use localshape::sim::body::{Dimension, ElementKind};
 use localshape::sim::contact::Shape;
@@ -35,8 +35,8 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!(scene.runs[1].step, cycle / 50.0);
     assert_eq!(scene.obstacles.len(), 1);
     assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
-    assert_eq!(scene.view.camera.follow, Follow::Height);
-    assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (2, 0.1, Theme::Light));
+    assert!(scene.view.camera.follow);
+    assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (None, 0.1, Theme::Light));
 }
 
 /// Warnings are for what is probably not intended.
@@ -175,9 +175,13 @@ fn a_falling_body_is_looked_at_where_it_starts_and_where_it_will_stand() {
     let camera = &scene.view.camera;
     assert_eq!((camera.target, camera.rise), (DVec3::new(3.0, 4.5, 0.0), 12.0));
     assert!(camera.distance > 40.0, "{}", camera.distance);
-    // A camera that follows rises by itself.
-    let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera.follow = true"));
-    assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
+    // It follows unless it is told where to stand.
+    for (view, follows) in
+        [("", true), ("follow = false", false), ("target = [0, 0, 0]", false), ("distance = 9", false)]
+    {
+        let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera = {{ {view} }}"));
+        assert_eq!(scene.view.camera.follow, follows, "{view}");
+    }
     // What is in the picture anyway does not move the camera, nor does a body that falls for ever.
     let low = body.replace("lowest = 10", "lowest = -1.9");
     let scene = good(&format!("{WORLD}{low}{floor}"));
@@ -274,7 +278,7 @@ fn a_scene_may_say_everything() {
     assert_eq!((scene.runs[0].step, scene.runs[1].step), (1e-3, cycle / 100.0));
     assert_eq!(scene.obstacles[0].shape, Shape::Floor { normal: DVec3::Y, height: 0.0 });
     let view = &scene.view;
-    assert_eq!((view.look.theme, view.columns, view.size), (Theme::Dark, 1, [800, 600]));
+    assert_eq!((view.look.theme, view.columns, view.size), (Theme::Dark, Some(1), [800, 600]));
     assert_eq!((view.camera.target, view.camera.distance), (DVec3::new(2.0, 1.0, 0.0), 30.0));
     assert!((view.side - 0.9).abs() < 0.2, "{}", view.side);
 }
@@ -296,7 +300,7 @@ fn a_summary_says_what_a_scene_holds() {
   run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
   obstacle  floor at 0 m along (0, 1, 0), e = 0.5, μ = 0.3
-  picture   1280 × 800 px, light, 2 panels in a row, seen from 31° right and 17° up, 2.651 m away, following
+  picture   1280 × 800 px, light, 2 panels, seen from 31° right and 17° up, following the body
   digest    {}",
             summary.digest
         )

@@ -440,7 +440,6 @@ fn ghosts_and_differences_name_runs() {
     assert_eq!(named("ghost = 'Mass-spring'").ghost, Some(Ghost::Run(1)));
     let view = named("difference = ['Mass-spring', 'Local shape']");
     assert_eq!(view.difference, Some(Difference { runs: [1, 0], after_fit: false }));
-    assert_eq!(view.columns, 3, "the difference has a panel");
     let view = named("difference = ['Local shape', 'Mass-spring']\ndifference_of = 'shapes'");
     assert_eq!(view.difference, Some(Difference { runs: [0, 1], after_fit: true }));
 }

@@ -179,7 +179,7 @@ fn wrong_types() {
         PLANE,
         "[640, 360]",
         "[640, 360]\ncamera.follow = 1",
-        &[(21, 17, "is the whole number 1; expected true or false or \"height\" or \"body\"")],
+        &[(21, 17, "is the whole number 1; expected true or false")],
     );
     case(
         SPACE,

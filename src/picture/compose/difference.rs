@@ -53,7 +53,7 @@ impl Course {
 
 /// Two runs at one moment.
 pub(super) struct Compared<'a> {
-    one: &'a RunFrame,
+    pub(super) one: &'a RunFrame,
     /// The index of the other run, and where its nodes are outlined (m); none if one of the runs has diverged.
     other: usize,
     outlined: Vec<DVec3>,

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
-const FLOOR_FADE: [f64; 2] = [0.8, 2.7];
+const FLOOR_FADE: [f64; 2] = [0.7, 2.0];
 /// The floor is drawn farther by as much as the shadow lies beyond the first distance from the point looked at, up to the
 /// third one; that begins gently over the second one (sizes of the body).
 const STILL_NEAR: f64 = 0.5;
@@ -20,9 +20,9 @@ const GENTLY: f64 = 0.3;
 const FARTHEST_SHADOW: f64 = 3.0;
 /// Distance of the camera above which the floor is drawn wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// The floor begins to fade so far above the room for text below the body (px at type of the reference size), so that no
-/// grid lies behind the text.
-const FADE_ABOVE: f64 = 9.0;
+/// The floor begins to fade so far above the room for text below the body (px at type of the reference size), and ends at
+/// half that height, so that no grid lies behind the text.
+const FADE_ABOVE: f64 = 45.0;
 /// The lines of the grid are a side apart, or more if a body would cover more cells than this: a lattice, whose cells the
 /// grid repeats, and any other body, beside which a fine grid would distract.
 const MOST_CELLS: [f64; 2] = [10.0, 5.0];
@@ -131,16 +131,16 @@ impl Draft<'_> {
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
     /// panel.
     pub(super) fn widening(&self) -> f64 {
-        let usual = self.scene.view.camera.distance.min(USUAL_DISTANCE * self.composer.extent * self.composer.spread);
-        (self.framing.distance / usual).sqrt()
+        let usual = USUAL_DISTANCE * self.composer.extent * self.composer.spread;
+        (self.framing.distance / usual).max(1.0).sqrt()
     }
 
     /// The distance of the grid's lines (sides).
     pub(super) fn cell(&self) -> f64 {
         let camera = &self.scene.view.camera;
         let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
-        // Without what the camera follows, so that cells do not change between frames.
-        let pixels = self.still().focal * self.side / camera.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
+        // Cameras do not zoom, so cells do not change between frames.
+        let pixels = self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
         cell(self.composer.extent * self.composer.spread / self.side, most, LEAST_CELL / pixels)
     }
 }

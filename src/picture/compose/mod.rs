@@ -10,29 +10,30 @@ mod paths;
 mod region;
 
 use super::arrows;
-use super::camera::{self, Lens, Middles};
+use super::camera::Lens;
 use super::caption::{self, Heading, Writer, wrapped};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend, Sample, SampleKind};
-use super::plane::LEVEL;
+use super::locator::{Locator, Silhouette};
 use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
 use super::tally::Tally;
 use super::text::{Fonts, Weight};
+use super::tracking::{Shot, Tracking};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
-use crate::history::{History, TimeSeries};
+use crate::history::{History, Reach, TimeSeries};
 use crate::look::ramp::ramp;
-use crate::look::{ColourMap, Ghost, LineStyle, Palette, StrainScale};
+use crate::look::{ColourMap, Ghost, LineStyle, Palette, Place, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
-use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
+use crate::sim::snapshot::{Frame, RunFrame, Snapshot};
 use difference::Compared;
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
@@ -46,6 +47,10 @@ const SOFT_SHARE: f64 = 4.5;
 const MOST_LINES: usize = 200;
 /// The scale bar is at most this long (px in the reference picture).
 const SCALE_BAR: f64 = 120.0;
+/// Panels that a scene leaves to be arranged stand in at most so many columns, and in fewer than possible only where that
+/// makes bodies so many times larger.
+const MOST_COLUMNS: usize = 64;
+const LARGER: f64 = 1.02;
 
 /// Composes frames of one scene.
 #[derive(Debug)]
@@ -83,8 +88,6 @@ pub struct Composer<'a> {
     extent: f64,
     /// How many times larger it is drawn where its elements are drawn apart.
     spread: f64,
-    /// The middle of the nodes at the start (m).
-    start: DVec3,
     /// The box around the nodes at the start (m).
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
@@ -94,11 +97,18 @@ pub struct Composer<'a> {
     /// The difference of two runs over time, and the paths of all runs, likewise.
     course: Option<difference::Course>,
     traced: Vec<TimeSeries>,
+    /// How the camera follows, if it does.
+    tracking: Option<Tracking>,
+    /// The overview of a camera that follows, once the time series are set.
+    locator: Option<Locator>,
+    /// Where nodes have come near plates and walls, once the time series are set.
+    reach: Reach,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
 ///
-/// The places of strips stay empty: they need [`Composer::set_history`].
+/// The time series of the scene are not known ([`Composer::set_history`]): the places of strips stay empty, and a camera that
+/// follows takes its scale from the start.
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
     Composer::new(scene).compose(frame)
 }
@@ -107,8 +117,9 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]), paths or a difference needs [`Composer::set_history`], too; without it
-    /// their places stay empty.
+    /// A scene with strips ([`crate::look::View::strip`]), paths, a difference or a camera that follows
+    /// ([`crate::look::Camera::follow`]) needs [`Composer::set_history`], too; without it their places stay empty, and the
+    /// camera's scale is that of the start.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
     }
@@ -167,20 +178,27 @@ impl<'a> Composer<'a> {
             extent,
             spread: 1.0 + apart,
             start_box: bounds(&start).into(),
-            start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             strips: None,
             course: None,
             traced: Vec::new(),
+            tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
+            locator: None,
+            reach: Reach::default(),
             grips,
             exploded,
         }
     }
 
-    /// Sets the time series for the strips below the panels, for paths and for a difference: those of all runs to be shown, over
-    /// the whole scene. Other scenes do not need them.
+    /// Sets the time series: those of all runs to be shown, over the whole scene. Strips, paths and a difference show them, a
+    /// camera that follows takes its path and its scale from them, and plates and walls their size.
     pub fn set_history(&mut self, history: &History) {
-        self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
+        let scene = self.scene;
+        self.strips = scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, scene));
+        self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
+        self.locator = self.tracking.as_ref().map(|tracking| Locator::new(scene, tracking));
+        self.reach = Reach::default();
+        history.series.iter().for_each(|series| self.reach.merge(&series.reach));
         self.course = self.scene.view.difference.map(|_| difference::Course::new(history));
         self.traced = if self.scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
     }
@@ -190,21 +208,26 @@ impl<'a> Composer<'a> {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
         let compared = self.compared(frame);
-        let panels = frame.runs.len() + usize::from(compared.is_some());
-        let legend = self.legend(panels);
-        let caption = self.caption(panels);
-        let layout = Layout::new(view, panels, legend.map_or(0, |legend| legend.height), caption.len());
+        let (runs, panels) = (frame.runs.len(), frame.runs.len() + usize::from(compared.is_some()));
+        let columns = self.columns(panels);
+        let legend = self.legend(panels, columns);
+        let caption = self.caption(panels, columns);
+        let layout = Layout::new(view, panels, columns, legend.map_or(0, |legend| legend.height), caption.len());
         let legend = legend.filter(|_| layout.has_legend);
-        let (scale, framing) = (layout.scale, self.framing(frame));
+        let scale = layout.scale;
+        let shot = layout.panels.first().and_then(|place| self.shot(place.viewport, scale));
+        let places = layout.panels.iter().zip(&frame.runs);
+        let framings: Vec<_> =
+            places.map(|(place, run)| self.framing(shot.as_ref(), run, (place.viewport, scale))).collect();
         let (marks, curves, words) = Default::default();
         let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        self.write(frame, &layout, &framing, &mut writer);
+        self.write(frame, &layout, columns, framings.first(), &mut writer);
         let place = layout.panels.get(frame.runs.len()).map(|place| (place.viewport, place.strip));
         let compared = compared.as_ref().zip(place);
         if let Some((compared, place)) = compared {
-            let has_clock = view.labels.clock && self.clock(&layout) == frame.runs.len();
+            let has_clock = view.labels.clock && clock(&layout, columns) == frame.runs.len();
             let time = has_clock.then_some(frame.time);
             self.write_difference(compared, place, frame.runs.len(), time, &mut writer);
         }
@@ -217,29 +240,30 @@ impl<'a> Composer<'a> {
             writer.title(layout.around, f64::from(size[0]), &view.title);
         }
         writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
-        if let Some((legend, place)) = legend.zip(layout.panels.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
+        if let Some(((legend, place), framing)) = legend.zip(layout.panels.first()).zip(framings.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
-        let Writer { marks: above, curves, mut words, .. } = writer;
-        let (mut under, mut marks) = (Vec::new(), hairlines);
+        let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs));
         let mut ghosts = Vec::new();
-        let draft = |(place, run)| {
-            let draft = Draft::new(self, place, run, &framing, scale);
+        for ((place, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
+            let draft = Draft::new(self, place.viewport, run, framing, scale);
             let room = draft.between_words();
             draft.ghost(&frame.runs, room, &mut ghosts);
             draft.paths(&self.traced, room, &mut ghosts);
-            let panel = draft.panel(&mut under, &mut marks);
+            panels.push(draft.panel(&mut under, &mut marks));
             draft.points(room, &mut marks);
-            panel
-        };
-        let viewports = layout.panels.iter().map(|place| place.viewport);
-        let mut panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
+            if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
+                self.locate(&draft, shot, tracking, &mut writer);
+            }
+        }
         if let Some((compared, place)) = compared {
+            let framing = self.framing(shot.as_ref(), compared.one, (place.0, scale));
             let marks = [&mut under, &mut marks];
             panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
         }
+        let Writer { marks: above, curves, mut words, .. } = writer;
         let curves = [ghosts, curves].concat();
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
@@ -250,10 +274,73 @@ impl<'a> Composer<'a> {
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
     }
 
-    /// The lines of the caption.
-    fn caption(&self, runs: usize) -> Vec<String> {
+    /// In how many columns panels stand: as the scene says, or so that bodies are largest.
+    fn columns(&self, runs: usize) -> usize {
         let view = &self.scene.view;
-        let around = Layout::around(view, runs);
+        let pixels = |columns: usize| {
+            let legend = self.legend(runs, columns).map_or(0, |legend| legend.height);
+            let layout = Layout::new(view, runs, columns, legend, 0);
+            let viewport = layout.panels.first()?.viewport;
+            let shot = self.shot(viewport, layout.scale).map(|shot| shot.pixels);
+            let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
+            Some(shot.unwrap_or_else(still))
+        };
+        let most = runs.clamp(1, MOST_COLUMNS);
+        let chosen = || {
+            let mut best = (most, pixels(most).unwrap_or(0.0));
+            // With as many rows, as even as possible; side by side unless that costs much.
+            for columns in (2..=runs).map(|rows| runs.div_ceil(rows)).filter(|&columns| columns < most) {
+                let pixels = pixels(columns).unwrap_or(0.0);
+                best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };
+            }
+            best.0
+        };
+        view.columns.map_or_else(chosen, |columns| columns.clamp(1, runs.max(1)))
+    }
+
+    /// How a camera that follows sees a panel.
+    fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
+        let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
+        Some(self.tracking.as_ref()?.shot(self.scene, viewport, scale, taken))
+    }
+
+    /// What the camera of a run looks at in a panel.
+    fn framing(&self, shot: Option<&Shot>, run: &RunFrame, panel: (Rectangle, Scale)) -> Framing {
+        let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else {
+            return Framing::still(&self.scene.view.camera);
+        };
+        let Scene { view, body, obstacles, .. } = self.scene;
+        let position = &run.shown().position;
+        let is_known = position.len() == body.len();
+        let place = is_known.then(|| Place::new(view, body.dimension, obstacles, position)).flatten();
+        tracking.framing(self.scene, shot, run, place, panel)
+    }
+
+    /// Draws the overview of a panel, if its camera moves.
+    fn locate(&self, draft: &Draft<'_>, shot: &Shot, tracking: &Tracking, writer: &mut Writer<'_>) {
+        let (view, viewport) = (&self.scene.view, draft.viewport);
+        let Some(locator) = self.locator.as_ref().filter(|_| !shot.is_still) else { return };
+        let Some(place) = locator.place(view, viewport, writer.scale) else { return };
+        if draft.position.is_empty() {
+            return;
+        }
+        let at = |&node: &u32| draft.position[node as usize];
+        let bars = self.bare.iter().flat_map(|&element| draft.body.topology().edges_of(element));
+        let body = Silhouette {
+            points: self.skin.nodes.iter().map(at).collect(),
+            triangles: &self.skin.triangles,
+            bars: bars.map(|ends| ends.map(|node| at(&node))).collect(),
+        };
+        let shown = draft.lens.shown(viewport.map(f64::from), shot.pixels);
+        let colour = self.scene.runs.get(draft.run.run).map_or(self.palette.text, |run| run.line(&self.palette).colour);
+        let run = (draft.run.run, draft.run.snapshot.time);
+        locator.draw(writer, place, tracking, run, &body, shown, colour);
+    }
+
+    /// The lines of the caption.
+    fn caption(&self, runs: usize, columns: usize) -> Vec<String> {
+        let view = &self.scene.view;
+        let around = Layout::around(view, runs, columns);
         if !Scale::legible(around.caption()) {
             return Vec::new();
         }
@@ -263,18 +350,18 @@ impl<'a> Composer<'a> {
         lines.into_iter().take(MOST_LINES).collect()
     }
 
-    /// What the camera of all panels looks at.
-    fn framing(&self, frame: &Frame) -> Framing {
-        let middles = Middles::new(frame.runs.iter().filter_map(middle), self.start);
-        let level = contact::ground(&self.scene.obstacles, frame.time).is_some_and(|(normal, _)| normal.y > LEVEL);
-        camera::framing(&self.scene.view.camera, &middles, !level)
-    }
-
     /// Writes the words of all panels.
-    fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, writer: &mut Writer<'_>) {
+    fn write(
+        &self,
+        frame: &Frame,
+        layout: &Layout,
+        columns: usize,
+        framing: Option<&Framing>,
+        writer: &mut Writer<'_>,
+    ) {
         let view = &self.scene.view;
         let labels = view.labels;
-        let clock = self.clock(layout);
+        let clock = clock(layout, columns);
         for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let viewport = place.viewport;
             let has_clock = labels.clock && at == clock;
@@ -298,8 +385,8 @@ impl<'a> Composer<'a> {
             }
             let usual = caption::number(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
-            // One camera for all panels, and so one bar.
-            if view.scale_bar && at == 0 {
+            // One scale for all panels, and so one bar.
+            if let Some(framing) = framing.filter(|_| view.scale_bar && at == 0) {
                 let room = to - from - 2.0 * writer.scale.gap();
                 let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
                 from = writer.scale_bar(viewport, [from, to], metres, pixels).unwrap_or(from);
@@ -312,10 +399,6 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// The panel with the only clock, upper right.
-    fn clock(&self, layout: &Layout) -> usize {
-        self.scene.view.columns.clamp(1, layout.panels.len().max(1)) - 1
-    }
 
     /// The line that stands for a run in strips and among arrows, if there are any.
     fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
@@ -330,26 +413,22 @@ impl<'a> Composer<'a> {
         })
     }
 
-    /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).
-    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, [f64; 2]) {
-        let [now, usual] = self.pixels_a_metre(viewport, framing, scale);
-        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / usual);
-        (metres, [now, usual].map(|pixels| metres * pixels))
+    /// What a scale bar in a room (px) stands for (m), and how long it is (px).
+    fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, f64) {
+        let pixels = self.pixels_a_metre(viewport, framing, scale);
+        let metres = number::round_below((SCALE_BAR * scale.unit).min(room).max(1.0) / pixels);
+        (metres, metres * pixels)
     }
 
-    /// The pixels of a metre at the point looked at, in this frame and without a moving camera.
-    fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> [f64; 2] {
+    /// The pixels of a metre at the point looked at.
+    fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> f64 {
         let Self { scene, .. } = self;
-        let edges = viewport.map(f64::from);
-        let pixels = |framing: &Framing| {
-            let lens = Lens::new(&scene.view, framing, scene.body.dimension, edges, scale.unit);
-            lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
-        };
-        [pixels(framing), pixels(&Framing::still(&scene.view.camera))]
+        let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
+        lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
     }
 
     /// The key of colours and arrows, if there are any.
-    fn legend(&self, runs: usize) -> Option<Legend> {
+    fn legend(&self, runs: usize, columns: usize) -> Option<Legend> {
         let view = &self.scene.view;
         let bars = [view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()];
         let bars = bars.into_iter().filter(|&is_shown| is_shown).count();
@@ -357,7 +436,8 @@ impl<'a> Composer<'a> {
         if !view.legend || !arrow && samples + bars == 0 {
             return None;
         }
-        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), arrow, samples, bars)
+        let around = Layout::around(view, runs, columns);
+        Legend::new(view.size.map(|length| length.max(1)), around, arrow, samples, bars)
     }
 
     /// What lines and marks mean.
@@ -390,19 +470,18 @@ impl<'a> Composer<'a> {
         });
         let of_difference = view.difference.map(|_| {
             let values = self.distances(compared).iter().copied();
-            Bar::new(["distance", "m"], self.distance_scale().range, &self.ramp, values)
+            Bar::new(["distance", "m", "of the same node of the two runs"], self.distance_scale().range, &self.ramp, values)
         });
         of_field.into_iter().chain(of_springs).chain(of_difference).collect()
     }
 
-    /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
-    /// how large it is beside those of the reference picture.
+    /// What the arrow of the key stands for (m), its length (px), and how large it is beside those of the reference picture.
     fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
-        let [now, usual] = self.pixels_a_metre(viewport, seen, scale);
+        let pixels = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
-        let metres = legend.arrow_metres(usual * times);
-        let size = arrows::size(now * self.scene.view.side, scale.unit) * scale.line_factor;
-        [metres, metres * now * times, size]
+        let metres = legend.arrow_metres(pixels * times);
+        let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
+        [metres, metres * pixels * times, size]
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
@@ -442,14 +521,7 @@ fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
 }
 
-/// The middle of a body's nodes (m) as it is shown; `None` for a diverged run without a state that fits, which the camera
-/// does not follow.
-fn middle(run: &RunFrame) -> Option<DVec3> {
-    let followed = run.snapshot.status == Status::Ok || run.last_fit.is_some();
-    mean(&run.shown().position).filter(|middle| followed && middle.is_finite())
-}
-
-/// The mean of points; `None` if there are none.
-fn mean(points: &[DVec3]) -> Option<DVec3> {
-    (!points.is_empty()).then(|| points.iter().sum::<DVec3>() / points.len() as f64)
+/// The panel with the only clock, upper right.
+fn clock(layout: &Layout, columns: usize) -> usize {
+    columns.clamp(1, layout.panels.len().max(1)) - 1
 }

@@ -118,7 +118,7 @@ impl<'a> Draft<'a> {
             viewport,
             scale,
             key: key_light(&lens, framing, view.light),
-            origin: framing.base,
+            origin: framing.target,
             side: view.side,
             position,
             shades,
@@ -164,6 +164,7 @@ impl<'a> Draft<'a> {
             obstacles,
             strokes: self.strokes(),
             beads: self.beads(),
+            is_cut: self.is_cut(),
         }
     }
 
@@ -206,18 +207,6 @@ impl<'a> Draft<'a> {
         self.lens.project(middle).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow))
     }
 
-    /// The camera of the panel before it follows anything.
-    pub(super) fn still(&self) -> Lens {
-        let view = &self.scene.view;
-        Lens::new(
-            view,
-            &Framing::still(&view.camera),
-            self.body.dimension,
-            self.viewport.map(f64::from),
-            self.scale.unit,
-        )
-    }
-
     /// Floors, nodes and ring arrows of the plane.
     fn marks_of_plane(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) {
         if !self.flat {
@@ -230,7 +219,7 @@ impl<'a> Draft<'a> {
             position: &self.position,
             turned_over: &self.run.snapshot.turned_over,
             lens: &self.lens,
-            still: &self.still(),
+            moves: self.framing.moves,
             viewport: self.viewport,
             clear: self.clear_of_words(),
             floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
@@ -270,13 +259,13 @@ impl<'a> Draft<'a> {
         }
         let staging = Staging {
             site,
-            widening: self.widening(),
             cell: self.cell(),
             ground: contact::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
             skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.composer.skin),
             soft: self.composer.soft * self.side,
             start: self.composer.start_box,
+            reach: &self.composer.reach,
         };
         staging.arrows(&self.pointers(), above);
         staging.pierced(&surfaces, lines);

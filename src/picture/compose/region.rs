@@ -5,8 +5,6 @@ use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};
 
-/// Bodies as wide as their panel and higher than this part of it are cut off at the text.
-const FILLED: f64 = 0.7;
 /// Room for thick lines around a body (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
@@ -19,12 +17,19 @@ impl Draft<'_> {
         }
         let touched = self.position.iter().chain(around_obstacles);
         let region = region(self.viewport, touched, &self.lens, room);
-        let fills_panel = region[2] == self.viewport[2] && f64::from(region[3]) > FILLED * f64::from(self.viewport[3]);
-        if self.diverged || fills_panel {
-            // A diverged body may cover everything, but not the text that reports it.
-            return overlap(region, self.clear_of_words());
-        }
-        region
+        // Everything ends at the panel, with its words above it; but a diverged body may cover everything, and the words
+        // report it.
+        if self.diverged { overlap(region, self.clear_of_words()) } else { region }
+    }
+
+    /// Whether the body leaves the panel, if the camera does not follow it.
+    pub(super) fn is_cut(&self) -> bool {
+        let [left, top, width, height] = self.viewport.map(f64::from);
+        let is_inside = |&at: &DVec3| {
+            let pixel = self.lens.project(at).map(|(pixel, _)| pixel);
+            pixel.is_some_and(|[x, y]| (left..=left + width).contains(&x) && (top..=top + height).contains(&y))
+        };
+        !self.framing.moves && !self.diverged && !self.position.iter().all(is_inside)
     }
 }
 

@@ -7,22 +7,21 @@ use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
 use crate::picture::{Mark, Pane, PaneCorner, Slab};
-use crate::sim::contact::{Motion, Obstacle, Pose, Shape};
+use crate::sim::contact::{Motion, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// Half the side of a plate, and its thickness (body sizes).
 const PLATE: f64 = 0.85;
 const THICKNESS: f64 = 0.042;
-/// A plate reaches over where the body starts by this much, unless that is farther away than `FARTHEST_EDGE`, and over
-/// nodes near it (body sizes).
+/// A plate reaches over where the body starts, unless that is farther away than the last of these, and over all places
+/// where nodes come near it at any time in any run, by so much (body sizes).
 const START_MARGIN: f64 = 0.25;
 const MARGIN: f64 = 0.12;
-const NEAR_PLATE: f64 = 0.6;
 const FARTHEST_EDGE: f64 = 4.0;
 /// Opacity of the faces of a plate: those of its two sides, and the small ones around it.
 const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
-/// How far walls and slopes are drawn around the point looked at (body sizes).
+/// How far walls and slopes are drawn around the places where nodes come near them (body sizes).
 const WALL: f64 = 2.1;
 /// Opacity of a wall, seen from its front and from its solid back.
 const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
@@ -40,49 +39,46 @@ pub(super) struct Loose {
 
 impl Staging<'_> {
     /// The corners of the drawn part of a plate's surface (m).
-    pub(in crate::picture) fn plate_corners(&self, obstacle: &Obstacle) -> Option<[DVec3; 4]> {
+    pub(in crate::picture) fn plate_corners(&self, at: usize) -> Option<[DVec3; 4]> {
+        let obstacle = self.site.obstacles.get(at)?;
         let Shape::Plate { normal, .. } = obstacle.shape else { return None };
         let pose = obstacle.pose(self.site.time);
-        let (middle, half) = self.span(obstacle, &pose, normal);
+        let (middle, half) = self.span(at, &pose, normal);
         let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let corner = |[x, y]: [f64; 2]| middle + x * half.x * first + y * half.y * second;
         Some([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
     }
 
-    /// The middle of the drawn part of a plate's surface (m), and half its sides (m).
-    pub(super) fn span(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
+    /// The middle of the drawn part of a plate's surface (m), and half its sides (m), which are the same at all times.
+    pub(super) fn span(&self, at: usize, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
+        let obstacle = &self.site.obstacles[at];
         let pivot = obstacle.pivot;
         let [first, second] = Plane::new(normal, 0.0).axes;
         let farthest = FARTHEST_EDGE * self.site.extent;
         let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
-        // It covers the place where the body starts.
-        let before = obstacle.pose(0.0);
-        let place = |pose: &Pose, point: DVec3| {
-            let own = pose.undo(pivot, point) - pivot;
-            (DVec2::new(own.dot(first), own.dot(second)), own.dot(normal))
+        // The box around the corners of a box of the plate as it was at the start.
+        let around = |[from, to]: [DVec3; 2], before: &Pose| {
+            let corners = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from));
+            let places = corners.map(|corner| {
+                let own = before.undo(pivot, corner) - pivot;
+                DVec2::new(own.dot(first), own.dot(second))
+            });
+            let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+            [low, places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max)]
         };
-        let [from, to] = self.start;
-        let start = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from)).map(|corner| place(&before, corner).0);
-        let (from, to) = (
-            start.iter().copied().fold(DVec2::INFINITY, DVec2::min),
-            start.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
-        );
+        // It covers the place where the body starts,
+        let [from, to] = around(self.start, &obstacle.pose(0.0));
         if from.max_element() < farthest && to.min_element() > -farthest {
             let margin = START_MARGIN * self.site.extent;
             low = low.min(from - margin).max(DVec2::splat(-farthest));
             high = high.max(to + margin).min(DVec2::splat(farthest));
         }
-        // It extends over nodes near it, more over nearer ones.
-        let (still_low, still_high) = (low, high);
-        for &node in self.position {
-            let (at, above) = place(pose, node);
-            let share = (above / (NEAR_PLATE * self.site.extent)).clamp(0.0, 1.0);
-            let weight = 1.0 - share * share * (3.0 - 2.0 * share);
-            if weight > 0.0 && at.abs().max_element() < farthest {
-                let margin = MARGIN * self.site.extent;
-                low = low.min(still_low.lerp(still_low.min(at - margin), weight));
-                high = high.max(still_high.lerp(still_high.max(at + margin), weight));
-            }
+        // and where nodes come near it.
+        if let Some(reached) = self.reach.of(at) {
+            let [from, to] = around(reached, &Pose::NONE);
+            let margin = MARGIN * self.site.extent;
+            low = low.min((from - margin).max(DVec2::splat(-farthest)));
+            high = high.max((to + margin).min(DVec2::splat(farthest)));
         }
         let middle = low.midpoint(high);
         (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
@@ -90,14 +86,14 @@ impl Staging<'_> {
 
     /// The arrows of plates that move.
     pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
-        for obstacle in self.site.obstacles {
+        for (at, obstacle) in self.site.obstacles.iter().enumerate() {
             let Shape::Plate { normal, .. } = obstacle.shape else { continue };
             if obstacle.motion == Motion::Still {
                 continue;
             }
             let pose = obstacle.pose(self.site.time);
             let out = pose.rotation * normal;
-            let (middle, half) = self.span(obstacle, &pose, normal);
+            let (middle, half) = self.span(at, &pose, normal);
             let going = self.site.going(obstacle, middle, half.max_element());
             // Always on the side that is not the body's.
             let arriving = going.velocity.dot(out) > 0.0;
@@ -106,8 +102,8 @@ impl Staging<'_> {
     }
 
     /// A plate: a thin box that ends where floors begin.
-    pub(super) fn plate(&self, obstacle: &Obstacle, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
-        let (middle, half) = self.span(obstacle, pose, normal);
+    pub(super) fn plate(&self, at: usize, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
+        let (middle, half) = self.span(at, pose, normal);
         let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let out = pose.rotation * normal;
         let thickness = THICKNESS * self.site.extent;
@@ -150,18 +146,16 @@ impl Staging<'_> {
         (!slab.panes.is_empty()).then(|| Loose { slab, plane: (out, out.dot(middle)), corners: kept })
     }
 
-    /// A floor that is not the ground: a piece of it around the point looked at, with a grid.
-    pub(super) fn wall(
-        &self,
-        obstacle: &Obstacle,
-        normal: DVec3,
-        floor: HalfSpace,
-        others: &[HalfSpace],
-    ) -> Option<Loose> {
+    /// A floor that is not the ground, with a grid: a piece of it around all places where nodes come near it at any time in
+    /// any run, or where the body starts if none does.
+    pub(super) fn wall(&self, at: usize, normal: DVec3, floor: HalfSpace, others: &[HalfSpace]) -> Option<Loose> {
         const CORNERS: usize = 16;
+        let obstacle = &self.site.obstacles[at];
         let (out, height) = floor;
         let pose = obstacle.pose(self.site.time);
-        let mut middle = self.site.origin + (height - out.dot(self.site.origin)) * out;
+        let [from, to] = self.reach.of(at).unwrap_or([self.start[0].midpoint(self.start[1]); 2]);
+        let middle = pose.apply(obstacle.pivot, from.midpoint(to));
+        let mut middle = middle + (height - out.dot(middle)) * out;
         // Along the slope up to where it comes out of the others.
         for &(other, level) in others {
             let depth = level - other.dot(middle);
@@ -171,7 +165,7 @@ impl Staging<'_> {
             }
         }
         let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
-        let reach = WALL * self.site.extent * self.widening;
+        let reach = WALL * self.site.extent + 0.5 * from.distance(to);
         // Circumscribed: the circle in which it fades lies within.
         let around = (0..CORNERS).map(|at| {
             let (sine, cosine) = libm::sincos(TAU * at as f64 / CORNERS as f64);

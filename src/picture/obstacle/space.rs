@@ -3,6 +3,7 @@
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
 use super::{Site, Staged};
+use crate::history::Reach;
 use crate::picture::skin::Skin;
 use crate::picture::{Line, Obstacles};
 use crate::sim::contact::Shape;
@@ -11,8 +12,6 @@ use glam::DVec3;
 /// What is needed to draw the obstacles of one panel in space.
 pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) site: Site<'a>,
-    /// How many times wider than usual the floor is drawn.
-    pub(in crate::picture) widening: f64,
     /// Distance of the grid's lines (sides).
     pub(in crate::picture) cell: f64,
     /// The floor that is drawn as ground.
@@ -25,6 +24,8 @@ pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) soft: f64,
     /// The box around the nodes at the start (m).
     pub(in crate::picture) start: [DVec3; 2],
+    /// Where nodes of all runs come near plates and walls at any time.
+    pub(in crate::picture) reach: &'a Reach,
 }
 
 impl Staging<'_> {
@@ -42,11 +43,11 @@ impl Staging<'_> {
                     }
                     let others = floors.iter().enumerate().filter(|&(other, _)| other != at);
                     let others: Vec<_> = others.filter_map(|(_, floor)| *floor).collect();
-                    slabs.extend(self.wall(obstacle, normal, floor, &others));
+                    slabs.extend(self.wall(at, normal, floor, &others));
                 }
                 Shape::Plate { normal, .. } => {
                     let floors: Vec<_> = floors.iter().flatten().copied().collect();
-                    slabs.extend(self.plate(obstacle, &pose, normal, &floors));
+                    slabs.extend(self.plate(at, &pose, normal, &floors));
                 }
                 Shape::Sphere { centre, radius } => {
                     let centre = pose.apply(centre, centre);

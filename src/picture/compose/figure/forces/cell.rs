@@ -51,7 +51,7 @@ impl<'a> Cell<'a> {
             ghost: scene.body.rest.iter().map(|&at| snapshot.placement.place(at)).collect(),
             framing: {
                 let middle = snapshot.placement.centre;
-                Framing { target: middle, base: middle, ..Framing::still(&scene.view.camera) }
+                Framing { target: middle, ..Framing::still(&scene.view.camera) }
             },
             frame: RunFrame::new(run, snapshot),
             room,

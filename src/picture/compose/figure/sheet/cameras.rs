@@ -2,6 +2,7 @@
 //! cut.
 
 use super::plan::Plan;
+use crate::history::Reach;
 use crate::moments::Moments;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::exploded::Exploded;
@@ -10,7 +11,7 @@ use crate::scene::Scene;
 use crate::scene::figure::Sheet;
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Shape};
-use crate::sim::snapshot::{RunFrame, Status};
+use crate::sim::snapshot::{RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 
 /// Bodies that would be smaller than this part of their tile, each in its own place, are looked for column by column,
@@ -37,19 +38,31 @@ pub(super) struct Cell {
 }
 
 /// The cells of a sheet, row by row.
-pub(super) fn cells(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
+pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
     let exploded = |scene: &Scene| (scene.view.explode > 0.0).then(|| Exploded::new(&scene.body, scene.view.explode));
     let exploded: Vec<_> = scenes.iter().map(exploded).collect();
     let cell = |column: usize, run: &RunFrame| {
         let at = sheet.columns[column].scene;
-        Cell { scene: at, points: points(&scenes[at], exploded[at].as_ref(), run) }
+        Cell { scene: at, points: points(&scenes[at], exploded[at].as_ref(), &reaches[at], run) }
     };
     let row = |runs: &Vec<RunFrame>| runs.iter().enumerate().map(|(column, run)| cell(column, run)).collect();
     moments.cells.iter().map(row).collect()
 }
 
+/// Where the nodes shown in a sheet come near the plates and walls of each scene.
+pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<Reach> {
+    let mut reaches = vec![Reach::default(); scenes.len()];
+    for (column, run) in moments.cells.iter().flat_map(|row| row.iter().enumerate()) {
+        let (at, Snapshot { time, position, status, .. }) = (sheet.columns[column].scene, &run.snapshot);
+        if *status == Status::Ok {
+            reaches[at].add(&scenes[at], *time, position);
+        }
+    }
+    reaches
+}
+
 /// The points of a run at a time (m): nodes and obstacles near them.
-fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVec3> {
+fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFrame) -> Vec<DVec3> {
     let snapshot = run.shown();
     if snapshot.position.len() != scene.body.len() {
         return Vec::new();
@@ -78,10 +91,9 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
     };
     let start = bounds(&scene.initial.position).into();
     let position = &snapshot.position;
-    let staging =
-        Staging { site, widening: 1.0, cell: 1.0, ground: None, position, skin: None, soft: scene.view.side, start };
+    let staging = Staging { site, cell: 1.0, ground: None, position, skin: None, soft: scene.view.side, start, reach };
     let mut near = Vec::new();
-    for obstacle in &scene.obstacles {
+    for (at, obstacle) in scene.obstacles.iter().enumerate() {
         let pose = obstacle.pose(snapshot.time);
         let place = |point: DVec3| pose.apply(obstacle.pivot, point);
         let ball =
@@ -89,7 +101,7 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, run: &RunFrame) -> Vec<DVe
         match obstacle.shape {
             Shape::Floor { .. } => {}
             Shape::Plate { .. } if scene.body.dimension == Dimension::Space => {
-                near.extend(staging.plate_corners(obstacle).into_iter().flatten());
+                near.extend(staging.plate_corners(at).into_iter().flatten());
             }
             Shape::Plate { point, .. } => near.push(place(point)),
             Shape::Sphere { centre, radius } => near.extend(ball(place(centre), radius).concat()),
@@ -190,7 +202,7 @@ impl TileCamera<'_> {
     }
 
     fn framing(target: DVec3, distance: f64) -> Framing {
-        Framing { target, base: target, distance, rise: 0.0 }
+        Framing { target, distance, rise: 0.0, moves: false }
     }
 
     /// Pixels of a metre at a distance (m).

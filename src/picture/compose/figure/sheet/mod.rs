@@ -74,11 +74,13 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         charts.draw(&mut writer, room);
     }
 
-    let cells = cameras::cells(&scenes, sheet, moments);
+    let reaches = cameras::reaches(&scenes, sheet, moments);
+    let cells = cameras::cells(&scenes, &reaches, sheet, moments);
     let framings = cameras::framings(&scenes, &cells, &plan);
     // The tiles of a scene share what is computed for the first of them.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
-    let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
+    let composers: Vec<_> =
+        scenes.iter().zip(reaches).map(|(scene, reach)| Composer { reach, ..Composer::new(scene) }).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {

@@ -1,0 +1,157 @@
+//! Cameras that follow, over the whole course of all shipped scenes, by the numbers in their pictures: no device needed.
+
+use localshape::history::History;
+use localshape::picture::{Composer, Curve, Panel, Picture, compose};
+use localshape::runner::Runner;
+use localshape::scene::{Limits, Scene};
+use std::path::{Path, PathBuf};
+
+fn shipped() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let files = std::fs::read_dir(folder).expect("a folder of scenes").map(|entry| entry.expect("an entry").path());
+    let mut scenes: Vec<_> =
+        files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();
+    scenes.sort();
+    scenes
+}
+
+fn load(path: &Path) -> Scene {
+    Scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse(text, "camera.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A composer that knows the whole course, and every so many frames of the scene.
+fn film(scene: &Scene, every: u64) -> Vec<(u64, Picture)> {
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let mut composer = Composer::new(scene);
+    composer.set_history(&History::new(scene, &runs));
+    let mut runner = Runner::new(scene, &runs);
+    let frames = (0..=scene.last_frame()).filter(|frame| frame % every == 0);
+    frames.map(|frame| (frame, composer.compose(&runner.frame(frame)))).collect()
+}
+
+/// The box around the body of a panel: left, top, right and bottom (px from the panel's left upper corner).
+fn outline(panel: &Panel) -> Option<[f32; 4]> {
+    let [width, height] = [panel.viewport[2], panel.viewport[3]].map(|length| length as f32);
+    let meshes = [&panel.sound, &panel.turned_over].into_iter().flat_map(|mesh| &mesh.vertices);
+    let points = meshes.map(|vertex| vertex.position);
+    let points = points.chain(panel.strokes.iter().flat_map(|stroke| stroke.ends));
+    let lines = panel.lines.iter().filter(|line| (line.kind as u32) < 8).flat_map(|line| [line.from, line.to]);
+    points.chain(lines).fold(None, |all, point| {
+        let at = panel.sight.clip * glam::Vec3::from(point).extend(1.0);
+        let [x, y] = [(0.5 + 0.5 * at.x / at.w) * width, (0.5 - 0.5 * at.y / at.w) * height];
+        let [a, b, c, d] = all.unwrap_or([x, y, x, y]);
+        Some([a.min(x), b.min(y), c.max(x), d.max(y)])
+    })
+}
+
+/// Panels whose camera follows have one scale, in which no moment is cut off and the widest takes about half of the panel's
+/// width, or as much as the height of its body permits.
+#[test]
+fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
+    // Obstacles along a course are shown from a camera that stands still.
+    for scene in shipped().iter().map(|path| load(path)).filter(|scene| scene.name != "obstacles") {
+        let name = &scene.name;
+        let (mut widest, mut highest, mut smallest, mut scale) = (0.0_f32, 0.0_f32, f32::INFINITY, None);
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let diverged = History::new(&scene, &runs).series.into_iter().map(|series| series.divergence.is_some());
+        let diverged: Vec<_> = diverged.collect();
+        for (frame, picture) in film(&scene, 5) {
+            for (panel, run) in picture.panels.iter().zip(0..) {
+                let element = *scale.get_or_insert(panel.sight.element);
+                assert!((panel.sight.element - element).abs() < 1e-4 * element, "{name} {frame}");
+                let [width, height] = [panel.viewport[2], panel.viewport[3]].map(|length| length as f32);
+                let Some([left, top, right, bottom]) = outline(panel).filter(|_| !diverged[run]) else { continue };
+                let is_inside = left >= 0.0 && right <= width && top >= 0.0 && bottom <= height;
+                assert!(is_inside && !panel.is_cut, "{name}, run {run}, frame {frame}: {left} {top} {right} {bottom}");
+                (widest, highest) = (widest.max((right - left) / width), highest.max((bottom - top) / height));
+                smallest = smallest.min((right - left) * (bottom - top) / (width * height));
+            }
+        }
+        println!("{name}: width at most {widest:.3}, height at most {highest:.3}, area at least {smallest:.3}");
+        assert!((0.45..=0.70).contains(&widest) || (widest < 0.45 && highest > 0.55), "{name}: {widest} {highest}");
+        assert!(smallest > 0.015, "{name}: {smallest}");
+    }
+}
+
+#[test]
+fn a_frame_drawn_alone_is_that_of_its_sequence() {
+    let scene = load(&shipped().into_iter().find(|path| path.ends_with("mixed.toml")).expect("a scene"));
+    for (frame, picture) in film(&scene, 50) {
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&History::new(&scene, &[0, 1]));
+        assert_eq!(composer.compose(&Runner::new(&scene, &[0, 1]).frame(frame)), picture, "{frame}");
+    }
+}
+
+#[test]
+fn overviews_show_the_same_in_all_panels_and_frames() {
+    let scene = load(&shipped().into_iter().find(|path| path.ends_with("fig4b.toml")).expect("a scene"));
+    let mut seen: Option<Vec<f32>> = None;
+    for (frame, picture) in film(&scene, 20) {
+        for panel in &picture.panels {
+            let [left, .., width, _] = panel.viewport.map(|length| length as f32);
+            let is_here = |curve: &&Curve| curve.points.iter().all(|[x, _]| (left..left + width).contains(x));
+            let of = |colour, count| {
+                let alike = |curve: &&Curve| curve.colour == colour && curve.points.len() == count;
+                picture.curves.iter().filter(is_here).find(alike).map(|curve| &curve.points)
+            };
+            let frame_of_it = of(picture.palette.hairline, 5).unwrap_or_else(|| panic!("a frame in {frame}"));
+            let floor = of(picture.palette.axis, 2).unwrap_or_else(|| panic!("a floor in {frame}"));
+            let points: Vec<_> = frame_of_it.iter().chain(floor).flat_map(|[x, y]| [x - left, *y]).collect();
+            let same = seen.get_or_insert_with(|| points.clone());
+            assert!(same.iter().zip(&points).all(|(one, other)| (one - other).abs() < 1e-3), "{frame}");
+        }
+    }
+}
+
+/// The wall of a course of obstacles is as large in all panels and frames, wherever bodies are.
+#[test]
+fn plates_are_drawn_alike_in_all_panels_and_frames() {
+    let scene = load(&shipped().into_iter().find(|path| path.ends_with("obstacles.toml")).expect("a scene"));
+    let film = film(&scene, 20);
+    let first = &film[0].1.panels[0].obstacles.slabs;
+    assert!(!first.is_empty());
+    for (frame, picture) in &film {
+        assert!(picture.panels.iter().all(|panel| panel.obstacles.slabs == *first), "{frame}");
+    }
+}
+
+#[test]
+fn panels_are_arranged_so_that_bodies_are_largest() {
+    let mut scene = load(&shipped().into_iter().find(|path| path.ends_with("springs.toml")).expect("a scene"));
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let frame = Runner::new(&scene, &runs).frame(0);
+    for size in [[1280, 720], [2400, 500], [600, 1600], [1000, 1000]] {
+        scene.view.size = size;
+        let mut element = |columns: Option<usize>| {
+            scene.view.columns = columns;
+            compose(&scene, &frame).panels[0].sight.element
+        };
+        let chosen = element(None);
+        let largest = [1, 2, 3, 6].map(|columns| element(Some(columns))).into_iter().fold(0.0, f32::max);
+        assert!(chosen >= 0.97 * largest, "{size:?}: {chosen} of {largest}");
+    }
+}
+
+#[test]
+fn what_leaves_its_panel_is_known() {
+    let with = |camera: &str| {
+        parse(&format!(
+            "time = {{ duration = 0.1, frames_per_second = 10 }}
+            body.lattice = {{ cells = [2, 1, 1], side = 0.1 }}
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            view.camera = {{ {camera} }}"
+        ))
+    };
+    for (camera, cut) in
+        [("", false), ("target = [0, 0, 0]", false), ("target = [2, 0, 0]", true), ("distance = 0.3", true)]
+    {
+        let scene = with(camera);
+        let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
+        assert_eq!(picture.panels[0].is_cut, cut, "{camera}");
+    }
+}
