@@ -30,7 +30,7 @@ const POINTS: [[f64; 3]; 9] = [
 /// with hues that differ for any colour vision; the middle is grey, and nearer to the background than they are.
 const DIVERGING: [[[f64; 3]; 3]; 2] = [
     [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
-    [[0.7200, 0.0900, -0.1300], [0.5000, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
+    [[0.7200, 0.0900, -0.1300], [0.5600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
 ];
 
 /// The part of `magma` that is left out at its black end, where neither shading nor edges could be seen.
