@@ -73,7 +73,7 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
         }
         println!("{name}: width at most {widest:.3}, height at most {highest:.3}, area at least {smallest:.3}");
         // Seen in perspective, what counts as 45 % may be a little less.
-        assert!((0.43..=0.70).contains(&widest) || highest > 0.55, "{name}: {widest} {highest}");
+        assert!((0.43..=0.70).contains(&widest) || highest > 0.5, "{name}: {widest} {highest}");
         assert!(smallest > 0.015, "{name}: {smallest}");
     }
 }
