@@ -75,6 +75,9 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
     let bottom = smoothstep(0.55 * ground.shadow.w, ground.shadow.w, size.y - pixel.y);
     let fade = round * side * bottom;
+    if fade <= 0.0 {
+        return vec4(ground.background.rgb, 1.0);
+    }
 
     var colour = ground.floor.rgb;
     let thickness = max(panel.line_scale, 1.0);

@@ -50,12 +50,18 @@ pub(super) struct Locator {
     floor: Option<[DVec2; 2]>,
 }
 
-/// A body for its silhouette: points of its surface (m), the triangles between them, and elements without faces as lines
-/// (m).
-pub(super) struct Silhouette<'a> {
+/// What the overview of one panel shows.
+pub(super) struct Located<'a> {
+    /// Points of the body's surface (m).
     pub(super) points: Vec<DVec3>,
+    /// The triangles between them.
     pub(super) triangles: &'a [[u32; 3]],
+    /// Elements without faces as lines (m).
     pub(super) bars: Vec<[DVec3; 2]>,
+    /// The middle of what the panel shows (m), and how wide and high that is (m).
+    pub(super) shown: (DVec3, [f64; 2]),
+    /// The colour of the path.
+    pub(super) colour: Colour,
 }
 
 impl Locator {
@@ -98,16 +104,14 @@ impl Locator {
         is_seen.then(|| [left + width - sides[0], top, sides[0], sides[1]])
     }
 
-    /// Draws it at its place for a run, whose panel shows a rectangle around a point (m) at a shot.
+    /// Draws it at its place for a run.
     pub(super) fn draw(
         &self,
         writer: &mut Writer<'_>,
         place: [f64; 4],
         tracking: &Tracking,
         (run, time): (usize, f64),
-        body: &Silhouette<'_>,
-        shown: (DVec3, [f64; 2]),
-        colour: Colour,
+        located: &Located<'_>,
     ) {
         let Writer { palette, scale, .. } = *writer;
         let line = scale.unit.max(0.6) * scale.line_factor;
@@ -135,15 +139,15 @@ impl Locator {
             }
             writer.curves.extend(polyline(&line_of_floor, ends, FLOOR * line, palette.axis, 1.0));
         }
-        silhouette(body, &seen, ends, palette.sound_flat, &mut writer.marks);
+        silhouette(located, &seen, ends, palette.sound_flat, &mut writer.marks);
         let bars =
-            body.bars.iter().filter_map(|bar| polyline(&bar.map(&seen), ends, BAR * line, palette.sound_flat, 1.0));
+            located.bars.iter().filter_map(|bar| polyline(&bar.map(&seen), ends, BAR * line, palette.sound_flat, 1.0));
         writer.curves.extend(bars);
         for path in tracking.paths.iter().filter(|path| path.run == run) {
             let past: Vec<_> = thinned(path.until(time).map(&seen));
-            writer.curves.extend(polyline(&past, ends, PATH * line, colour, 1.0));
+            writer.curves.extend(polyline(&past, ends, PATH * line, located.colour, 1.0));
         }
-        let (target, [across, along]) = shown;
+        let (target, [across, along]) = located.shown;
         let (at, half) = (seen(target), 0.5 * pixels * DVec2::new(across, along));
         let corner = |x: f64, y: f64| at + DVec2::new(x * half.x, y * half.y);
         let around = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -179,7 +183,7 @@ fn thinned(points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
 
 /// The silhouette of a body within two corners (px): for each row, marks for runs of pixels that it covers alike.
 fn silhouette(
-    body: &Silhouette<'_>,
+    body: &Located<'_>,
     seen: &impl Fn(DVec3) -> DVec2,
     [low, high]: [DVec2; 2],
     colour: Colour,
@@ -241,7 +245,8 @@ mod tests {
         let points = vec![DVec3::new(1.3, 2.0, 0.0), DVec3::new(9.8, 3.1, 1.0), DVec3::new(4.0, 12.4, 0.0)];
         let area = 0.5 * (points[1] - points[0]).truncate().perp_dot((points[2] - points[0]).truncate());
         for triangles in [&[[0, 1, 2]][..], &[[2, 1, 0], [0, 1, 2]]] {
-            let body = Silhouette { points: points.clone(), triangles, bars: Vec::new() };
+            let shown = (DVec3::ZERO, [1.0; 2]);
+            let body = Located { points: points.clone(), triangles, bars: Vec::new(), shown, colour: [0; 3] };
             let mut marks = Vec::new();
             silhouette(&body, &|at| at.truncate(), [DVec2::ZERO, DVec2::splat(20.0)], [0; 3], &mut marks);
             let covered =

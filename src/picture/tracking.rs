@@ -150,8 +150,8 @@ impl Tracking {
             layout::clear_of_words(viewport, scale, layout::rooms(view)).map(|length| f64::from(length).max(1.0));
         let [above, below] = NEARER.map(|length| length * scale.unit);
         let room = [left, top - above, width, height + above + below];
-        // What is nearer than the point looked at is seen larger.
-        let depth = |half: DVec3| if dimension == Dimension::Space { half.z / lens.focal } else { 0.0 };
+        // What is nearer than the point looked at is seen larger; the outline lies on the way to the nearest.
+        let depth = |half: DVec3| if dimension == Dimension::Space { 0.5 * half.z / lens.focal } else { 0.0 };
         let fit = |half: DVec3| {
             let depth = depth(half);
             (room[2] / (2.0 * half.x + room[2] * depth)).min(room[3] / (2.0 * half.y + room[3] * depth))

@@ -119,7 +119,7 @@ impl Scene {
             _ => false,
         };
         let needed = view.strip.is_some() || view.looks_ahead() || view.camera.follow || (!is_flat && self.obstacles.iter().any(has_size));
-        needed.then(|| view.strip.as_slice())
+        needed.then_some(view.strip.as_slice())
     }
 }
 

@@ -16,7 +16,7 @@ use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
 use super::layout::{Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend, Sample, SampleKind};
-use super::locator::{Locator, Silhouette};
+use super::locator::{Located, Locator};
 use super::shell::Shell;
 use super::skin::Skin;
 use super::strip::Strips;
@@ -326,15 +326,15 @@ impl<'a> Composer<'a> {
         }
         let at = |&node: &u32| draft.position[node as usize];
         let bars = self.bare.iter().flat_map(|&element| draft.body.topology().edges_of(element));
-        let body = Silhouette {
+        let located = Located {
             points: self.skin.nodes.iter().map(at).collect(),
             triangles: &self.skin.triangles,
             bars: bars.map(|ends| ends.map(|node| at(&node))).collect(),
+            shown: draft.lens.shown(viewport.map(f64::from), shot.pixels),
+            colour: self.scene.runs.get(draft.run.run).map_or(self.palette.text, |run| run.line(&self.palette).colour),
         };
-        let shown = draft.lens.shown(viewport.map(f64::from), shot.pixels);
-        let colour = self.scene.runs.get(draft.run.run).map_or(self.palette.text, |run| run.line(&self.palette).colour);
         let run = (draft.run.run, draft.run.snapshot.time);
-        locator.draw(writer, place, tracking, run, &body, shown, colour);
+        locator.draw(writer, place, tracking, run, &located);
     }
 
     /// The lines of the caption.
