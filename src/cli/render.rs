@@ -6,12 +6,15 @@ use super::film::{comment, replaceable, summary};
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
+use super::scenes::Job;
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
 use crate::artist::Artist;
 use crate::gpu::Gpu;
 use crate::history::History;
+use crate::look::Ghost;
 use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
 use crate::scene::Scene;
+use crate::shell;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;
 use clap::{Args, ValueHint};
@@ -79,6 +82,7 @@ impl Render {
         }
         let films = self.films(scenes.len())?;
         let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
+        jobs.iter().try_for_each(check_compared)?;
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
         let threads = self.options.threads.count();
@@ -145,6 +149,23 @@ struct Device {
     shared: Option<Shared>,
     /// Lines to print about animations at the end.
     made: Mutex<Vec<String>>,
+}
+
+/// Whether all runs are there that pictures compare others with.
+fn check_compared(Job { scene, runs, .. }: &Job) -> Result<(), Failure> {
+    let ghost = match scene.view.ghost {
+        Some(Ghost::Run(run)) => Some(("ghost", run)),
+        _ => None,
+    };
+    let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
+    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
+        None => Ok(()),
+        Some((key, run)) => {
+            let (title, name) = (&scene.title, &scene.runs[run].name);
+            let message = format!("--only leaves out the run “{name}”, which `view.{key}` of “{title}” needs");
+            Err(Failure::usage(format!("{message}; add --only {}", shell::word(name))))
+        }
+    }
 }
 
 /// What animations of one scene share.

@@ -3,7 +3,6 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
-use crate::look::Ghost;
 use crate::output::{Folder, OutputError, Plan, Replace};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
@@ -83,9 +82,6 @@ impl RunOptions {
                 return Err(Failure::usage(message));
             }
             let runs = self.runs(&scene)?;
-            if pictures {
-                check_compared(&scene, &runs)?;
-            }
             let frames = self.frames(&scene)?;
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
             let size = pictures.then_some(scene.view.size);
@@ -124,23 +120,6 @@ impl RunOptions {
         let last = scene.last_frame();
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))
-    }
-}
-
-/// Whether all runs are there that pictures compare others with.
-fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
-    let ghost = match scene.view.ghost {
-        Some(Ghost::Run(run)) => Some(("ghost", run)),
-        _ => None,
-    };
-    let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
-    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
-        None => Ok(()),
-        Some((key, run)) => {
-            let (title, name) = (&scene.title, &scene.runs[run].name);
-            let message = format!("--only leaves out the run “{name}”, which `view.{key}` of “{title}” needs");
-            Err(Failure::usage(format!("{message}; add --only {}", shell::word(name))))
-        }
     }
 }
 

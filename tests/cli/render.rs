@@ -317,7 +317,8 @@ fn a_frame_that_cannot_be_written() {
 fn runs_that_others_are_compared_with_cannot_be_left_out() {
     let place = Place::new();
     place.write("ghost.toml", &format!("{SMALL}ghost = \"Local shape\"\n"));
-    let told = "--only leaves out the run “Local shape”, which `view.ghost` of “Two cubes” needs; add --only 'Local shape'";
+    let told =
+        "--only leaves out the run “Local shape”, which `view.ghost` of “Two cubes” needs; add --only 'Local shape'";
     place.run("render ghost.toml --only Mass-spring").bad(2, &[told]);
     place.write("apart.toml", &format!("{SMALL}difference = [\"Mass-spring\", \"Local shape\"]\n"));
     place.run("render apart.toml --only Mass-spring").bad(2, &["which `view.difference` of “Two cubes” needs"]);
