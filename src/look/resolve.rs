@@ -4,6 +4,7 @@ use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
 use super::inside::is_inside;
+use super::print::unit;
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, Light, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
@@ -11,6 +12,8 @@ use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
 use crate::sim::words::rounded;
 
+/// The shortest side of a picture (px).
+const LEAST_SIDE: u32 = 16;
 /// How many panels stand beside each other unless the scene says so.
 const COLUMNS: usize = 3;
 
@@ -41,11 +44,12 @@ pub(crate) fn resolve(
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
     }
+    let (size, print) = typed.size.resolve(LEAST_SIDE, &[Way::Key("view"), Way::Key("size")], report)?;
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => columns as usize,
         (None, Some(ArrangementFile::Row)) => runs,
         (None, Some(ArrangementFile::Column)) => 1,
-        (None, Some(ArrangementFile::Grid)) => roomiest(typed.size, runs),
+        (None, Some(ArrangementFile::Grid)) => roomiest(size, runs),
         (None, None) => columns(runs),
     };
     let columns = columns.clamp(1, runs.max(1));
@@ -62,7 +66,10 @@ pub(crate) fn resolve(
         },
         None => Visible::usual(dimension, body.len()),
     };
-    let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
+    let panel = [size[0] / columns as u32, size[1] / runs.div_ceil(columns).max(1) as u32];
+    let way = [Way::Key("view"), Way::Key("text_scale")];
+    let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
+    let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -88,7 +95,8 @@ pub(crate) fn resolve(
         None => None,
     };
     Some(View {
-        size: typed.size,
+        size,
+        print,
         look,
         camera: chosen,
         clock: typed.clock.clone(),

@@ -12,7 +12,7 @@ use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
 use super::schema::schema_of;
-use crate::look::{Look, Theme};
+use crate::look::{Look, Print, Theme};
 use crate::sim::snapshot::Diagnostic;
 use serde_json::Value;
 use std::path::Path;
@@ -29,6 +29,10 @@ pub struct Figure {
     pub caption: String,
     /// Width and height (px).
     pub size: [u32; 2],
+    /// The size in print, if it was given.
+    pub print: Option<Print>,
+    /// The path of its file.
+    pub file: String,
     /// Colours, type and lines of the whole figure.
     pub look: Look,
     /// What it shows.
@@ -156,7 +160,8 @@ impl Figure {
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
         load::checked(text, name, &SCHEMA, load::SCENE, |checked, report| {
-            resolve::resolve(checked, &stem, folder, scene, report)
+            let figure = resolve::resolve(checked, &stem, folder, scene, report)?;
+            Ok(figure.map(|figure| Self { file: name.to_owned(), ..figure }))
         })
     }
 }
