@@ -84,12 +84,10 @@ impl Still<'_> {
             }
             Format::Vector(format) => {
                 let bodies = draw_bodies(gpu, self.pictures, samples)?;
-                // Without a size in print, pixels are those of the web: 96 to an inch.
-                let of_web = || picture.size.map(|length| f64::from(length) * 25.4 / 96.0);
                 let page = Page {
                     picture,
                     bodies: bodies.as_deref().map(vector::Pixels),
-                    size_mm: self.print.map_or_else(of_web, |print| print.mm),
+                    size_mm: self.print.map(|print| print.mm),
                     is_transparent: self.pictures.len() > 1,
                     title: self.title,
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),

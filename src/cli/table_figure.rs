@@ -13,7 +13,7 @@ pub(super) fn files(table: &Table1) -> Vec<Vec<u8>> {
     let page = Page {
         picture: &figure.compose(),
         bodies: None,
-        size_mm: RANGES_SIZE_MM,
+        size_mm: Some(RANGES_SIZE_MM),
         is_transparent: false,
         title: &figure.title,
         maker: &maker,

@@ -101,7 +101,7 @@ impl Flat<'_> {
         }
         let palette = &self.picture.palette;
         let is_alarm = std::ptr::eq(mesh, &self.panel.turned_over);
-        let has_field = !mesh.shades.is_empty() && (!is_alarm || self.panel.hatch);
+        let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1 && (!is_alarm || self.panel.hatch);
         let opacity = if is_alarm { 1.0 } else { self.panel.opacity };
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
         if !has_field {
@@ -113,8 +113,20 @@ impl Flat<'_> {
         let opaque = |colour: Colour| mixed(palette.background, colour, opacity);
         items.push(Item::Fill { path: self.whole(mesh), paint: opaque(plain).into() });
         let ramp = &self.picture.ramp;
-        let bands = ramp.len().saturating_sub(1);
+        let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
+        if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
+            // One value for each element. Where a body is folded over itself, the renderer shows what it draws first.
+            for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
+                let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
+                let value = same[0][0].1;
+                let band = (value.max(0.0) as usize).min(bands - 1);
+                let shade = mixed(ramp[band], ramp[band + 1], (value - band as f32).clamp(0.0, 1.0));
+                let colour = if value > -0.5 * bands as f32 { shade } else { palette.sound_flat };
+                items.push(Item::Fill { path, paint: opaque(colour).into() });
+            }
+            return;
+        }
         for band in 0..bands {
             let [low, high] = [band, band + 1].map(|level| level as f32);
             // The ends of the scale go on.

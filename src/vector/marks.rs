@@ -98,8 +98,13 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
             fill(place.polygon(line), second(1.0));
         }
         MarkShape::Node => {
-            fill(Path::circle(place.middle(), radius), second(1.0));
-            fill(Path::circle(place.middle(), radius - 0.16 * width), paint);
+            // Beside each other and not over each other, for both may be transparent.
+            let rim = 0.16 * width;
+            fill(Path::circle(place.middle(), radius - if mark.colour == mark.second { 0.0 } else { rim }), paint);
+            if mark.colour != mark.second {
+                let path = Path::circle(place.middle(), radius - 0.5 * rim);
+                items.push(Item::Stroke { path, pen: Pen::solid(rim), paint: second(1.0) });
+            }
         }
         MarkShape::CounterClockwise => fill(ring_arrow(place.middle(), radius, THICKNESS[0], 1.0), paint),
         MarkShape::Clockwise => fill(ring_arrow(place.middle(), radius, THICKNESS[1], -1.0), paint),

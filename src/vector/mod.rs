@@ -44,8 +44,8 @@ pub(crate) struct Page<'a> {
     pub(crate) picture: &'a Picture,
     /// The picture's lit panels, as [`bodies`] asks for them; `None` if it has none.
     pub(crate) bodies: Option<Pixels<'a>>,
-    /// Width and height (mm).
-    pub(crate) size_mm: [f64; 2],
+    /// Width and height (mm); if not given, pixels are those of the web, 96 to an inch.
+    pub(crate) size_mm: Option<[f64; 2]>,
     /// Whether nothing is behind it.
     pub(crate) is_transparent: bool,
     /// Its title; empty for none.

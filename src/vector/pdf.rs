@@ -23,7 +23,10 @@ const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), orde
 /// # Errors
 /// An image that cannot be encoded.
 pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Result<Vec<u8>, VectorError> {
-    let [width, height] = page.size_mm.map(|length| (length * POINTS) as f32);
+    let [width, height] = match page.size_mm {
+        Some(lengths) => lengths.map(|length| (length * POINTS) as f32),
+        None => page.picture.size.map(|length| 0.75 * length as f32),
+    };
     let mut writer = Writer {
         pdf: Pdf::new(),
         next: Ref::new(1),

@@ -33,11 +33,14 @@ impl Svg<'_> {
     }
 
     fn head(&mut self, page: &Page<'_>) {
-        let ([width, height], [wide, high]) = (page.picture.size, page.size_mm);
-        let [wide, high] = [wide, high].map(|length| number(length as f32));
+        let [width, height] = page.picture.size;
+        let [wide, high] = match page.size_mm {
+            Some(lengths) => lengths.map(|length| format!("{length}mm")),
+            None => [width, height].map(|length| length.to_string()),
+        };
         self.add(format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-             width=\"{wide}mm\" height=\"{high}mm\" viewBox=\"0 0 {width} {height}\">\n"
+             width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\">\n"
         ));
         if !page.title.is_empty() {
             self.add(format_args!("<title>{}</title>\n", escaped(page.title)));

@@ -3,6 +3,9 @@
 use crate::support::{Place, documented};
 use localshape::internals::ratio;
 
+#[cfg(feature = "render")]
+const FILES: [&str; 5] = ["table1-orientations.csv", "table1.csv", "table1.md", "table1.pdf", "table1.svg"];
+#[cfg(not(feature = "render"))]
 const FILES: [&str; 3] = ["table1-orientations.csv", "table1.csv", "table1.md"];
 
 /// The rows of the first table in a Markdown text, without headings and rule. All have as many cells as the headings.

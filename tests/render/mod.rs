@@ -14,6 +14,7 @@ mod shown;
 mod smooth;
 mod steady;
 mod strips;
+mod vectors;
 mod words;
 
 use localshape::gpu::{AdapterChoice, Gpu};
