@@ -28,7 +28,7 @@ pub(super) struct SceneOptions {
 #[derive(Args, Clone, Debug)]
 pub(super) struct RunOptions {
     /// Output folder [default: output/NAME, with NAME from the scene file]; with several scenes, the folder that
-    /// holds one folder NAME for each. A name that ends in .png, .svg or .pdf is a file for one frame that is rendered
+    /// holds one folder NAME for each. With `render`, a name in .png, .svg or .pdf is a file for a single frame
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(super) out: Option<PathBuf>,
 

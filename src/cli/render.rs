@@ -6,7 +6,9 @@ use super::film::{comment, replaceable, summary};
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
-use super::still::{Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still};
+use super::still::{
+    Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
+};
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
 use crate::artist::{Artist, compose_frame};
 use crate::gpu::Gpu;
@@ -80,6 +82,11 @@ impl Render {
         let mut scenes = self.scenes.load_all(self.options.telling.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| (scene.view.size, scene.view.print) = (size, None));
+        }
+        for scene in &scenes {
+            if let Some(message) = too_small(scene, &self.options.runs(scene)?) {
+                return Err(Failure::usage(message));
+            }
         }
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, FileFormat::of(out)?))) {
             return self.still(path, format, &scenes);
@@ -185,11 +192,6 @@ impl Render {
         }
         Ok(films)
     }
-}
-
-/// The file of a scene, for messages.
-fn source_of(scene: &Scene) -> String {
-    scene.file.as_ref().map_or_else(|| scene.name.clone(), |file| file.display().to_string())
 }
 
 /// What all scenes are drawn with.

@@ -2,11 +2,12 @@
 
 use super::failure::Failure;
 use super::film;
-use crate::artist::{draw_bodies, draw_pictures};
+use crate::artist::{compose_frame, draw_bodies, draw_pictures};
 use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, encode_print, read_tags};
 use crate::picture::Picture;
+use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
 use crate::vector::{self, Page};
@@ -50,11 +51,27 @@ pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
 
 /// Refuses type that is too small to be printed.
 pub(super) fn check_type(print: Option<&Print>, picture: &Picture, file: &str) -> Result<(), Failure> {
-    let smallest = picture.words.iter().map(|run| run.size).fold(f32::INFINITY, f32::min);
-    match print.and_then(|print| print.too_small(f64::from(smallest), file)) {
+    match print.and_then(|print| print.too_small(f64::from(smallest_type(picture)), file)) {
         Some(message) => Err(Failure::usage(message)),
         None => Ok(()),
     }
+}
+
+/// The size of the smallest type in a picture (px).
+fn smallest_type(picture: &Picture) -> f32 {
+    picture.words.iter().map(|run| run.size).fold(f32::INFINITY, f32::min)
+}
+
+/// Why some runs of a scene are not printed, as far as the first frame shows: before anything is simulated.
+pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
+    let print = scene.view.print.as_ref()?;
+    let first = compose_frame(scene, &Runner::new(scene, runs).frame(0), None);
+    print.too_small(f64::from(smallest_type(&first[0])), &source_of(scene))
+}
+
+/// The file of a scene, for messages.
+pub(super) fn source_of(scene: &Scene) -> String {
+    scene.file.as_ref().map_or_else(|| scene.name.clone(), |file| file.display().to_string())
 }
 
 /// One picture, ready to be written.

@@ -91,7 +91,10 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     let info = reader.info();
     assert_eq!(([info.width, info.height], info.pixel_dims.map(|dims| dims.xppu)), ([354, 236], Some(3937)));
     place.write("tiny.toml", &sized("{ mm = [60, 40] }"));
-    place.run("render tiny.toml --frames 0").bad(2, &["tiny.toml:24:8: at 60 × 40 mm the smallest type would be"]);
+    for command in ["render", "check"] {
+        place.run(&format!("{command} tiny.toml")).bad(2, &["tiny.toml:24:8: at 60 × 40 mm the smallest type would be"]);
+    }
+    assert!(!place.path("output/tiny").exists());
 }
 
 /// A folder whose frames differ in size or runs would not be a sequence.

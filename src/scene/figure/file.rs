@@ -17,7 +17,7 @@ pub(super) struct FigureFile {
     /// A line below the title. Default: none.
     #[schemars(length(max = 400))]
     pub(super) caption: Option<String>,
-    /// Width and height (px), or for print, such as `{ mm = [180, 101] }`.
+    /// Width and height (px, at least 64), or for print, such as `{ mm = [180, 101] }`.
     #[serde(default = "size")]
     pub(super) size: SizeFile,
     /// The colours. Default: those of the first scene.
