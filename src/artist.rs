@@ -96,7 +96,11 @@ pub(crate) fn compose_frame(scene: &Scene, frame: &Frame, history: Option<&Histo
 ///
 /// # Panics
 /// If there are lit bodies and no device.
-pub(crate) fn draw_bodies(gpu: Option<&Gpu>, pictures: &[Picture], samples: u32) -> Result<Option<Vec<u8>>, RenderError> {
+pub(crate) fn draw_bodies(
+    gpu: Option<&Gpu>,
+    pictures: &[Picture],
+    samples: u32,
+) -> Result<Option<Vec<u8>>, RenderError> {
     let lit: Vec<_> = pictures.iter().filter_map(vector::bodies).collect();
     let device = |_: &Picture| gpu.expect("a device for lit bodies");
     lit.first().map(device).map(|gpu| draw_pictures(gpu, &lit, samples)).transpose()

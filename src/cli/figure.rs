@@ -163,7 +163,8 @@ impl FigureCommand {
         let adapter = gpu.map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
         let tags = Tags::of_figure(figure, &moments, &adapter).texts();
         let title = &figure.title;
-        let (print, source) = (figure.print.as_ref(), &figure.file);
+        let print = figure.print.as_ref();
+        let source = print.map_or("", |print| &print.file);
         let still = Still { pictures: &[picture], print, source, title, tags: &tags };
         let bytes = still.file(self.format(), gpu, self.device.samples)?;
         if interrupt::requested() {
@@ -231,7 +232,8 @@ impl FigureCommand {
                 [_] => replaceable(&self.out, self.format()).map(|()| vec![self.out.clone()]),
                 _ => {
                     let (file, count) = (self.out.display(), figures.len());
-                    let message = format!("{file} is a file for one figure, but {count} are asked for; draw them one at a time");
+                    let message =
+                        format!("{file} is a file for one figure, but {count} are asked for; draw them one at a time");
                     Err(Failure::usage(message))
                 }
             };

@@ -127,7 +127,8 @@ impl Render {
             return Err(Failure::usage(message));
         };
         if self.options.states || !self.animate.is_empty() || self.options.telling.json {
-            let message = format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
+            let message =
+                format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
             return Err(Failure::usage(message));
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);

@@ -159,13 +159,12 @@ impl Table {
             bar.inc(more);
             !interrupt::requested()
         };
-        let made =
-            pool.install(|| match name {
-                Name::Ratio => ratio::measure(&timing, watch)
-                    .map(|ratios| Made::new(ratios.files(), Vec::new(), ratios.json())),
-                _ => table1::measure(&protocol, watch)
-                    .map(|table| Made::new(table.files(), drawn(&table), table.json())),
-            });
+        let made = pool.install(|| match name {
+            Name::Ratio => {
+                ratio::measure(&timing, watch).map(|ratios| Made::new(ratios.files(), Vec::new(), ratios.json()))
+            }
+            _ => table1::measure(&protocol, watch).map(|table| Made::new(table.files(), drawn(&table), table.json())),
+        });
         bar.finish_and_clear();
         Ok(made)
     }

@@ -49,7 +49,10 @@ fn figure(table: &Table1) -> Ranges {
     Ranges {
         title: "Table 1: errors of the rotations from Eq. (15)".to_owned(),
         caption: vec![
-            format!("α of Eq. (18) in the {} s after the first contact, of a free falling cube.", table.protocol.duration),
+            format!(
+                "α of Eq. (18) in the {} s after the first contact, of a free falling cube.",
+                table.protocol.duration
+            ),
             "Without a ring: too small for the paper to measure.".to_owned(),
         ],
         key: [format!("here: range and median over {starts} start{plural}"), "paper: one start".to_owned()],

@@ -70,7 +70,8 @@ pub struct Print {
     pub mm: [f64; 2],
     /// Pixels of an inch.
     pub dpi: f64,
-    /// Line and column in its file.
+    /// The file that says it, for messages, with line and column; empty for that of the scene.
+    pub(crate) file: String,
     pub(crate) at: (usize, usize),
 }
 
@@ -115,7 +116,7 @@ impl SizeFile {
             report.at(way, message, "change `mm` or `dpi`".to_owned());
             return None;
         }
-        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, at: report.position(way) })))
+        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, file: String::new(), at: report.position(way) })))
     }
 }
 

@@ -157,7 +157,11 @@ pub(crate) fn encode_print(
     encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let a_metre = dpi.map(|dpi| (dpi / 0.0254).round() as u32);
-    encoder.set_pixel_dims(a_metre.map(|count| png::PixelDimensions { xppu: count, yppu: count, unit: png::Unit::Meter }));
+    encoder.set_pixel_dims(a_metre.map(|count| png::PixelDimensions {
+        xppu: count,
+        yppu: count,
+        unit: png::Unit::Meter,
+    }));
     for (name, text) in texts {
         let name = format!("localshape:{name}");
         // A tEXt chunk can have only Latin-1 without control characters.

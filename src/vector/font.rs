@@ -40,8 +40,8 @@ impl<'a> Subset<'a> {
         let data = fonts.face(face).bytes();
         let whole = ttf_parser::Face::parse(data, 0).map_err(|error| VectorError::Font(error.to_string()))?;
         let glyphs = GlyphRemapper::new_from_glyphs_sorted(&used.keys().copied().collect::<Vec<_>>());
-        let bytes =
-            subsetter::subset(data, 0, &glyphs).map_err(|error| VectorError::Font(format!("{error:?}").to_lowercase()))?;
+        let bytes = subsetter::subset(data, 0, &glyphs)
+            .map_err(|error| VectorError::Font(format!("{error:?}").to_lowercase()))?;
         let all = used.iter().flat_map(|(&glyph, characters)| characters.iter().map(move |&one| (one, glyph)));
         // The first glyph of a font is a box for characters that it does not have.
         let known = all.filter(|(_, glyph)| *glyph != 0);

@@ -147,8 +147,14 @@ fn a_file_name_chooses_the_format() {
 fn figures_for_print_have_their_size_and_no_small_type() {
     let place = place();
     let forces = |size: &str| format!("{size}\n[forces]\nscenes = [\"small.toml\"]\n");
-    let small = SMALL.replace("lattice = { cells = [2, 1, 1], side = 0.1 }", "nodes = [[0, 0], [1, 0], [0, 1]]\nelements = [[0, 1, 2]]");
-    place.write("small.toml", &small.replace("velocity = [0, -2, 0]", "").replace("gravity = [0, -9.8, 0]", "gravity = [0, -9.8]"));
+    let small = SMALL.replace(
+        "lattice = { cells = [2, 1, 1], side = 0.1 }",
+        "nodes = [[0, 0], [1, 0], [0, 1]]\nelements = [[0, 1, 2]]",
+    );
+    place.write(
+        "small.toml",
+        &small.replace("velocity = [0, -2, 0]", "").replace("gravity = [0, -9.8, 0]", "gravity = [0, -9.8]"),
+    );
     place.write("print.toml", &forces("size = { mm = [180, 101] }"));
     let ran = place.run("figure print.toml -o print.svg").good();
     assert_eq!(ran.out, "print.svg  2126×1193\n");

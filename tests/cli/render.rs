@@ -69,7 +69,9 @@ fn one_frame_can_be_a_file_of_vectors() {
     place.run("render small.toml --frames 3 -o folder").good();
     let [file, of_folder] = ["frame.png", "folder/frame_00003.png"].map(|name| pixels(&place.path(name)));
     assert_eq!(file, of_folder, "the frame alone is the frame of the sequence");
-    place.run("render small.toml -o all.pdf").bad(2, &["all.pdf is a file for one frame, but 7 are asked for", "--frames"]);
+    place
+        .run("render small.toml -o all.pdf")
+        .bad(2, &["all.pdf is a file for one frame, but 7 are asked for", "--frames"]);
     place.run("render small.toml small.toml -o two.svg").bad(2, &["two.svg is a file for one frame"]);
     place.run("render small.toml --frames 3 --states -o one.svg").bad(2, &["one.svg gets one frame and nothing else"]);
     place.write("mine.pdf", "mine");
@@ -92,7 +94,9 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     assert_eq!(([info.width, info.height], info.pixel_dims.map(|dims| dims.xppu)), ([354, 236], Some(3937)));
     place.write("tiny.toml", &sized("{ mm = [60, 40] }"));
     for command in ["render", "check"] {
-        place.run(&format!("{command} tiny.toml")).bad(2, &["tiny.toml:24:8: at 60 × 40 mm the smallest type would be"]);
+        place
+            .run(&format!("{command} tiny.toml"))
+            .bad(2, &["tiny.toml:24:8: at 60 × 40 mm the smallest type would be"]);
     }
     assert!(!place.path("output/tiny").exists());
 }

@@ -28,7 +28,8 @@ fn svg(picture: &Picture) -> String {
 
 /// The contents of all streams of a PDF file, unpacked.
 fn streams(file: &[u8]) -> Vec<Vec<u8>> {
-    let find = |from: usize, what: &[u8]| file[from..].windows(what.len()).position(|part| part == what).map(|at| from + at);
+    let find =
+        |from: usize, what: &[u8]| file[from..].windows(what.len()).position(|part| part == what).map(|at| from + at);
     let (mut at, mut found) = (0, Vec::new());
     while let Some(begin) = find(at, b"\nstream\n") {
         let mut bytes = Vec::new();
@@ -44,7 +45,12 @@ fn texts(svg: &str) -> Vec<String> {
     let inside = |element: &str| {
         let text = &element[element.find('>').expect("its end") + 1..element.find("</text>").expect("its end")];
         let parts = text.split('<').map(|part| part.rsplit('>').next().unwrap_or_default());
-        parts.collect::<String>().replace("&quot;", "\"").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+        parts
+            .collect::<String>()
+            .replace("&quot;", "\"")
+            .replace("&lt;", "<")
+            .replace("&gt;", ">")
+            .replace("&amp;", "&")
     };
     svg.split("<text ").skip(1).map(inside).collect()
 }
@@ -70,7 +76,8 @@ fn text_stays_text() {
 fn fonts_are_embedded_with_the_glyphs_in_use() {
     let picture = figure("fig2", Theme::Light);
     let svg = svg(&picture);
-    let fonts: Vec<_> = svg.split("data:font/otf;base64,").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
+    let fonts: Vec<_> =
+        svg.split("data:font/otf;base64,").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
     assert_eq!(fonts.len(), 2);
     for (face, font) in (0_u8..).zip(fonts) {
         let bytes = STANDARD.decode(font).expect("base64");

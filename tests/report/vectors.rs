@@ -52,14 +52,15 @@ fn a_browser_shows_the_same_as_the_png_file() {
     browser.until("the picture", "document.images[0].complete && document.images[0].naturalWidth > 0");
 
     // Where nothing changes nearby, colours are equal: bodies, ghosts, arrows, ground.
-    let places: [[u32; 2]; 60 * 27] = std::array::from_fn(|at| [10 + 21 * (at as u32 % 60), 10 + 21 * (at as u32 / 60)]);
+    let places: [[u32; 2]; 60 * 27] =
+        std::array::from_fn(|at| [10 + 21 * (at as u32 % 60), 10 + 21 * (at as u32 / 60)]);
     let seen = browser.colours(places.map(|[x, y]| [f64::from(x), f64::from(y)]));
     let is_plain = |&[x, y]: &[u32; 2]| (0..49).all(|step| at(x - 3 + step % 7, y - 3 + step / 7) == at(x, y));
     let plain: Vec<_> = places.iter().zip(seen).filter(|(place, _)| is_plain(place)).collect();
     assert!(plain.len() > 1000);
-    for (&[x, y], seen) in &plain {
-        let near = at(*x, *y).iter().zip(seen).all(|(one, other)| one.abs_diff(*other) <= NEAR);
-        assert!(near, "at {x}, {y}: drawn {:?}, seen {seen:?}", at(*x, *y));
+    for (&[x, y], seen) in plain {
+        let near = at(x, y).iter().zip(seen).all(|(one, other)| one.abs_diff(other) <= NEAR);
+        assert!(near, "at {x}, {y}: drawn {:?}, seen {seen:?}", at(x, y));
     }
 
     // The name of the first model, in the embedded font: as much ink at the same place, column by column.

@@ -329,7 +329,7 @@ fn mistakes_of_maps_and_factors() {
     view("text_scale = '2'", &[(20, 14, "is the string \"2\"; expected a number")]);
     view("text_scale = { pt = 4 }", &[(20, 21, "`view.text_scale.pt` is 4; expected a number from 5 to 72")]);
     view("text_scale = { pt = 7 }", &[(20, 14, "type of 7 pt is asked for in a picture of a size in pixels")]);
-    view("size = { mm = [180, 101, 3] }", &[(20, 15, "`view.size.mm` has 3 entries; expected 2")]);
+    view("size = { mm = [180] }", &[(20, 15, "`view.size.mm` has 1 entry; expected 2")]);
     view("size = { mm = [4, 101] }", &[(20, 16, "`view.size.mm[0]` is 4; expected a number from 5 to 2000")]);
     view("size = { mm = [180, 101], dpi = 30 }", &[(20, 33, "expected a number from 72 to 1200")]);
     view("size = { mm = [2000, 10], dpi = 300 }", &[(20, 8, "23622 × 118 pixels at 300 dpi; expected 16 to 16384")]);

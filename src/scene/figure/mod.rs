@@ -31,8 +31,6 @@ pub struct Figure {
     pub size: [u32; 2],
     /// The size in print, if it was given.
     pub print: Option<Print>,
-    /// The path of its file.
-    pub file: String,
     /// Colours, type and lines of the whole figure.
     pub look: Look,
     /// What it shows.
@@ -160,8 +158,11 @@ impl Figure {
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
         load::checked(text, name, &SCHEMA, load::SCENE, |checked, report| {
-            let figure = resolve::resolve(checked, &stem, folder, scene, report)?;
-            Ok(figure.map(|figure| Self { file: name.to_owned(), ..figure }))
+            let mut figure = resolve::resolve(checked, &stem, folder, scene, report)?;
+            if let Some(print) = figure.as_mut().and_then(|figure| figure.print.as_mut()) {
+                print.file = name.to_owned();
+            }
+            Ok(figure)
         })
     }
 }

@@ -76,7 +76,6 @@ pub(super) fn resolve(
         caption: file.caption.unwrap_or_default(),
         size,
         print,
-        file: String::new(),
         look,
         content,
     }))
