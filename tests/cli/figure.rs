@@ -129,7 +129,7 @@ fn a_file_name_chooses_the_format() {
     let place = place();
     let ran = place.run("figure fig2 -o paper/fig2.svg").good();
     assert_eq!(ran.out, "paper/fig2.svg  2560×1152\n");
-    assert!(place.read("paper/fig2.svg").contains(">0.495</text>"));
+    assert!(place.read("paper/fig2.svg").contains(">back to the rest shape</text>"));
     let first = place.read("paper/fig2.svg");
     place.run("figure fig2 -o paper/fig2.svg --threads 1 -q").good();
     assert_eq!(place.read("paper/fig2.svg"), first, "the same bytes again");
