@@ -8,6 +8,7 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
 use crate::sim::snapshot::Frame;
+use crate::vector;
 use image::RgbImage;
 
 /// Draws frames of one scene.
@@ -31,17 +32,20 @@ impl Composed {
     }
 }
 
+impl Composed {
+    /// The picture, or that on white.
+    pub(crate) fn first(&self) -> &Picture {
+        &self.pictures[0]
+    }
+}
+
 impl<'a> Artist<'a> {
     /// For frames of a scene, with so many samples per pixel.
     ///
     /// # Errors
     /// If the device fails.
     pub(crate) fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
-        let composers = match scene.view.look.transparent {
-            false => vec![Composer::new(scene)],
-            true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
-        };
-        Ok(Self { composers, renderer: Renderer::new(gpu, scene.view.size, samples)? })
+        Ok(Self { composers: composers(scene), renderer: Renderer::new(gpu, scene.view.size, samples)? })
     }
 
     /// Sets the time series of the scene, which strips show; see [`Composer::set_history`].
@@ -59,10 +63,15 @@ impl<'a> Artist<'a> {
     /// # Errors
     /// If the device fails.
     pub(crate) fn draw(&mut self, composed: &Composed) -> Result<Vec<u8>, RenderError> {
-        match &composed.pictures[..] {
-            [on_white, on_black] => Ok(self.renderer.draw_transparent(on_white, on_black)?.into_raw()),
-            pictures => Ok(self.renderer.draw(&pictures[0])?.into_raw()),
-        }
+        draw_with(&mut self.renderer, &composed.pictures)
+    }
+}
+
+/// One for the scene's background, or two for white and black if it has none.
+fn composers(scene: &Scene) -> Vec<Composer<'_>> {
+    match scene.view.look.transparent {
+        false => vec![Composer::new(scene)],
+        true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
     }
 }
 
@@ -75,6 +84,50 @@ pub(crate) enum FigureError {
     /// The device failed.
     #[error(transparent)]
     Render(#[from] RenderError),
+}
+
+/// The pictures of a frame: one, or two on white and on black if the scene has no background.
+pub(crate) fn compose_frame(scene: &Scene, frame: &Frame, history: Option<&History>) -> Vec<Picture> {
+    let one = |mut composer: Composer<'_>| {
+        history.into_iter().for_each(|history| composer.set_history(history));
+        composer.compose(frame)
+    };
+    composers(scene).into_iter().map(one).collect()
+}
+
+/// What a page of vectors needs of the renderer: the pixels of the lit bodies in one picture, or in two on white and on
+/// black; `None` if there are none. Only then a device is needed.
+///
+/// # Errors
+/// If the device fails.
+///
+/// # Panics
+/// If there are lit bodies and no device.
+pub(crate) fn draw_bodies(
+    gpu: Option<&Gpu>,
+    pictures: &[Picture],
+    samples: u32,
+) -> Result<Option<Vec<u8>>, RenderError> {
+    let lit: Vec<_> = pictures.iter().filter_map(vector::bodies).collect();
+    let device = |_: &Picture| gpu.expect("a device for lit bodies");
+    lit.first().map(device).map(|gpu| draw_pictures(gpu, &lit, samples)).transpose()
+}
+
+/// The pixels of one picture, in rows from the top left: red, green and blue, and alpha if there are two, on white and on
+/// black.
+///
+/// # Errors
+/// If the device fails.
+pub(crate) fn draw_pictures(gpu: &Gpu, pictures: &[Picture], samples: u32) -> Result<Vec<u8>, RenderError> {
+    let mut renderer = Renderer::new(gpu, pictures[0].size, samples)?;
+    draw_with(&mut renderer, pictures)
+}
+
+fn draw_with(renderer: &mut Renderer, pictures: &[Picture]) -> Result<Vec<u8>, RenderError> {
+    match pictures {
+        [on_white, on_black] => Ok(renderer.draw_transparent(on_white, on_black)?.into_raw()),
+        pictures => Ok(renderer.draw(&pictures[0])?.into_raw()),
+    }
 }
 
 /// Draws a figure from its simulated states, with so many samples per pixel.

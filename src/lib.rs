@@ -109,6 +109,8 @@ pub mod scene;
 mod shell;
 pub mod sim;
 mod table;
+#[cfg(feature = "render")]
+mod vector;
 
 /// What the program, the benchmarks and the tests that run the program need from outside. It may change at any time.
 #[doc(hidden)]

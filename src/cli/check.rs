@@ -8,6 +8,7 @@ use crate::reading::Mistake;
 #[cfg(feature = "render")]
 use crate::runner::Runner;
 use crate::scene::Scene;
+use crate::scene::Scene;
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -15,6 +16,16 @@ const EXAMPLES: &str = "\
 Examples:
   localshape check scenes/fig4b.toml
   localshape check scenes/*.toml --quiet && echo all right";
+
+/// Why a scene for print cannot be drawn.
+#[cfg(feature = "render")]
+fn too_small(scene: &Scene) -> Option<String> {
+    super::still::too_small(scene, &(0..scene.runs.len()).collect::<Vec<_>>())
+}
+#[cfg(not(feature = "render"))]
+fn too_small(_: &Scene) -> Option<String> {
+    None
+}
 
 /// Check scenes and print what they contain, or every mistake in them
 #[derive(Args, Debug)]
@@ -33,7 +44,18 @@ impl Check {
         let mut documents = Vec::new();
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
-            match self.scenes.load(path) {
+            let loaded = self.scenes.load(path);
+            let refused = loaded.as_ref().ok().and_then(too_small);
+            match loaded {
+                Ok(_) if refused.is_some() => {
+                    failed = Some(worse(failed, Status::Usage));
+                    let message = refused.unwrap_or_default();
+                    if self.printing.json {
+                        documents.push(json!({ "file": file, "ok": false, "error": message, "mistakes": [] }));
+                    } else {
+                        complain(&message);
+                    }
+                }
                 Ok(_) if self.printing.quiet && !self.printing.json => {}
                 Ok(mut scene) => {
                     scene.warnings.extend(cut(&scene));

@@ -5,11 +5,12 @@ use super::failure::{Failure, Status, warn_of_figure, with_causes};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
 use super::record;
-use crate::artist::{FigureError, draw_figure};
+use super::still::{Format, NO_ADAPTER, Still, replaceable};
 use crate::gpu::Gpu;
 use crate::look::Theme;
 use crate::moments::{Forces, Moments, Taking};
-use crate::output::{AtomicFile, Compression, FolderLock, OutputError, Tags, encode, is_folder, read_tags};
+use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
+use crate::picture::compose_figure;
 use crate::reading::words::nearest;
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene};
@@ -25,6 +26,7 @@ Examples:
   localshape figure all                          every figure of the paper into output/figures/
   localshape figure fig1 fig4 -o paper --theme dark
   localshape figure my-sheet.toml                a figure of your own
+  localshape figure fig4b -o fig4b.pdf           vectors for print, with text that can be searched
 
 A figure file arranges runs and moments of scenes on a sheet. The files of the paper's figures are in figures/; copy one \
 to make your own.";
@@ -43,8 +45,9 @@ pub(super) struct FigureCommand {
     #[arg(value_name = "FIGURE", value_hint = ValueHint::FilePath)]
     figures: Vec<String>,
 
-    /// Output folder, with a file NAME.png for each figure
-    #[arg(short, long, value_name = "DIR", default_value = FOLDER, value_hint = ValueHint::DirPath)]
+    /// Output folder, with a file NAME.png for each figure; or a file for one figure, whose extension chooses the format:
+    /// png, or svg and pdf for print
+    #[arg(short, long, value_name = "DIR|FILE", default_value = FOLDER, value_hint = ValueHint::AnyPath)]
     out: PathBuf,
 
     /// Also replace pictures of the same name that this program did not make
@@ -96,15 +99,19 @@ impl FigureCommand {
             self.fit(figure)?;
         }
         let paths = self.paths(&figures)?;
-        let gpu = self.device.open(figures.iter().map(|figure| figure.size))?;
+        let format = self.format();
+        let needs_device = format.needs_device(figures.iter().flat_map(Figure::scenes));
+        let sizes = figures.iter().map(|figure| figure.size);
+        let gpu = needs_device.then(|| self.device.open(sizes)).transpose()?;
         interrupt::listen();
         let pool = record::pool(self.threads.count())?;
-        std::fs::create_dir_all(&self.out).map_err(OutputError::writing(&self.out))?;
-        let _lock = FolderLock::beside_others(&self.out);
+        let folder = self.folder();
+        std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
+        let _lock = FolderLock::beside_others(folder);
         let mut made = Vec::new();
         let mut result = Ok(Status::Done);
         for (figure, path) in figures.iter().zip(&paths) {
-            match pool.install(|| self.make(figure, path, &gpu)) {
+            match pool.install(|| self.make(figure, path, gpu.as_ref())) {
                 Ok(Some(numbers)) => made.push((figure, path, numbers)),
                 Ok(None) => result = Ok(Status::Interrupted),
                 Err(failure) => result = Err(failure),
@@ -120,8 +127,13 @@ impl FigureCommand {
 
     /// Sets the requested size and colours of a figure.
     fn fit(&self, figure: &mut Figure) -> Result<(), Failure> {
-        figure.size = self.size.unwrap_or(figure.size);
+        if let Some(size) = self.size {
+            (figure.size, figure.print) = (size, None);
+        }
         if let Some(times) = self.scale {
+            if let Some(print) = &mut figure.print {
+                print.mm = print.mm.map(|side| side * times);
+            }
             figure.size = figure.size.map(|side| (f64::from(side) * times).round() as u32);
         }
         let [width, height] = figure.size;
@@ -141,24 +153,36 @@ impl FigureCommand {
 
     /// Makes one figure and returns the numbers behind it; `None` if it was interrupted. That its file can be written is
     /// checked before the work.
-    fn make(&self, figure: &Figure, path: &Path, gpu: &Gpu) -> Result<Option<Value>, Failure> {
+    fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<Value>, Failure> {
         let mut file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
-        let image = draw_figure(gpu, figure, &moments, self.device.samples).map_err(|error| match error {
-            FigureError::Render(error) => error.into(),
-            FigureError::NoRoom(error) => {
-                let [width, height] = figure.size;
-                Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
-            }
+        let picture = compose_figure(figure, &moments).map_err(|error| {
+            let [width, height] = figure.size;
+            Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
         })?;
+        let adapter = gpu.map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
+        let tags = Tags::of_figure(figure, &moments, &adapter).texts();
+        let title = &figure.title;
+        let print = figure.print.as_ref();
+        let source = print.map_or("", |print| &print.file);
+        let still = Still { pictures: &[picture], print, source, title, tags: &tags };
+        let bytes = still.file(self.format(), gpu, self.device.samples)?;
         if interrupt::requested() {
             return Ok(None);
         }
-        let tags = Tags::of_figure(figure, &moments, &gpu.description().to_string());
-        // A single picture may take its time.
-        file.append(&encode(figure.size, image.as_raw(), &tags.texts(), Compression::High))?;
+        file.append(&bytes)?;
         file.commit()?;
         Ok(Some(numbers(figure, &moments)))
+    }
+
+    /// The format of the files.
+    fn format(&self) -> Format {
+        Format::of(&self.out).unwrap_or(Format::Png)
+    }
+
+    /// The folder of the files.
+    fn folder(&self) -> &Path {
+        if Format::of(&self.out).is_some() { folder_of(&self.out) } else { &self.out }
     }
 
     /// All requested figures, each once.
@@ -202,6 +226,18 @@ impl FigureCommand {
 
     /// Where each figure goes; nothing of others is replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
+        if Format::of(&self.out).is_some() {
+            return match figures {
+                [_] if self.overwrite => Ok(vec![self.out.clone()]),
+                [_] => replaceable(&self.out, self.format()).map(|()| vec![self.out.clone()]),
+                _ => {
+                    let (file, count) = (self.out.display(), figures.len());
+                    let message =
+                        format!("{file} is a file for one figure, but {count} are asked for; draw them one at a time");
+                    Err(Failure::usage(message))
+                }
+            };
+        }
         is_folder(&self.out)?;
         let path = |figure: &Figure| {
             let name = format!("{}.png", figure.name);

@@ -10,7 +10,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// Beginning of each comment, by which files of this program are recognised.
-const MARK: &str = "made by localshape ";
+pub(super) const MARK: &str = "made by localshape ";
 
 /// The result, on one line.
 pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
@@ -54,10 +54,12 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
 /// the comment.
 fn is_ours(beginning: &[u8]) -> bool {
     /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
-    const KINDS: [(usize, &[u8], &[u8]); 6] = [
+    const KINDS: [(usize, &[u8], &[u8]); 8] = [
         (0, b"GIF89a", b"\x21\xfe"),
         (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
         (0, b"\x89PNG\r\n\x1a\n", b"localshape:comment\0"),
+        (0, b"<svg ", b"<metadata>\n"),
+        (0, b"%PDF-", b"/Producer ("),
         (0, b"YUV4MPEG2 ", b" X"),
         (4, b"ftyp", b"data\0\0\0\x01"),
         (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),

@@ -28,7 +28,11 @@ mod report;
 mod scenes;
 mod schema;
 mod simulate;
+#[cfg(feature = "render")]
+mod still;
 mod table;
+#[cfg(feature = "render")]
+mod table_figure;
 
 #[cfg(feature = "render")]
 pub use driver::settle;

@@ -28,8 +28,8 @@ pub(super) struct SceneOptions {
 #[derive(Args, Clone, Debug)]
 pub(super) struct RunOptions {
     /// Output folder [default: output/NAME, with NAME from the scene file]; with several scenes, the folder that
-    /// holds one folder NAME for each
-    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    /// holds one folder NAME for each. With `render`, a name in .png, .svg or .pdf is a file for a single frame
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(super) out: Option<PathBuf>,
 
     /// Replace files in the output folder that belong to another scene, size or choice of runs, or, in a folder given with

@@ -113,6 +113,45 @@ fn record(
     result
 }
 
+/// One frame of some runs of a scene, and the time series of the scene if it shows one; `None` if the user asked to stop.
+/// States wait in `folder`.
+#[cfg(feature = "render")]
+pub(super) fn one_frame(
+    scene: &Scene,
+    runs: &[usize],
+    frame: u64,
+    pool: &ThreadPool,
+    options: &RunOptions,
+    folder: &Path,
+) -> Result<Option<(Frame, Option<History>)>, Failure> {
+    let course = scene.view.strip;
+    let mut frames = pool.install(|| {
+        let runner = Runner::new(scene, runs);
+        let runner = match course {
+            Some(diagnostic) => runner.with_course(&[diagnostic]),
+            None => runner,
+        };
+        Frames::new(runner, &[frame], course.is_some(), folder)
+    });
+    let bar = options.telling.progress(&scene.title, frames.steps()[1]);
+    let (slice, mut history) = (slice(&scene.body), None);
+    while !interrupt::requested() {
+        let next = pool.install(|| frames.next(slice)).map_err(OutputError::writing(folder))?;
+        bar.set_position(frames.steps()[0]);
+        match next {
+            Next::Working => {}
+            Next::Course(found) => history = Some(found),
+            Next::Frame(frame) => {
+                bar.finish_and_clear();
+                return Ok(Some((frame, history)));
+            }
+            Next::Done => break,
+        }
+    }
+    bar.finish_and_clear();
+    Ok(None)
+}
+
 /// Adds the keys of one document to another.
 pub(super) fn merge(document: &mut Value, more: Value) {
     if let (Value::Object(document), Value::Object(more)) = (document, more) {

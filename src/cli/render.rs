@@ -7,12 +7,18 @@ use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
 use super::scenes::Job;
+use super::still::{
+    Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
+};
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
-use crate::artist::Artist;
+use crate::artist::{Artist, compose_frame};
 use crate::gpu::Gpu;
 use crate::history::History;
 use crate::look::Ghost;
-use crate::output::{Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of, frame_files};
+use crate::output::{
+    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of,
+    frame_files,
+};
 use crate::scene::Scene;
 use crate::shell;
 use crate::sim::diagnostics::Diagnostic;
@@ -30,6 +36,7 @@ Examples:
   localshape render scenes/*.toml -o pictures --size 640x360 --samples 1
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
+  localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
 The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
 each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
@@ -78,7 +85,15 @@ impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         if let Some(size) = self.size {
-            scenes.iter_mut().for_each(|scene| scene.view.size = size);
+            scenes.iter_mut().for_each(|scene| (scene.view.size, scene.view.print) = (size, None));
+        }
+        for scene in &scenes {
+            if let Some(message) = too_small(scene, &self.options.runs(scene)?) {
+                return Err(Failure::usage(message));
+            }
+        }
+        if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, FileFormat::of(out)?))) {
+            return self.still(path, format, &scenes);
         }
         let films = self.films(scenes.len())?;
         let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
@@ -107,6 +122,53 @@ impl Render {
             made.iter().try_for_each(|line| console::print(line))?;
         }
         result
+    }
+
+    /// Draws one frame into a file of its own.
+    fn still(&self, path: &Path, format: FileFormat, scenes: &[Scene]) -> Result<Status, Failure> {
+        let name = path.display();
+        let [scene] = scenes else {
+            let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
+            return Err(Failure::usage(message));
+        };
+        if self.options.states || !self.animate.is_empty() || self.options.telling.json {
+            let message =
+                format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
+            return Err(Failure::usage(message));
+        }
+        let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
+        let &[frame] = &frames[..] else {
+            let count = frames.len();
+            let message =
+                format!("{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30");
+            return Err(Failure::usage(message));
+        };
+        if !self.options.overwrite {
+            replaceable_still(path, format)?;
+        }
+        let gpu = format.needs_device([scene]).then(|| self.device.open([scene.view.size])).transpose()?;
+        let folder = folder_of(path);
+        std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
+        let _lock = FolderLock::beside_others(folder);
+        let mut file = AtomicFile::create(path)?;
+        interrupt::listen();
+        let pool = record::pool(self.options.threads.count())?;
+        let Some((frame, history)) = record::one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
+            return Ok(Status::Interrupted);
+        };
+        let pictures = compose_frame(scene, &frame, history.as_ref());
+        let adapter = gpu.as_ref().map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
+        let tags = Tags::of_frame(scene, &frame, &adapter).texts();
+        let source = source_of(scene);
+        let (print, title) = (scene.view.print.as_ref(), &scene.title);
+        let still = Still { pictures: &pictures, print, source: &source, title, tags: &tags };
+        file.append(&still.file(format, gpu.as_ref(), self.device.samples)?)?;
+        file.commit()?;
+        if self.options.telling.is_in_words() {
+            let [width, height] = scene.view.size;
+            console::print(&format!("{name}  {width}×{height}\n"))?;
+        }
+        Ok(Status::Done)
     }
 
     /// The requested animations, if they can be made.
@@ -337,11 +399,13 @@ impl Pictures for Drawing<'_> {
         self.compose += clock.spent();
         let cut = frame.runs.iter().zip(composed.cut()).filter(|(_, is_cut)| *is_cut);
         self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
+        check_type(self.scene.view.print.as_ref(), composed.first(), &source_of(self.scene))?;
         let clock = Clock::thread();
         let pixels = self.artist.draw(&composed)?;
         self.draw += clock.spent();
         let tags = Tags::of_frame(self.scene, frame, &self.adapter);
-        Ok(self.writer.write(PixelFrame { size: self.scene.view.size, pixels, frame: frame.index, tags })?)
+        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame: frame.index, tags })?)
     }
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {

@@ -105,7 +105,7 @@ impl RunOptions {
         }
     }
 
-    fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
+    pub(super) fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
         let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
         if let Some(unknown) = self.only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
             let (message, help) = scene.no_run(unknown);
@@ -116,7 +116,7 @@ impl RunOptions {
         Ok((0..names.len()).filter(|&run| wanted(names[run])).collect())
     }
 
-    fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
+    pub(super) fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
         let last = scene.last_frame();
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))

@@ -16,8 +16,8 @@ Examples:
   localshape table table1 --orientations 200   more starts, narrower medians
   localshape table ratio --threads 4 -o four   the ratio of computation times on four threads
 
-Each folder then has the table as Markdown, which is also printed, and as CSV with all digits. Table 1 has the same bytes \
-on every machine and for any number of threads. The ratio is measured on this machine, which should be idle otherwise.";
+Each folder then has the table as Markdown, which is also printed, and as CSV with all digits, and that of Table 1 a figure \
+of it as SVG and PDF. Table 1 has the same bytes on every machine and for any number of threads. The ratio is measured on this machine, which should be idle otherwise.";
 
 /// Measure the tables of the paper, and print them beside its numbers
 #[derive(Args, Debug)]
@@ -47,6 +47,22 @@ pub(super) struct Table {
     printing: PrintOptions,
 }
 
+/// The files of Table 1 as a figure.
+#[cfg(feature = "render")]
+const DRAWN: [&str; 2] = ["table1.svg", "table1.pdf"];
+#[cfg(not(feature = "render"))]
+const DRAWN: [&str; 0] = [];
+
+/// Table 1 as a figure: their contents.
+#[cfg(feature = "render")]
+fn drawn(table: &table1::Table1) -> Vec<Vec<u8>> {
+    super::table_figure::files(table)
+}
+#[cfg(not(feature = "render"))]
+fn drawn(_: &table1::Table1) -> Vec<Vec<u8>> {
+    Vec::new()
+}
+
 /// The tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Name {
@@ -58,11 +74,21 @@ enum Name {
     All,
 }
 
-/// A table that was measured, as texts.
+/// A table that was measured.
 struct Made {
-    /// For each of its files.
-    texts: Vec<String>,
+    /// It as Markdown.
+    text: String,
+    /// The contents of each of its files.
+    files: Vec<Vec<u8>>,
     json: Value,
+}
+
+impl Made {
+    fn new(texts: impl IntoIterator<Item = String>, more: Vec<Vec<u8>>, json: Value) -> Self {
+        let texts: Vec<_> = texts.into_iter().collect();
+        let text = texts[0].clone();
+        Self { text, files: texts.into_iter().map(String::into_bytes).chain(more).collect(), json }
+    }
 }
 
 impl Table {
@@ -77,12 +103,12 @@ impl Table {
             None => Path::new("output").join(name.word()),
         };
         for &name in &names {
-            SheetFiles::inspect(&folder(name), name.files(), &self.mark(name), self.overwrite)?;
+            SheetFiles::inspect(&folder(name), &name.files(), &self.mark(name), self.overwrite)?;
         }
         let (mut documents, mut status) = (Vec::new(), Status::Done);
         for (number, &name) in names.iter().enumerate() {
             let folder = folder(name);
-            let files = SheetFiles::begin(&folder, name.files(), &self.mark(name), self.overwrite)?;
+            let files = SheetFiles::begin(&folder, &name.files(), &self.mark(name), self.overwrite)?;
             let Some(made) = self.measure(name)? else {
                 status = Status::Interrupted;
                 if self.printing.prints_text() {
@@ -90,7 +116,7 @@ impl Table {
                 }
                 break;
             };
-            files.finish(&made.texts)?;
+            files.finish(&made.files)?;
             if self.printing.json {
                 let mut document = json!({ "table": name.word(), "folder": folder.to_string_lossy() });
                 document["files"] = json!(name.files());
@@ -98,7 +124,7 @@ impl Table {
                 documents.push(document);
             } else if !self.printing.quiet {
                 let blank = if number > 0 { "\n" } else { "" };
-                let (table, names) = (&made.texts[0], name.files().join(", "));
+                let (table, names) = (&made.text, name.files().join(", "));
                 print(&format!("{blank}{table}\nIn {}: {names}\n", folder.display()))?;
             }
         }
@@ -133,13 +159,12 @@ impl Table {
             bar.inc(more);
             !interrupt::requested()
         };
-        let made =
-            pool.install(|| match name {
-                Name::Ratio => ratio::measure(&timing, watch)
-                    .map(|ratios| Made { texts: ratios.files().into(), json: ratios.json() }),
-                _ => table1::measure(&protocol, watch)
-                    .map(|table| Made { texts: table.files().into(), json: table.json() }),
-            });
+        let made = pool.install(|| match name {
+            Name::Ratio => {
+                ratio::measure(&timing, watch).map(|ratios| Made::new(ratios.files(), Vec::new(), ratios.json()))
+            }
+            _ => table1::measure(&protocol, watch).map(|table| Made::new(table.files(), drawn(&table), table.json())),
+        });
         bar.finish_and_clear();
         Ok(made)
     }
@@ -154,11 +179,11 @@ impl Name {
         }
     }
 
-    fn files(self) -> &'static [&'static str] {
+    fn files(self) -> Vec<&'static str> {
         match self {
-            Self::Table1 => &table1::FILES,
-            Self::Ratio => &ratio::FILES,
-            Self::All => &[],
+            Self::Table1 => [&table1::FILES[..], &DRAWN].concat(),
+            Self::Ratio => ratio::FILES.to_vec(),
+            Self::All => Vec::new(),
         }
     }
 }

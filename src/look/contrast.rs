@@ -12,8 +12,8 @@ use std::fmt;
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
-/// The look, or `None` if there is a mistake in it.
-pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>) -> Option<Style> {
+/// The look with type of a scale, or `None` if there is a mistake in it.
+pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report: &mut Report<'_>) -> Option<Style> {
     let background = match typed.background {
         Some(BackgroundFile::Colour(colour)) => Some(colour.0),
         Some(BackgroundFile::Transparent) | None => None,
@@ -28,7 +28,7 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, report: &mut Report<'_>
     check_alarm(&typed.colours, &palette, report);
     check_field(typed, theme, &palette, report);
     (report.total() == known).then(|| {
-        let (text_scale, line_scale, margin) = (typed.text_scale, typed.line_scale, typed.margin);
+        let (line_scale, margin) = (typed.line_scale, typed.margin);
         Style { theme, palette, transparent, font, text_scale, line_scale, margin }
     })
 }

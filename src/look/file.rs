@@ -1,6 +1,7 @@
 //! The view as typed.
 
 use super::palette::Theme;
+use super::print::{SizeFile, TextScaleFile};
 use super::typed::{BackgroundFile, ColoursFile, FontFile};
 use super::view::{ColourMap, FloorStyle, Light};
 use crate::reading::coordinates::Coordinates;
@@ -14,9 +15,8 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 #[schemars(extend("not" = { "required": ["columns", "panels"] }))]
 pub(crate) struct ViewFile {
-    /// Width and height of the picture (px).
-    #[schemars(inner(range(min = 16, max = 16384)))]
-    pub(crate) size: [u32; 2],
+    /// Width and height of the picture (px), or for print, such as `{ mm = [180, 101] }`.
+    pub(crate) size: SizeFile,
     /// The colours.
     pub(crate) theme: Theme,
     /// The background: a colour, or `"transparent"`. If the theme's text cannot be read on the colour, the other theme is
@@ -28,9 +28,9 @@ pub(crate) struct ViewFile {
     pub(crate) colours: ColoursFile,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek letters.
     pub(crate) font: Option<FontFile>,
-    /// Scale of all text. Text for which there is no room, or that would be too small to read, is left out.
-    #[schemars(range(min = 0.5, max = 3.0))]
-    pub(crate) text_scale: f64,
+    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Text for which there is no room,
+    /// or that would be too small to read, is left out; pictures for print with type below 5 pt are refused.
+    pub(crate) text_scale: TextScaleFile,
     /// Scale of the width of all lines and of the size of nodes, of signs on elements in the plane and of marks on moved and
     /// held nodes. Arrows of displacements become thicker, not longer; text keeps its size.
     #[schemars(range(min = 0.25, max = 4.0))]
@@ -131,12 +131,12 @@ pub(crate) struct ViewFile {
 impl Default for ViewFile {
     fn default() -> Self {
         Self {
-            size: [1280, 720],
+            size: SizeFile::Pixels([1280, 720]),
             theme: Theme::default(),
             background: None,
             colours: ColoursFile::default(),
             font: None,
-            text_scale: 1.0,
+            text_scale: TextScaleFile::Times(1.0),
             line_scale: 1.0,
             margin: 1.0,
             clock: None,

@@ -5,6 +5,7 @@ use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
 use super::points::PointsRead;
+use super::print::unit;
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
@@ -12,6 +13,9 @@ use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
 use crate::sim::inside::is_inside;
 use crate::sim::words::rounded;
+
+/// The shortest side of a picture (px).
+const LEAST_SIDE: u32 = 16;
 
 /// The view, or `None` if there is a mistake in it.
 pub(crate) fn resolve(
@@ -41,6 +45,7 @@ pub(crate) fn resolve(
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
     }
+    let (size, print) = typed.size.resolve(LEAST_SIDE, &[Way::Key("view"), Way::Key("size")], report)?;
     let columns = match (typed.columns, typed.panels) {
         (Some(columns), _) => Some(columns as usize),
         (None, Some(ArrangementFile::Row)) => Some(panels.max(1)),
@@ -63,7 +68,10 @@ pub(crate) fn resolve(
         },
         None => Visible::usual(dimension, body.len()),
     };
-    let look = contrast::resolve(typed, font.unwrap_or_default(), report)?;
+    let panel = [size[0] / columns as u32, size[1] / runs.div_ceil(columns).max(1) as u32];
+    let way = [Way::Key("view"), Way::Key("text_scale")];
+    let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
+    let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
     let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
     let paths = compared::paths(typed, scene, report);
     let points = points.and_then(|points| compared::points(typed, points, scene, report));
@@ -92,7 +100,8 @@ pub(crate) fn resolve(
         None => None,
     };
     Some(View {
-        size: typed.size,
+        size,
+        print,
         look,
         camera: chosen,
         clock: typed

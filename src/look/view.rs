@@ -1,6 +1,7 @@
 //! How a scene is looked at, resolved.
 
 use super::palette::{Palette, Theme};
+use super::print::Print;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -15,6 +16,8 @@ use std::sync::Arc;
 pub struct View {
     /// Width and height of the picture (px).
     pub size: [u32; 2],
+    /// The size in print, if it was given.
+    pub print: Option<Print>,
     /// Colours, type, lines and margins.
     pub look: Style,
     /// From where; the same for all panels.
@@ -85,6 +88,7 @@ impl Default for View {
     fn default() -> Self {
         Self {
             size: [1280, 720],
+            print: None,
             look: Style::of(Theme::default()),
             camera: Camera {
                 azimuth: 0.0,

@@ -1,6 +1,6 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, Tags, encode, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, Tags, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,6 +11,8 @@ use std::thread::JoinHandle;
 pub(crate) struct PixelFrame {
     /// Width and height (px).
     pub size: [u32; 2],
+    /// Pixels of an inch, if it is for print.
+    pub dpi: Option<f64>,
     /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
     pub pixels: Vec<u8>,
     /// The number of the frame.
@@ -109,7 +111,7 @@ fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let bytes = encode(frame.size, &frame.pixels, &frame.tags.texts(), Compression::Fast);
+        let bytes = encode_print(frame.size, &frame.pixels, &frame.tags.texts(), Compression::Fast, frame.dpi);
         let index = frame.frame;
         let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
         let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
@@ -134,7 +136,7 @@ mod tests {
         let [version, adapter] = [String::new(), String::new()];
         let shows = Shown::Frame { frame: index, time: 0.0 };
         let tags = Tags { shows, scenes: Vec::new(), states: Vec::new(), version, adapter };
-        PixelFrame { size: [2, 1], pixels: vec![0; 6], frame: index, tags }
+        PixelFrame { size: [2, 1], dpi: None, pixels: vec![0; 6], frame: index, tags }
     }
 
     #[test]

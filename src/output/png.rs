@@ -131,6 +131,17 @@ const MOST_STATES: usize = 4096;
 /// # Panics
 /// If the length of `pixels` does not match `size`, the width and height (px), or the size is zero.
 pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], compression: Compression) -> Vec<u8> {
+    encode_print(size, pixels, texts, compression, None)
+}
+
+/// The same, with the pixels of an inch in print, if they are known (`pHYs`).
+pub(crate) fn encode_print(
+    size: [u32; 2],
+    pixels: &[u8],
+    texts: &[(&'static str, String)],
+    compression: Compression,
+    dpi: Option<f64>,
+) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
     let colour = match pixels.len() as u64 {
@@ -144,6 +155,12 @@ pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], c
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let a_metre = dpi.map(|dpi| (dpi / 0.0254).round() as u32);
+    encoder.set_pixel_dims(a_metre.map(|count| png::PixelDimensions {
+        xppu: count,
+        yppu: count,
+        unit: png::Unit::Meter,
+    }));
     for (name, text) in texts {
         let name = format!("localshape:{name}");
         // A tEXt chunk can have only Latin-1 without control characters.

@@ -59,14 +59,14 @@ impl SheetFiles {
         Ok(Self { files, _lock: lock })
     }
 
-    /// Writes the files, one text for each, in their order.
+    /// Writes the files, the contents of each, in their order.
     ///
     /// # Errors
     /// If one cannot be written; those before it are kept.
-    pub(crate) fn finish(self, texts: &[String]) -> Result<(), OutputError> {
-        assert_eq!(self.files.len(), texts.len(), "a text for each file");
-        self.files.into_iter().zip(texts).try_for_each(|(mut file, text)| {
-            file.append(text.as_bytes())?;
+    pub(crate) fn finish(self, contents: &[Vec<u8>]) -> Result<(), OutputError> {
+        assert_eq!(self.files.len(), contents.len(), "contents for each file");
+        self.files.into_iter().zip(contents).try_for_each(|(mut file, bytes)| {
+            file.append(bytes)?;
             file.commit()
         })
     }

@@ -12,14 +12,8 @@
 //! caption
 //! ```
 
-use crate::look::{Labels, View};
+use crate::look::{Labels, View, print};
 
-/// Lengths of the layout hold for a picture of this height (px) and grow with it.
-const REFERENCE_HEIGHT: f64 = 720.0;
-/// A panel narrower than this (px, at the reference height) gets smaller type.
-const REFERENCE_WIDTH: f64 = 540.0;
-/// A panel lower than this (px, at the reference height) gets smaller type.
-const REFERENCE_PANEL_HEIGHT: f64 = 460.0;
 /// Type smaller than this cannot be read and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
@@ -251,10 +245,7 @@ impl Scale {
         Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0, margin: MARGIN, lower_margin: MARGIN };
 
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
-        let [width, height] = [panel[2], panel[3]].map(f64::from);
-        let unit =
-            (f64::from(size[1]) / REFERENCE_HEIGHT).min(width / REFERENCE_WIDTH).min(height / REFERENCE_PANEL_HEIGHT);
-        Self { unit, ..Self::REFERENCE }
+        Self { unit: print::unit(size, [panel[2], panel[3]]), ..Self::REFERENCE }
     }
 
     /// That of a picture of a number of pixels for each of the reference picture.

@@ -30,6 +30,7 @@ mod obstacle;
 mod order;
 mod plane;
 mod pointer;
+mod ranges;
 mod series;
 mod shadow;
 mod shell;
@@ -47,6 +48,7 @@ pub(crate) use camera::Framing;
 pub use compose::{Composer, compose};
 pub(crate) use compose::{NoRoom, compose_figure};
 pub(crate) use layout::Rectangle;
+pub(crate) use ranges::{RangeRow, Ranges, SIZE_MM as RANGES_SIZE_MM, power_of_ten};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 

@@ -76,6 +76,8 @@ pub(crate) struct Fonts(Arc<[Face]>);
 #[derive(Debug)]
 pub(crate) struct Face {
     font: FontArc,
+    /// Its file, unless it is built in.
+    own: Option<Arc<[u8]>>,
     /// Identifies a font, also among those of different scenes.
     pub key: u64,
 }
@@ -113,13 +115,14 @@ impl Fonts {
     pub(crate) fn new(files: &FontFiles) -> Self {
         let built_in = |bytes: &'static [u8], key| {
             let font = FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole");
-            Face { font: FontArc::new(font), key }
+            Face { font: FontArc::new(font), own: None, key }
         };
         let own = |file: &Option<Arc<[u8]>>| {
             let bytes = file.as_ref()?;
             let font = FontArc::try_from_vec(bytes.to_vec()).ok()?;
             let digest = Sha256::digest(bytes);
-            Some(Face { font, key: digest.iter().take(8).fold(0, |key, &byte| key << 8 | u64::from(byte)) })
+            let key = digest.iter().take(8).fold(0, |key, &byte| key << 8 | u64::from(byte));
+            Some(Face { font, own: Some(Arc::clone(bytes)), key })
         };
         let own = [&files.regular, &files.semi_bold].map(own);
         let faces = [built_in(REGULAR, 0), built_in(SEMI_BOLD, 1)].into_iter();
@@ -239,6 +242,15 @@ impl Fonts {
 impl Face {
     fn units_per_em(&self) -> f32 {
         self.font.units_per_em().filter(|units| *units > 0.0).unwrap_or(1000.0)
+    }
+
+    /// Its file.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        match &self.own {
+            Some(bytes) => bytes,
+            None if self.key == 0 => REGULAR,
+            None => SEMI_BOLD,
+        }
     }
 
     /// The outline of a glyph for type of a size (px), whose origin lies at a place between two pixels (px, to the right);

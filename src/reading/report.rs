@@ -65,6 +65,11 @@ impl<'t> Report<'t> {
         }
     }
 
+    /// Line and column of the value at `path`, or of the nearest one that exists.
+    pub(crate) fn position(&self, path: &[Way<'_>]) -> (usize, usize) {
+        self.source.position(span_of(self.root, path).start)
+    }
+
     /// A mistake at a span of the text, in the value at `path`.
     pub(crate) fn at_span(&mut self, span: Range<usize>, path: &[Way<'_>], message: String, help: Option<String>) {
         self.total += 1;

@@ -167,7 +167,7 @@ pub(crate) struct Statistics {
 /// The results of the measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Table1 {
-    pub(super) protocol: Protocol,
+    pub(crate) protocol: Protocol,
     pub(super) cases: Vec<Case>,
     pub(super) orientations: Vec<Orientation>,
     /// For each start, for each case.

@@ -66,7 +66,7 @@ fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["sim", "colour", "reading", "look", "scene", "picture", "output", "cli", "table"] {
+    for room in ["sim", "colour", "reading", "look", "scene", "picture", "vector", "output", "cli", "table"] {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
@@ -93,6 +93,8 @@ fn nothing_flows_back() {
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
     assert_eq!(offenders("output", &["crate::cli", "crate::table"]), [""; 0]);
+    // Of `output` it uses the encoder of PNG only.
+    assert_eq!(rooms_named_by("vector"), BTreeSet::from(["colour", "output", "picture"].map(str::to_owned)));
     // It is given pictures; of `picture` it uses fonts only.
     let outside = ["crate::sim", "crate::scene", "crate::gpu", "crate::render", "crate::cli"];
     assert_eq!(offenders("animation", &outside), [""; 0]);

@@ -111,6 +111,65 @@ fn files_of_others_are_kept() {
     place.run("figure mine.toml -o file/below").bad(4, &["file"]);
 }
 
+/// What a program reads first: the pixels of a metre in a PNG file.
+fn pixels_a_metre(path: &std::path::Path) -> Option<u32> {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("a picture"));
+    let reader = png::Decoder::new(file).read_info().expect("a PNG picture");
+    reader.info().pixel_dims.map(|dims| dims.xppu)
+}
+
+/// Vectors of what is flat need no device.
+#[test]
+fn a_file_name_chooses_the_format() {
+    let place = place();
+    let ran = place.run("figure fig2 -o paper/fig2.svg").good();
+    assert_eq!(ran.out, "paper/fig2.svg  2560×1152\n");
+    assert!(place.read("paper/fig2.svg").contains(">back to the rest shape</text>"));
+    let first = place.read("paper/fig2.svg");
+    place.run("figure fig2 -o paper/fig2.svg --threads 1 -q").good();
+    assert_eq!(place.read("paper/fig2.svg"), first, "the same bytes again");
+    place.run("figure fig2 -o fig2.PDF").good();
+    assert!(std::fs::read(place.path("fig2.PDF")).unwrap().starts_with(b"%PDF-1.7"));
+    place.run("figure fig2 -o fig2.PDF").good();
+    place.run("figure fig1 fig2 -o both.pdf").bad(2, &["both.pdf is a file for one figure, but 2 are asked for"]);
+    place.write("mine.svg", "<svg >drawn by hand</svg>");
+    place.run("figure fig2 -o mine.svg").bad(2, &["mine.svg exists and was not made by this command", "--overwrite"]);
+    place.run("figure fig2 -o mine.svg --overwrite").good();
+    assert!(!place.path("both.pdf").exists() && place.read("mine.svg").contains("localshape:figure fig2"));
+}
+
+#[test]
+fn figures_for_print_have_their_size_and_no_small_type() {
+    let place = place();
+    let forces = |size: &str| format!("{size}\n[forces]\nscenes = [\"small.toml\"]\n");
+    let small = SMALL.replace(
+        "lattice = { cells = [2, 1, 1], side = 0.1 }",
+        "nodes = [[0, 0], [1, 0], [0, 1]]\nelements = [[0, 1, 2]]",
+    );
+    place.write(
+        "small.toml",
+        &small.replace("velocity = [0, -2, 0]", "").replace("gravity = [0, -9.8, 0]", "gravity = [0, -9.8]"),
+    );
+    place.write("print.toml", &forces("size = { mm = [180, 101] }"));
+    let ran = place.run("figure print.toml -o print.svg").good();
+    assert_eq!(ran.out, "print.svg  2126×1193\n");
+    assert!(place.read("print.svg").contains("width=\"180mm\" height=\"101mm\""));
+    place.write("tiny.toml", &forces("title = \"x\"\nsize = { mm = [80, 45] }"));
+    place
+        .run("figure tiny.toml -o tiny.svg")
+        .bad(2, &["tiny.toml:2:8: at 80 × 45 mm the smallest type would be ", " pt; expected at least 5 pt"]);
+    assert!(!place.path("tiny.svg").exists());
+    place.write("large.toml", &forces("size = { mm = [80, 60] }\ntext_scale = { pt = 7 }"));
+    place.run("figure large.toml -o large.svg").good();
+    if can_draw() {
+        place.run("figure print.toml -o print.png").good();
+        // 300 to an inch.
+        assert_eq!(pixels_a_metre(&place.path("print.png")), Some(11811));
+        place.run("figure fig2 --scale 0.25 -o fig2.png").good();
+        assert_eq!(pixels_a_metre(&place.path("fig2.png")), None);
+    }
+}
+
 /// A diagram that is too small for its contents is an error, not an empty picture.
 #[test]
 fn what_has_no_room_is_told() {

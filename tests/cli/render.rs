@@ -58,6 +58,55 @@ fn a_scene_without_a_background_makes_frames_with_opacities() {
     assert_eq!(std::fs::read(&path).expect("a frame"), first, "the same bytes again");
 }
 
+#[test]
+fn one_frame_can_be_a_file_of_vectors() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    let ran = place.run("render small.toml --frames 3 -o frame.svg").good();
+    assert_eq!(ran.out, "frame.svg  96×64\n");
+    let svg = place.read("frame.svg");
+    assert!(svg.contains("localshape:frame 3\n") && svg.contains("<image "));
+    place.run("render small.toml --frames 3 -o frame.svg --threads 1").good();
+    assert_eq!(place.read("frame.svg"), svg, "the same bytes again");
+    place.run("render small.toml --frames 3 -o frame.pdf").good();
+    place.run("render small.toml --frames 3 -o frame.png").good();
+    place.run("render small.toml --frames 3 -o folder").good();
+    let [file, of_folder] = ["frame.png", "folder/frame_00003.png"].map(|name| pixels(&place.path(name)));
+    assert_eq!(file, of_folder, "the frame alone is the frame of the sequence");
+    place
+        .run("render small.toml -o all.pdf")
+        .bad(2, &["all.pdf is a file for one frame, but 7 are asked for", "--frames"]);
+    place.run("render small.toml small.toml -o two.svg").bad(2, &["two.svg is a file for one frame"]);
+    place.run("render small.toml --frames 3 --states -o one.svg").bad(2, &["one.svg gets one frame and nothing else"]);
+    place.write("mine.pdf", "mine");
+    place.run("render small.toml --frames 3 -o mine.pdf").bad(2, &["mine.pdf exists"]);
+    assert_eq!(place.names("."), ["folder", "frame.pdf", "frame.png", "frame.svg", "mine.pdf", "small.toml"]);
+}
+
+#[test]
+fn frames_for_print_say_their_resolution_and_refuse_small_type() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    let sized = |size: &str| SMALL.replace("size = [96, 64]", &format!("size = {size}"));
+    place.write("print.toml", &sized("{ mm = [90, 60], dpi = 100 }\ntext_scale = { pt = 8 }"));
+    place.run("render print.toml --frames 0 --samples 1").good();
+    let file = std::io::BufReader::new(std::fs::File::open(place.path("output/print/frame_00000.png")).unwrap());
+    let reader = png::Decoder::new(file).read_info().expect("a picture");
+    let info = reader.info();
+    assert_eq!(([info.width, info.height], info.pixel_dims.map(|dims| dims.xppu)), ([354, 236], Some(3937)));
+    place.write("tiny.toml", &sized("{ mm = [60, 40] }"));
+    for command in ["render", "check"] {
+        place
+            .run(&format!("{command} tiny.toml"))
+            .bad(2, &["tiny.toml:24:8: at 60 × 40 mm the smallest type would be"]);
+    }
+    assert!(!place.path("output/tiny").exists());
+}
+
 /// A folder whose frames differ in size or runs would not be a sequence.
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {

@@ -16,6 +16,7 @@ mod shown;
 mod smooth;
 mod steady;
 mod strips;
+mod vectors;
 mod words;
 
 use image::RgbImage;

@@ -3,6 +3,8 @@
 mod browser;
 #[cfg(feature = "render")]
 mod players;
+#[cfg(feature = "render")]
+mod vectors;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

@@ -300,6 +300,23 @@ fn turned_over_elements_that_anybody_could_overlook_are_refused() {
     view(colours, &[(20, 45, "to eyes without green cones (deuteranopia) they differ by")]);
 }
 
+/// A size in millimetres is one in pixels at a resolution, and type in points has that size there.
+#[test]
+fn sizes_for_print() {
+    let scene = good(&with("size = { mm = [180, 101] }"));
+    let print = scene.view.print.clone().expect("for print");
+    assert_eq!((scene.view.size, print.mm, print.dpi), ([2126, 1193], [180.0, 101.0], 300.0));
+    let coarse = good(&with("size = { mm = [180, 101], dpi = 100 }")).view;
+    assert_eq!(coarse.size, [709, 398]);
+    for dpi in [100, 300] {
+        let view = good(&with(&format!("size = {{ mm = [180, 101], dpi = {dpi} }}\ntext_scale = {{ pt = 8 }}"))).view;
+        // 720 lines of the reference picture are 101 mm high, and most type has 16 of them.
+        let points = 16.0 * view.look.text_scale * f64::from(view.size[1]) / 720.0 * 72.0 / f64::from(dpi);
+        assert!((points - 8.0).abs() < 1e-9, "{points}");
+    }
+    assert_eq!(good(&with("size = [640, 360]")).view.print, None);
+}
+
 #[test]
 fn mistakes_of_maps_and_factors() {
     view(
@@ -310,6 +327,17 @@ fn mistakes_of_maps_and_factors() {
     view("text_scale = 0.4", &[(20, 14, "`view.text_scale` is 0.4; expected a number from 0.5 to 3")]);
     view("text_scale = 3.1", &[(20, 14, "expected a number from 0.5 to 3")]);
     view("text_scale = '2'", &[(20, 14, "is the string \"2\"; expected a number")]);
+    view("text_scale = { pt = 4 }", &[(20, 21, "`view.text_scale.pt` is 4; expected a number from 5 to 72")]);
+    view("text_scale = { pt = 7 }", &[(20, 14, "type of 7 pt is asked for in a picture of a size in pixels")]);
+    view("size = { mm = [180] }", &[(20, 15, "`view.size.mm` has 1 entry; expected 2")]);
+    view("size = { mm = [4, 101] }", &[(20, 16, "`view.size.mm[0]` is 4; expected a number from 5 to 2000")]);
+    view("size = { mm = [180, 101], dpi = 30 }", &[(20, 33, "expected a number from 72 to 1200")]);
+    view("size = { mm = [2000, 10], dpi = 300 }", &[(20, 8, "23622 × 118 pixels at 300 dpi; expected 16 to 16384")]);
+    view("size = { dpi = 300 }", &[(20, 8, "mm")]);
+    view(
+        "size = { mm = [40, 20] }\ntext_scale = { pt = 20 }",
+        &[(21, 14, "type of 20 pt does not fit a picture of this size; expected ")],
+    );
     view("line_scale = 0", &[(20, 14, "`view.line_scale` is 0; expected a number from 0.25 to 4")]);
     view("line_scale = 5", &[(20, 14, "expected a number from 0.25 to 4")]);
     view("margin = -0.1", &[(20, 10, "`view.margin` is -0.1; expected a number from 0 to 2")]);

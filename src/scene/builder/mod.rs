@@ -14,6 +14,7 @@ use super::file::{
 use super::resolve::Unwritten;
 use super::step::FractionOfCycle;
 use super::{Limits, Scene};
+use crate::look::print::SizeFile;
 use crate::look::file::{ColourFile, ViewFile};
 use crate::look::typed::TypedColour;
 use crate::look::{Colour, ColourMap, Theme};
@@ -152,7 +153,7 @@ impl SceneBuilder {
 
     /// Width and height of pictures (px).
     pub fn size(mut self, size: [u32; 2]) -> Self {
-        self.0.view.size = size;
+        self.0.view.size = SizeFile::Pixels(size);
         self
     }
 

@@ -3,6 +3,7 @@
 
 use crate::look::Theme;
 use crate::look::file::ColourFile;
+use crate::look::print::{SizeFile, TextScaleFile};
 use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,16 +18,15 @@ pub(super) struct FigureFile {
     /// A line below the title. Default: none.
     #[schemars(length(max = 400))]
     pub(super) caption: Option<String>,
-    /// Width and height (px).
+    /// Width and height (px, at least 64), or for print, such as `{ mm = [180, 101] }`.
     #[serde(default = "size")]
-    #[schemars(inner(range(min = 64, max = 16384)))]
-    pub(super) size: [u32; 2],
+    pub(super) size: SizeFile,
     /// The colours. Default: those of the first scene.
     pub(super) theme: Option<Theme>,
-    /// Scale of all text. Text for which there is no room, or that would be too small to read, is left out. Default: that of
+    /// Scale of all text, or in figures for print the size of most text, such as `{ pt = 7 }`. Text for which there is no room,
+    /// or that would be too small to read, is left out; figures for print with type below 5 pt are refused. Default: that of
     /// the first scene.
-    #[schemars(range(min = 0.5, max = 3.0))]
-    pub(super) text_scale: Option<f64>,
+    pub(super) text_scale: Option<TextScaleFile>,
     /// A contact sheet: runs of scenes as rows, moments as columns. Either this or `forces`.
     pub(super) sheet: Option<SheetFile>,
     /// A diagram of the forces that each run's model exerts on the nodes at the start of scenes. Scenes with several runs are
@@ -34,8 +34,8 @@ pub(super) struct FigureFile {
     pub(super) forces: Option<ForcesFile>,
 }
 
-fn size() -> [u32; 2] {
-    [1600, 900]
+fn size() -> SizeFile {
+    SizeFile::Pixels([1600, 900])
 }
 
 /// A contact sheet.

@@ -12,7 +12,7 @@ use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
 use super::schema::schema_of;
-use crate::look::{Style, Theme};
+use crate::look::{Style, Print, Theme};
 use crate::sim::snapshot::Diagnostic;
 use serde_json::Value;
 use std::path::Path;
@@ -29,6 +29,8 @@ pub struct Figure {
     pub caption: String,
     /// Width and height (px).
     pub size: [u32; 2],
+    /// The size in print, if it was given.
+    pub print: Option<Print>,
     /// Colours, type and lines of the whole figure.
     pub look: Style,
     /// What it shows.
@@ -156,7 +158,11 @@ impl Figure {
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
         load::checked(text, name, &SCHEMA, load::SCENE, |checked, report| {
-            resolve::resolve(checked, &stem, folder, scene, report)
+            let mut figure = resolve::resolve(checked, &stem, folder, scene, report)?;
+            if let Some(print) = figure.as_mut().and_then(|figure| figure.print.as_mut()) {
+                print.file = name.to_owned();
+            }
+            Ok(figure)
         })
     }
 }

@@ -3,6 +3,7 @@
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
 use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::{self, Subject};
+use crate::look::print::{unit, unit_of_sheet};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::list;
 use crate::scene::structure::Checked;
@@ -12,6 +13,9 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+
+/// The shortest side of a figure (px).
+const LEAST_SIDE: u32 = 64;
 
 /// Reads a scene from a path.
 type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
@@ -45,12 +49,34 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let look = super::look(first, file.theme, file.text_scale);
+    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &[Way::Key("size")], report) else { return Ok(None) };
+    if size.iter().any(|&side| side < LEAST_SIDE) {
+        let [width, height] = size;
+        let message = format!("`size` is {width} × {height}; expected {LEAST_SIDE} to 16384 pixels a side");
+        report.at(&[Way::Key("size")], message, None);
+        return Ok(None);
+    }
+    let unit = match &content {
+        Content::Sheet(_) => unit_of_sheet(size),
+        Content::Forces(Forces { scenes, .. }) => {
+            let columns = if first.runs.len() > 1 { first.runs.len() } else { scenes.len() };
+            unit(size, [size[0] / columns as u32, size[1]])
+        }
+    };
+    let text_scale = match file.text_scale {
+        Some(typed) => match typed.resolve(print.as_ref(), unit, &[Way::Key("text_scale")], report) {
+            None => return Ok(None),
+            times => times,
+        },
+        None => None,
+    };
+    let look = super::look(first, file.theme, text_scale);
     Ok(Some(Figure {
         name: name.to_owned(),
         title: file.title.unwrap_or_default(),
         caption: file.caption.unwrap_or_default(),
-        size: file.size,
+        size,
+        print,
         look,
         content,
     }))

@@ -21,7 +21,7 @@ mod plan;
 mod rows;
 
 use super::header;
-use crate::look::{Ghost, Labels, View};
+use crate::look::{Ghost, Labels, View, print};
 use crate::moments::Moments;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
@@ -40,17 +40,12 @@ use glam::DVec2;
 use plan::Plan;
 use rows::RowLabels;
 
-/// Lengths hold for a picture of this size (px); of a larger or smaller one, they are as much longer or shorter.
-const REFERENCE: [f64; 2] = [1600.0, 900.0];
-/// Smaller pictures than this part of it have less in them, not smaller type.
-const LEAST_UNIT: f64 = 0.36;
-
 /// Width of bodies that are a line or a point (px at the tile's scale).
 const COLLAPSED: [f64; 2] = [3.0, 9.0];
 
 pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Picture {
     let size = figure.size.map(|length| length.max(1));
-    let unit = (f64::from(size[0]) / REFERENCE[0]).min(f64::from(size[1]) / REFERENCE[1]).max(LEAST_UNIT);
+    let unit = print::unit_of_sheet(size);
     let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
     let fonts = Fonts::new(&figure.look.font);
     let palette = &figure.look.palette;

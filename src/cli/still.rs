@@ -1,0 +1,117 @@
+//! Files of one picture: PNG, or SVG and PDF for print.
+
+use super::failure::Failure;
+use super::film;
+use crate::artist::{compose_frame, draw_bodies, draw_pictures};
+use crate::gpu::Gpu;
+use crate::look::Print;
+use crate::output::{Compression, encode_print, read_tags};
+use crate::picture::Picture;
+use crate::runner::Runner;
+use crate::scene::Scene;
+use crate::sim::body::Dimension;
+use crate::vector::{self, Page};
+use std::path::Path;
+
+/// The format of a file of one picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    /// Pixels.
+    Png,
+    /// Vectors.
+    Vector(vector::Format),
+}
+
+impl Format {
+    /// The format that the name of a file stands for; `None` for names of folders.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        if path.is_dir() {
+            return None;
+        }
+        let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        if is_png { Some(Self::Png) } else { vector::Format::of(path).map(Self::Vector) }
+    }
+
+    /// Whether pictures of scenes need a graphics device: vectors only where bodies are lit.
+    pub(super) fn needs_device<'a>(self, scenes: impl IntoIterator<Item = &'a Scene>) -> bool {
+        self == Self::Png || scenes.into_iter().any(|scene| scene.body.dimension == Dimension::Space)
+    }
+}
+
+/// What stands for the adapter in files that are drawn without one.
+pub(super) const NO_ADAPTER: &str = "none";
+
+/// Refuses to replace a file that is no figure or single frame of this program.
+pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
+    match format {
+        Format::Png if path.is_file() && read_tags(path)?.is_some() => Ok(()),
+        _ => film::replaceable(path),
+    }
+}
+
+/// Refuses type that is too small to be printed.
+pub(super) fn check_type(print: Option<&Print>, picture: &Picture, file: &str) -> Result<(), Failure> {
+    match print.and_then(|print| print.too_small(f64::from(smallest_type(picture)), file)) {
+        Some(message) => Err(Failure::usage(message)),
+        None => Ok(()),
+    }
+}
+
+/// The size of the smallest type in a picture (px).
+fn smallest_type(picture: &Picture) -> f32 {
+    picture.words.iter().map(|run| run.size).fold(f32::INFINITY, f32::min)
+}
+
+/// Why some runs of a scene are not printed, as far as the first frame shows: before anything is simulated.
+pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
+    let print = scene.view.print.as_ref()?;
+    let first = compose_frame(scene, &Runner::new(scene, runs).frame(0), None);
+    print.too_small(f64::from(smallest_type(&first[0])), &source_of(scene))
+}
+
+/// The file of a scene, for messages.
+pub(super) fn source_of(scene: &Scene) -> String {
+    scene.file.as_ref().map_or_else(|| scene.name.clone(), |file| file.display().to_string())
+}
+
+/// One picture, ready to be written.
+pub(super) struct Still<'a> {
+    /// The picture, or two on white and on black if nothing is behind it.
+    pub(super) pictures: &'a [Picture],
+    /// Its size in print.
+    pub(super) print: Option<&'a Print>,
+    /// The path of the file that says what it shows.
+    pub(super) source: &'a str,
+    /// Its title; empty for none.
+    pub(super) title: &'a str,
+    /// What the file says about itself.
+    pub(super) tags: &'a [(&'static str, String)],
+}
+
+impl Still<'_> {
+    /// The file, drawn with a device if one is needed, with so many samples per pixel.
+    pub(super) fn file(&self, format: Format, gpu: Option<&Gpu>, samples: u32) -> Result<Vec<u8>, Failure> {
+        let picture = &self.pictures[0];
+        check_type(self.print, picture, self.source)?;
+        match format {
+            Format::Png => {
+                let pixels = draw_pictures(gpu.expect("a device for pixels"), self.pictures, samples)?;
+                let dpi = self.print.map(|print| print.dpi);
+                Ok(encode_print(picture.size, &pixels, self.tags, Compression::High, dpi))
+            }
+            Format::Vector(format) => {
+                let bodies = draw_bodies(gpu, self.pictures, samples)?;
+                let page = Page {
+                    picture,
+                    bodies: bodies.as_deref().map(vector::Pixels),
+                    size_mm: self.print.map(|print| print.mm),
+                    is_transparent: self.pictures.len() > 1,
+                    title: self.title,
+                    maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
+                    tags: self.tags,
+                };
+                vector::write(&page, format).map_err(|error| Failure::usage(error.to_string()))
+            }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Pictures for print: sizes in millimetres and type in points.
+
+use crate::reading::report::{Report, Way};
+use crate::sim::words::rounded;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Millimetres and points in an inch.
+const INCH_MM: f64 = 25.4;
+const INCH_POINTS: f64 = 72.0;
+/// The smallest type that is printed (pt).
+pub(crate) const LEAST_POINTS: f64 = 5.0;
+/// The most pixels of a side.
+const MOST_PIXELS: f64 = 16384.0;
+/// The usual type of a picture (px at the reference size).
+const TYPE: f64 = 16.0;
+/// The range of scales of type.
+const SCALES: [f64; 2] = [0.5, 3.0];
+
+/// The size of a picture as typed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum SizeFile {
+    /// Width and height (px).
+    Pixels(#[schemars(inner(range(min = 16, max = 16384)))] [u32; 2]),
+    /// For print: width and height (mm), such as `{ mm = [180, 101] }`.
+    Print(PrintFile),
+}
+
+/// A size in print.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PrintFile {
+    /// Width and height (mm).
+    #[schemars(inner(range(min = 5.0, max = 2000.0)))]
+    pub(crate) mm: [f64; 2],
+    /// Pixels of an inch in PNG files, which say so, and of lit bodies in SVG and PDF files.
+    #[serde(default = "dpi")]
+    #[schemars(range(min = 72.0, max = 1200.0))]
+    pub(crate) dpi: f64,
+}
+
+fn dpi() -> f64 {
+    300.0
+}
+
+/// The scale of type as typed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum TextScaleFile {
+    /// Times the usual size.
+    Times(#[schemars(range(min = 0.5, max = 3.0))] f64),
+    /// In pictures for print: the size of most type, such as `{ pt = 7 }`. Names are larger, numbers at axes smaller.
+    Points(PointsFile),
+}
+
+/// A size of type.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PointsFile {
+    /// Size of most type (pt).
+    #[schemars(range(min = 5.0, max = 72.0))]
+    pub(crate) pt: f64,
+}
+
+/// The size of a picture in print.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Print {
+    /// Width and height (mm).
+    pub mm: [f64; 2],
+    /// Pixels of an inch.
+    pub dpi: f64,
+    /// The file that says it, for messages, with line and column; empty for that of the scene.
+    pub(crate) file: String,
+    pub(crate) at: (usize, usize),
+}
+
+impl Print {
+    /// A size of type (px) in points.
+    pub(crate) fn points(&self, pixels: f64) -> f64 {
+        pixels / self.dpi * INCH_POINTS
+    }
+
+    /// Why type of a size (px) is not printed; `None` if it is large enough. `file` has the size.
+    pub(crate) fn too_small(&self, pixels: f64, file: &str) -> Option<String> {
+        let (points, [width, height], (line, column)) = (self.points(pixels), self.mm, self.at);
+        (points < LEAST_POINTS - 1e-6).then(|| {
+            format!(
+                "{file}:{line}:{column}: at {width} × {height} mm the smallest type would be {} pt; expected at least \
+                 {LEAST_POINTS} pt: make `size` larger, or type with `text_scale`",
+                rounded(points, 2)
+            )
+        })
+    }
+}
+
+impl SizeFile {
+    /// Width and height (px), and the size in print if that is what was typed. `way` leads to the key.
+    pub(crate) fn resolve(
+        self,
+        least: u32,
+        way: &[Way<'_>],
+        report: &mut Report<'_>,
+    ) -> Option<([u32; 2], Option<Print>)> {
+        let PrintFile { mm, dpi } = match self {
+            Self::Pixels(size) => return Some((size, None)),
+            Self::Print(print) => print,
+        };
+        let sides = mm.map(|length| (length / INCH_MM * dpi).round());
+        if sides.iter().any(|&side| side < f64::from(least) || side > MOST_PIXELS) {
+            let ([width, height], [wide, high]) = (sides, mm);
+            let message = format!(
+                "a picture of {wide} × {high} mm has {width} × {height} pixels at {dpi} dpi; expected {least} to \
+                 {MOST_PIXELS} a side"
+            );
+            report.at(way, message, "change `mm` or `dpi`".to_owned());
+            return None;
+        }
+        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, file: String::new(), at: report.position(way) })))
+    }
+}
+
+impl TextScaleFile {
+    /// How many times the usual size type has, in a picture with so many pixels for one of the reference picture. `way`
+    /// leads to the key.
+    pub(crate) fn resolve(
+        self,
+        print: Option<&Print>,
+        unit: f64,
+        way: &[Way<'_>],
+        report: &mut Report<'_>,
+    ) -> Option<f64> {
+        let PointsFile { pt } = match self {
+            Self::Times(times) => return Some(times),
+            Self::Points(points) => points,
+        };
+        let Some(print) = print else {
+            let message = format!("type of {pt} pt is asked for in a picture of a size in pixels");
+            report.at(way, message, "give `size` in millimetres, such as { mm = [180, 101] }".to_owned());
+            return None;
+        };
+        let usual = print.points(TYPE * unit);
+        let (times, [least, most]) = (pt / usual, SCALES);
+        if !(least..=most).contains(&times) {
+            let [low, high] = SCALES.map(|scale| rounded(scale * usual, 1));
+            let message = format!("type of {pt} pt does not fit a picture of this size; expected {low} to {high} pt");
+            report.at(way, message, "change `pt` or `size`".to_owned());
+            return None;
+        }
+        Some(times)
+    }
+}
+
+/// Pixels for one pixel of the reference picture, in a picture and panels of these sizes (px): what is 720 high, or has
+/// panels of 540 × 460, is drawn at its own size.
+pub(crate) fn unit(size: [u32; 2], panel: [u32; 2]) -> f64 {
+    const HEIGHT: f64 = 720.0;
+    const PANEL: [f64; 2] = [540.0, 460.0];
+    let [width, height] = panel.map(f64::from);
+    (f64::from(size[1]) / HEIGHT).min(width / PANEL[0]).min(height / PANEL[1])
+}
+
+/// The same for a contact sheet: one of 1600 × 900 is drawn at its own size. Smaller ones have less in them, not smaller
+/// type.
+pub(crate) fn unit_of_sheet([width, height]: [u32; 2]) -> f64 {
+    const SIZE: [f64; 2] = [1600.0, 900.0];
+    const LEAST: f64 = 0.36;
+    (f64::from(width) / SIZE[0]).min(f64::from(height) / SIZE[1]).max(LEAST)
+}

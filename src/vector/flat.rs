@@ -1,0 +1,318 @@
+//! Panels in the plane as paths. Colours, widths and opacities are those of the shaders for flat panels.
+
+use super::drawing::{Item, Paint, Path, Pen};
+use super::marks::winding;
+use crate::colour::{encoded, linear};
+use crate::picture::{Bead, Colour, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
+use glam::{Vec2, Vec3, Vec4Swizzles};
+
+/// The hatch of turned-over elements: its period (px in the reference picture), how much of that is dark, and how dark.
+const PERIOD: f32 = 9.0;
+const STRIPE: f32 = 0.19;
+const STRIPE_ALPHA: f32 = 0.62;
+/// Widths (px in the reference picture) and opacities of the edges of elements, of those that have turned over, of bars and
+/// of contours.
+const EDGE: [f32; 2] = [1.5, 0.75];
+const ALARM_EDGE: [f32; 2] = [1.5, 0.95];
+const BAR: [f32; 2] = [2.2, 0.85];
+const CONTOUR: [f32; 2] = [2.5, 1.0];
+/// Edges of elements smaller than this (px) are fainter, and fade out towards the second size.
+const SMALL_ELEMENT: f32 = 26.0;
+const SMALLEST_ELEMENT: [f32; 2] = [1.5, 4.0];
+/// Width of the rim of obstacles (px in the reference picture).
+const RIM_WIDTH: f32 = 2.0;
+/// The rim of a disc, in parts of its radius.
+const BEAD_RIM: f32 = 0.32;
+/// The width of a casing, in parts of the line's, and the least (px).
+const CASING: f32 = 0.24;
+const LEAST_CASING: f32 = 0.6;
+/// Into how many pieces a line of changing colour is cut.
+const PIECES: u32 = 8;
+
+/// One panel with the picture that it belongs to.
+struct Flat<'a> {
+    picture: &'a Picture,
+    panel: &'a Panel,
+}
+
+/// Adds a panel in the plane to a page.
+pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>) {
+    let [left, top, width, height] = panel.region.map(|length| length as f32);
+    if width < 1.0 || height < 1.0 {
+        return;
+    }
+    let flat = Flat { picture, panel };
+    let room = || Item::Clip(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)));
+    items.push(room());
+    panel.obstacles.solids.iter().for_each(|solid| flat.solid(solid, items));
+    flat.surface(&panel.sound, items);
+    flat.surface(&panel.turned_over, items);
+    if panel.hatch && !panel.turned_over.triangles.is_empty() {
+        items.push(Item::Unclip);
+        flat.hatch([left, top, width, height], items);
+        items.push(room());
+    }
+    flat.lines(items);
+    flat.strokes(items);
+    panel.beads.iter().for_each(|bead| flat.bead(bead, items));
+    items.push(Item::Unclip);
+}
+
+impl Flat<'_> {
+    /// The pixel of a point.
+    fn pixel(&self, point: [f32; 3]) -> Vec2 {
+        let [left, top, width, height] = self.panel.viewport.map(|length| length as f32);
+        let at = self.panel.sight.clip * Vec3::from(point).extend(1.0);
+        Vec2::new(left, top) + (at.xy() / at.w * Vec2::new(0.5, -0.5) + 0.5) * Vec2::new(width, height)
+    }
+
+    /// The triangles of a mesh, all running the same way, with a value at each corner.
+    fn triangles(&self, mesh: &Mesh, value: impl Fn(usize) -> f32) -> Vec<[(Vec2, f32); 3]> {
+        let corner = |at: u32| (self.pixel(mesh.vertices[at as usize].position), value(at as usize));
+        let one = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(corner);
+            if winding(&[a.0, b.0, c.0]) < 0.0 { [a, c, b] } else { [a, b, c] }
+        };
+        mesh.triangles.iter().map(one).collect()
+    }
+
+    /// The whole of a mesh.
+    fn whole(&self, mesh: &Mesh) -> Path {
+        path_of(self.triangles(mesh, |_| 0.0).iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()))
+    }
+
+    /// An obstacle: its rim, then its inside.
+    fn solid(&self, solid: &Solid, items: &mut Vec<Item<'_>>) {
+        let triangles = self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch);
+        let inside = |least: f32| path_of(triangles.iter().map(|triangle| part(triangle, least, f32::INFINITY)));
+        if let Some(rim) = solid.rim {
+            items.push(Item::Fill { path: inside(0.0), paint: rim.into() });
+            let path = inside(RIM_WIDTH * self.panel.sight.line_scale);
+            items.push(Item::Fill { path, paint: solid.colour.into() });
+        } else {
+            items.push(Item::Fill { path: inside(f32::NEG_INFINITY), paint: solid.colour.into() });
+        }
+    }
+
+    /// The surface of elements, in the colour of their kind or in those of a field.
+    fn surface(&self, mesh: &Mesh, items: &mut Vec<Item<'_>>) {
+        if mesh.triangles.is_empty() {
+            return;
+        }
+        let palette = &self.picture.palette;
+        let is_alarm = std::ptr::eq(mesh, &self.panel.turned_over);
+        let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1 && (!is_alarm || self.panel.hatch);
+        let opacity = if is_alarm { 1.0 } else { self.panel.opacity };
+        let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
+        if !has_field {
+            let alpha = self.alpha(opacity, plain, palette.background);
+            items.push(Item::Fill { path: self.whole(mesh), paint: Paint { colour: plain, alpha } });
+            return;
+        }
+        // Bands of equal colour lie over each other, so they cannot be transparent: the ground is mixed in instead.
+        let opaque = |colour: Colour| mixed(palette.background, colour, opacity);
+        items.push(Item::Fill { path: self.whole(mesh), paint: opaque(plain).into() });
+        let ramp = &self.picture.ramp;
+        let bands = ramp.len() - 1;
+        let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
+        if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
+            // One value for each element. Where a body is folded over itself, the renderer shows what it draws first.
+            for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
+                let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
+                let value = same[0][0].1;
+                let band = (value.max(0.0) as usize).min(bands - 1);
+                let shade = mixed(ramp[band], ramp[band + 1], (value - band as f32).clamp(0.0, 1.0));
+                let colour = if value > -0.5 * bands as f32 { shade } else { palette.sound_flat };
+                items.push(Item::Fill { path, paint: opaque(colour).into() });
+            }
+            return;
+        }
+        for band in 0..bands {
+            let [low, high] = [band, band + 1].map(|level| level as f32);
+            // The ends of the scale go on.
+            let [from, to] = [
+                if band == 0 { -0.5 * bands as f32 } else { low },
+                if band + 1 == bands { f32::INFINITY } else { high },
+            ];
+            let values = |triangle: &[(Vec2, f32); 3]| triangle.map(|(_, value)| value);
+            let seen = triangles.iter().filter(|triangle| {
+                let values = values(triangle);
+                values.iter().any(|&value| value >= from) && values.iter().any(|&value| value < to)
+            });
+            // Each band reaches under the next one, so that no seam is seen between them.
+            let path = path_of(seen.map(|triangle| part(triangle, from, to + 1.0)));
+            if !path.is_empty() {
+                let colour = opaque(mixed(ramp[band], ramp[band + 1], 0.5));
+                items.push(Item::Fill { path, paint: colour.into() });
+            }
+        }
+    }
+
+    /// The stripes on turned-over elements, which go along with the body.
+    fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
+        let palette = &self.picture.palette;
+        let sight = &self.panel.sight;
+        // On the colours of a field, vermilion stands out more.
+        let (colour, alpha) = match self.panel.turned_over.shades.is_empty() {
+            true => (palette.alarm_line, self.alpha(STRIPE_ALPHA, palette.alarm_line, palette.alarm)),
+            false => (palette.alarm, 1.0),
+        };
+        let period = PERIOD * sight.line_scale;
+        let slant = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
+        let middle = Vec2::from(sight.middle);
+        let room = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+        let corners = room.map(|[x, y]| Vec2::new(left + x, top + y));
+        let triangles = self.triangles(&self.panel.turned_over, |_| 0.0);
+        let inside = |at: Vec2| at.clamp(corners[0], corners[2]);
+        let points = triangles.iter().flatten().map(|(at, _)| slant.dot(inside(*at) - middle) / period);
+        let (low, high) = points.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
+        let reach = Vec2::new(slant.x, -slant.y) * (width + height);
+        let mut path = Path::default();
+        for stripe in low.floor() as i32 - 1..=high.ceil() as i32 {
+            let on = middle + slant * (stripe as f32 + 0.5) * period;
+            // Around the middle of the room, so that it crosses all of it.
+            let across = on + reach.normalize() * reach.normalize().dot(0.5 * (corners[0] + corners[2]) - on);
+            path.add_line(&[across - reach, across + reach]);
+        }
+        items.push(Item::Clip(self.whole(&self.panel.turned_over)));
+        let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
+        items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha } });
+        items.push(Item::Unclip);
+    }
+
+    /// Edges and contours. Those of one kind are one path, so that joints are even.
+    fn lines(&self, items: &mut Vec<Item<'_>>) {
+        let (palette, sight) = (&self.picture.palette, &self.panel.sight);
+        let element = sight.line_share * sight.element;
+        let [low, high] = SMALLEST_ELEMENT;
+        let share = ((element - low) / (high - low)).clamp(0.0, 1.0);
+        let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
+        let body = palette.sound_flat;
+        let is_plain = self.picture.ramp.is_empty() || !self.panel.hatch;
+        let alarm = if is_plain { palette.alarm_line } else { palette.alarm };
+        let kinds: [(&[LineKind], [f32; 2], Colour, Colour); 5] = [
+            (&[LineKind::Edge, LineKind::ObstacleEdge], [EDGE[0], EDGE[1] * strength], palette.edge, body),
+            (&[LineKind::Bar], BAR, palette.edge, palette.background),
+            (
+                &[LineKind::AlarmEdge],
+                [ALARM_EDGE[0] * sight.contour_share, ALARM_EDGE[1] * strength],
+                alarm,
+                palette.alarm,
+            ),
+            (&[LineKind::AlarmContour], CONTOUR, alarm, palette.alarm),
+            (
+                &[LineKind::Contour, LineKind::ObstacleContour],
+                [CONTOUR[0], palette.outline_alpha],
+                palette.outline,
+                body,
+            ),
+        ];
+        for (kinds, [width, alpha], colour, ground) in kinds {
+            let lines = self.panel.lines.iter().filter(|line| kinds.contains(&line.kind));
+            let mut path = Path::default();
+            lines.for_each(|line: &Line| path.add_line(&[line.from, line.to].map(|end| self.pixel(end))));
+            if !path.is_empty() && alpha > 0.0 {
+                let paint = Paint { colour, alpha: self.alpha(alpha, colour, ground) };
+                items.push(Item::Stroke { path, pen: Pen::solid(width * sight.line_scale), paint });
+            }
+        }
+    }
+
+    /// Lines with colours of their own.
+    fn strokes(&self, items: &mut Vec<Item<'_>>) {
+        self.panel.strokes.iter().for_each(|stroke| self.stroke(stroke, stroke.colours, items));
+        let on_body = |stroke: &&Stroke| matches!(stroke.second, Second::OnBody(_));
+        if !self.panel.strokes.iter().any(|stroke| on_body(&stroke)) {
+            return;
+        }
+        let [left, top, width, height] = self.panel.region.map(|length| length as f32);
+        for mesh in [&self.panel.sound, &self.panel.turned_over] {
+            if !mesh.triangles.is_empty() {
+                items.extend([Item::Unclip, Item::Clip(self.whole(mesh))]);
+                for stroke in self.panel.strokes.iter().filter(on_body) {
+                    if let Second::OnBody(colour) = stroke.second {
+                        self.stroke(stroke, [colour; 2], items);
+                    }
+                }
+                let room = Path::rectangle(Vec2::new(left, top), Vec2::new(width, height));
+                items.extend([Item::Unclip, Item::Clip(room)]);
+            }
+        }
+    }
+
+    fn stroke(&self, stroke: &Stroke, [first, last]: [Colour; 2], items: &mut Vec<Item<'_>>) {
+        let [from, to] = stroke.ends.map(|end| self.pixel(end));
+        let mut width = stroke.width;
+        // Pieces of one line fit together only with straight ends.
+        let mut round = true;
+        if let Second::Casing(casing) = stroke.second {
+            let pen = Pen { round: false, ..Pen::solid(width) };
+            items.push(Item::Stroke { path: Path::open(&[from, to]), pen, paint: casing.into() });
+            width -= 2.0 * (CASING * width).max(LEAST_CASING);
+            round = false;
+        }
+        if width <= 0.0 {
+            return;
+        }
+        let pieces = if first == last { 1 } else { PIECES };
+        for piece in 0..pieces {
+            // Each goes on to the end of the line, below the next one: no seams.
+            let begin = from.lerp(to, piece as f32 / pieces as f32);
+            let colour = mixed(first, last, (piece as f32 + 0.5) / pieces as f32);
+            let pen = Pen { round: round && pieces == 1, ..Pen::solid(width) };
+            items.push(Item::Stroke { path: Path::open(&[begin, to]), pen, paint: colour.into() });
+        }
+    }
+
+    fn bead(&self, bead: &Bead, items: &mut Vec<Item<'_>>) {
+        let at = self.pixel(bead.at);
+        items.push(Item::Fill { path: Path::circle(at, bead.radius), paint: bead.rim.into() });
+        let radius = (1.0 - BEAD_RIM) * bead.radius;
+        items.push(Item::Fill { path: Path::circle(at, radius), paint: bead.colour.into() });
+    }
+
+    /// The opacity that gives, where bytes are blended, what an opacity gives where light is.
+    fn alpha(&self, alpha: f32, above: Colour, below: Colour) -> f32 {
+        let seen = mixed(below, above, alpha);
+        let [whole, part] = [above, seen].map(|colour| {
+            colour.iter().zip(below).map(|(&one, other)| (f32::from(one) - f32::from(other)).abs()).sum::<f32>()
+        });
+        if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { alpha }
+    }
+}
+
+/// Polygons as one path, as far as they have an inside.
+fn path_of(polygons: impl Iterator<Item = Vec<Vec2>>) -> Path {
+    let mut path = Path::default();
+    polygons.filter(|polygon| polygon.len() > 2).for_each(|polygon| path.add_polygon(&polygon));
+    path
+}
+
+/// The part of a triangle where its value lies between two others.
+fn part(triangle: &[(Vec2, f32); 3], low: f32, high: f32) -> Vec<Vec2> {
+    let mut polygon = triangle.to_vec();
+    for (level, sign) in [(low, 1.0), (high, -1.0)] {
+        if !level.is_finite() {
+            continue;
+        }
+        let above = |value: f32| sign * (value - level);
+        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        for (at, &(from, start)) in polygon.iter().enumerate() {
+            let (to, end) = polygon[(at + 1) % polygon.len()];
+            if above(start) >= 0.0 {
+                kept.push((from, start));
+            }
+            if above(start) * above(end) < 0.0 {
+                kept.push((from.lerp(to, (level - start) / (end - start)), level));
+            }
+        }
+        polygon = kept;
+    }
+    polygon.into_iter().map(|(at, _)| at).collect()
+}
+
+/// A colour on the way from one to another, as light mixes.
+fn mixed(from: Colour, to: Colour, share: f32) -> Colour {
+    let ([a, b], share) = ([from, to].map(linear), f64::from(share));
+    encoded(std::array::from_fn(|at| a[at] + (b[at] - a[at]) * share))
+}

@@ -1,0 +1,211 @@
+//! Pictures as vectors, for print: SVG and PDF. Text stays text, in parts of its fonts that are embedded; curves, marks and
+//! panels in the plane are paths; lit bodies are images that the renderer drew.
+//!
+//! ```text
+//! Picture ─▶ items (paths, text, images) ─▶ SVG or PDF
+//! ```
+//!
+//! Nothing here needs a graphics device. The same picture gives the same bytes.
+
+mod drawing;
+mod flat;
+mod font;
+mod marks;
+mod pdf;
+mod svg;
+
+use crate::picture::{Panel, Picture, TextRun};
+use drawing::{Image, Item, Path, Pen};
+use glam::Vec2;
+
+/// The format of a file of vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// Scalable Vector Graphics.
+    Svg,
+    /// Portable Document Format.
+    Pdf,
+}
+
+impl Format {
+    /// The format that the name of a file stands for, if it is one of vectors.
+    pub(crate) fn of(path: &std::path::Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "svg" => Some(Self::Svg),
+            "pdf" => Some(Self::Pdf),
+            _ => None,
+        }
+    }
+}
+
+/// A picture as a page.
+pub(crate) struct Page<'a> {
+    /// What it shows.
+    pub(crate) picture: &'a Picture,
+    /// The picture's lit panels, as [`bodies`] asks for them; `None` if it has none.
+    pub(crate) bodies: Option<Pixels<'a>>,
+    /// Width and height (mm); if not given, pixels are those of the web, 96 to an inch.
+    pub(crate) size_mm: Option<[f64; 2]>,
+    /// Whether nothing is behind it.
+    pub(crate) is_transparent: bool,
+    /// Its title; empty for none.
+    pub(crate) title: &'a str,
+    /// The program that makes it, with its version.
+    pub(crate) maker: &'a str,
+    /// What the file says about itself: names without `localshape:`, and texts.
+    pub(crate) tags: &'a [(&'static str, String)],
+}
+
+/// Pixels of a whole picture: red, green and blue of each, or these and opacity, in rows from the top left.
+#[derive(Clone, Copy)]
+pub(crate) struct Pixels<'a>(pub(crate) &'a [u8]);
+
+/// Why a page could not be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum VectorError {
+    /// A font cannot be embedded.
+    #[error("the font cannot be embedded in SVG or PDF ({0}); write PNG, or use another `view.font`")]
+    Font(String),
+}
+
+/// Half the width of the halo around words over bodies, in parts of the type's size.
+const HALO: f32 = 0.14;
+
+/// What the renderer draws of a picture for a page: its lit panels, without what is flat; `None` if there are none.
+pub(crate) fn bodies(picture: &Picture) -> Option<Picture> {
+    let lit = |panel: &Panel| !panel.sight.flat;
+    if !picture.panels.iter().any(lit) {
+        return None;
+    }
+    let mut bodies = picture.clone();
+    bodies.panels.retain(lit);
+    (bodies.marks, bodies.curves, bodies.words) = Default::default();
+    Some(bodies)
+}
+
+/// The file of a page.
+///
+/// # Errors
+/// A font that cannot be embedded.
+pub(crate) fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
+    let subsets = font::subsets(&page.picture.fonts, &page.picture.words)?;
+    let items = items(page);
+    match format {
+        Format::Svg => svg::file(page, &items, &subsets),
+        Format::Pdf => pdf::file(page, &items, &subsets),
+    }
+}
+
+/// Everything on a page, in order.
+fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
+    let picture = page.picture;
+    let mut items = Vec::new();
+    if !page.is_transparent {
+        let path = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
+        items.push(Item::Fill { path, paint: picture.palette.background.into() });
+    }
+    let add = |marks: &[crate::picture::Mark], items: &mut Vec<_>| {
+        marks.iter().enumerate().for_each(|(at, mark)| marks::mark(mark, marks.get(at + 1), items));
+    };
+    add(&picture.under, &mut items);
+    for panel in &picture.panels {
+        match (panel.sight.flat, page.bodies) {
+            (true, _) => flat::panel(picture, panel, &mut items),
+            (false, Some(pixels)) => items.extend(image(picture, panel, pixels).map(Item::Image)),
+            (false, None) => {}
+        }
+    }
+    add(&picture.marks, &mut items);
+    picture.curves.iter().for_each(|curve| marks::curve(curve, &mut items));
+    for run in &picture.words {
+        if run.has_halo {
+            let pen = Pen::solid(2.0 * HALO * run.size);
+            items.push(Item::Stroke { path: outlines(picture, run), pen, paint: picture.palette.halo.into() });
+        }
+        items.push(Item::Text(run));
+    }
+    items
+}
+
+/// The part of a lit panel in which there is anything.
+fn image(picture: &Picture, panel: &Panel, Pixels(pixels): Pixels<'_>) -> Option<Image> {
+    let [width, height] = picture.size.map(|length| length as usize);
+    let channels = pixels.len() / (width * height);
+    let [left, top, wide, high] = panel.viewport.map(|length| length as usize);
+    let row = |y: usize| &pixels[channels * (y * width + left)..][..channels * wide];
+    let is_empty = |pixel: &[u8]| match channels {
+        4 => pixel[3] == 0,
+        _ => pixel == picture.palette.background,
+    };
+    let (mut low, mut far) = ([wide, high], [0, 0]);
+    for y in 0..high {
+        for (x, _) in row(top + y).chunks_exact(channels).enumerate().filter(|(_, pixel)| !is_empty(pixel)) {
+            (low, far) = ([low[0].min(x), low[1].min(y)], [far[0].max(x + 1), far[1].max(y + 1)]);
+        }
+    }
+    if low[0] >= far[0] {
+        return None;
+    }
+    let rows = (low[1]..far[1]).flat_map(|y| &row(top + y)[channels * low[0]..channels * far[0]]);
+    let pixels = rows.copied().collect();
+    let size = [far[0] - low[0], far[1] - low[1]];
+    let corner = Vec2::new((left + low[0]) as f32, (top + low[1]) as f32);
+    let place = [corner, Vec2::new(size[0] as f32, 0.0), Vec2::new(0.0, size[1] as f32)];
+    Some(Image { size: size.map(|length| length as u32), pixels, place })
+}
+
+/// The outlines of a line of text.
+fn outlines(picture: &Picture, run: &TextRun) -> Path {
+    let mut path = Path::default();
+    for glyph in &run.glyphs {
+        let Ok(face) = ttf_parser::Face::parse(picture.fonts.face(glyph.face).bytes(), 0) else { continue };
+        let origin = Vec2::new(glyph.x, run.baseline);
+        let scale = run.size / f32::from(face.units_per_em());
+        let mut outline = Outline { path: &mut path, origin, scale, last: Vec2::ZERO };
+        face.outline_glyph(ttf_parser::GlyphId(glyph.id), &mut outline);
+    }
+    path
+}
+
+/// Takes the outline of a glyph.
+struct Outline<'a> {
+    path: &'a mut Path,
+    origin: Vec2,
+    scale: f32,
+    last: Vec2,
+}
+
+impl Outline<'_> {
+    fn at(&mut self, x: f32, y: f32) -> Vec2 {
+        self.last = self.origin + self.scale * Vec2::new(x, -y);
+        self.last
+    }
+}
+
+impl ttf_parser::OutlineBuilder for Outline<'_> {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let to = self.at(x, y);
+        self.path.0.push(drawing::Step::Move(to));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let to = self.at(x, y);
+        self.path.0.push(drawing::Step::Line(to));
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let from = self.last;
+        let [control, to] = [[x1, y1], [x, y]].map(|[x, y]| self.at(x, y));
+        let cubic = [from.lerp(control, 2.0 / 3.0), to.lerp(control, 2.0 / 3.0), to];
+        self.path.0.push(drawing::Step::Cubic(cubic));
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let points = [[x1, y1], [x2, y2], [x, y]].map(|[x, y]| self.at(x, y));
+        self.path.0.push(drawing::Step::Cubic(points));
+    }
+
+    fn close(&mut self) {
+        self.path.0.push(drawing::Step::Close);
+    }
+}

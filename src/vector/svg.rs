@@ -1,0 +1,228 @@
+//! A page as SVG 1.1, with its fonts and images inside.
+
+use super::drawing::{Image, Item, Paint, Path, Pen, Step};
+use super::font::Subset;
+use super::{Page, VectorError};
+use crate::colour::written;
+use crate::output::{Compression, encode};
+use crate::picture::{Glyph, TextRun, Weight};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use glam::Vec2;
+use std::fmt::Write;
+
+/// The file of a page.
+pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Result<Vec<u8>, VectorError> {
+    let mut svg = Svg { text: String::new(), subsets, names: 0 };
+    svg.head(page);
+    items.iter().for_each(|item| svg.item(item));
+    svg.text += "</svg>\n";
+    Ok(svg.text.into_bytes())
+}
+
+struct Svg<'a> {
+    text: String,
+    subsets: &'a [Subset<'a>],
+    /// How many clips and blends have a name.
+    names: usize,
+}
+
+impl Svg<'_> {
+    fn add(&mut self, words: std::fmt::Arguments<'_>) {
+        self.text.write_fmt(words).expect("into memory");
+    }
+
+    fn head(&mut self, page: &Page<'_>) {
+        let [width, height] = page.picture.size;
+        let [wide, high] = match page.size_mm {
+            Some(lengths) => lengths.map(|length| format!("{length}mm")),
+            None => [width, height].map(|length| length.to_string()),
+        };
+        self.add(format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+             width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\">\n"
+        ));
+        if !page.title.is_empty() {
+            self.add(format_args!("<title>{}</title>\n", escaped(page.title)));
+        }
+        self.add(format_args!("<metadata>\n{}\n", escaped(page.maker)));
+        for (name, text) in page.tags {
+            self.add(format_args!("localshape:{name} {}\n", escaped(text)));
+        }
+        self.text += "</metadata>\n<style>\n";
+        for subset in self.subsets {
+            let font = STANDARD.encode(subset.for_browsers());
+            let face = subset.face;
+            // One font serves all weights: nothing is made bolder by the browser.
+            self.add(format_args!(
+                "@font-face{{font-family:\"face{face}\";font-weight:100 900;src:url(data:font/otf;base64,{font})}}\n"
+            ));
+        }
+        self.text += "text{white-space:pre;font-kerning:none;font-variant-ligatures:none}\n</style>\n";
+    }
+
+    fn item(&mut self, item: &Item<'_>) {
+        match item {
+            Item::Fill { path, paint } => {
+                let (data, paint) = (data(path), fill(*paint));
+                self.add(format_args!("<path d=\"{data}\"{paint}/>\n"));
+            }
+            Item::Stroke { path, pen, paint } => {
+                let (data, pen) = (data(path), stroke(pen, *paint));
+                self.add(format_args!("<path d=\"{data}\" fill=\"none\"{pen}/>\n"));
+            }
+            Item::Blend { path, ends, colours } => self.blend(path, *ends, colours.map(written)),
+            Item::Image(image) => self.image(image),
+            Item::Text(run) => self.run(run),
+            Item::Clip(path) => {
+                let (name, data) = (self.names, data(path));
+                self.names += 1;
+                self.add(format_args!(
+                    "<clipPath id=\"c{name}\"><path d=\"{data}\"/></clipPath>\n<g clip-path=\"url(#c{name})\">\n"
+                ));
+            }
+            Item::Unclip => self.text += "</g>\n",
+        }
+    }
+
+    fn blend(&mut self, path: &Path, ends: [Vec2; 2], [first, last]: [String; 2]) {
+        let (name, data) = (self.names, data(path));
+        self.names += 1;
+        let [x1, y1, x2, y2] = [ends[0].x, ends[0].y, ends[1].x, ends[1].y].map(number);
+        self.add(format_args!(
+            "<linearGradient id=\"b{name}\" gradientUnits=\"userSpaceOnUse\" x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\">\
+             <stop stop-color=\"{first}\"/><stop offset=\"1\" stop-color=\"{last}\"/></linearGradient>\
+             <path d=\"{data}\" fill=\"url(#b{name})\"/>\n"
+        ));
+    }
+
+    fn image(&mut self, image: &Image) {
+        let png = STANDARD.encode(encode(image.size, &image.pixels, &[], Compression::High));
+        let [corner, right, down] = image.place;
+        let matrix = [right.x, right.y, down.x, down.y, corner.x, corner.y];
+        let [width, height] = image.size;
+        // Pixels are placed as units of the page, then turned: a unit square would be too small for some programs.
+        let matrix = std::array::from_fn(|at: usize| match at {
+            0 | 1 => f64::from(matrix[at]) / f64::from(width),
+            2 | 3 => f64::from(matrix[at]) / f64::from(height),
+            _ => f64::from(matrix[at]),
+        });
+        let [a, b, c, d, e, f] = matrix;
+        self.add(format_args!(
+            "<image width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
+             transform=\"matrix({a} {b} {c} {d} {e} {f})\" xlink:href=\"data:image/png;base64,{png}\"/>\n"
+        ));
+    }
+
+    /// A line of text. Whatever does not stand where the font alone would set it says where it stands.
+    fn run(&mut self, run: &TextRun) {
+        let weight = match run.weight {
+            Weight::Regular => 400,
+            Weight::SemiBold => 600,
+        };
+        let (size, baseline, colour) = (number(run.size), number(run.baseline), written(run.colour));
+        self.add(format_args!(
+            "<text xml:space=\"preserve\" y=\"{baseline}\" font-size=\"{size}\" font-weight=\"{weight}\" fill=\"{colour}\""
+        ));
+        let characters: Vec<_> = run.text.chars().zip(&run.glyphs).collect();
+        let pieces: Vec<_> = characters.chunk_by(|(_, one), (_, other)| self.goes_on(run.size, one, other)).collect();
+        if pieces.len() > 1 {
+            self.text.push('>');
+        }
+        for piece in &pieces {
+            let glyph = piece[0].1;
+            let (place, family) = (number(glyph.x), self.family(glyph.face));
+            let text = escaped(&piece.iter().map(|(character, _)| character).collect::<String>());
+            match pieces.len() {
+                1 => self.add(format_args!(" x=\"{place}\" font-family=\"{family}\">{text}")),
+                _ => self.add(format_args!("<tspan x=\"{place}\" font-family=\"{family}\">{text}</tspan>")),
+            }
+        }
+        self.text += "</text>\n";
+    }
+
+    /// Whether a glyph stands where the font sets it after another.
+    fn goes_on(&self, size: f32, one: &Glyph, other: &Glyph) -> bool {
+        const NEAR: f32 = 0.05;
+        let subset = self.subsets.iter().find(|subset| subset.face == one.face);
+        let end = subset.map(|subset| one.x + size / 1000.0 * subset.widths[usize::from(subset.glyph(one.id))]);
+        one.face == other.face && end.is_some_and(|end| (end - other.x).abs() < NEAR)
+    }
+
+    /// The embedded font, then the same font of the computer's own, then one like it.
+    fn family(&self, face: u8) -> String {
+        let own = self.subsets.iter().find(|subset| subset.face == face).and_then(|subset| subset.name(1));
+        let own = own.map_or(String::new(), |name| format!(" '{}',", escaped(&name.replace(['\'', '\\'], ""))));
+        format!("face{face},{own} Inter, sans-serif")
+    }
+}
+
+/// A length with up to two decimals.
+fn number(length: f32) -> String {
+    let hundredths = (f64::from(length) * 100.0).round() as i64;
+    let (sign, size) = (if hundredths < 0 { "-" } else { "" }, hundredths.unsigned_abs());
+    match (size / 100, size % 100) {
+        (whole, 0) => format!("{sign}{whole}"),
+        (whole, part) if part % 10 == 0 => format!("{sign}{whole}.{}", part / 10),
+        (whole, part) => format!("{sign}{whole}.{part:02}"),
+    }
+}
+
+/// A path as `d` says it.
+fn data(path: &Path) -> String {
+    let mut text = String::new();
+    let mut add = |letter: char, points: &[Vec2]| {
+        text.push(letter);
+        for (at, point) in points.iter().enumerate() {
+            let blank = if at > 0 { " " } else { "" };
+            write!(text, "{blank}{} {}", number(point.x), number(point.y)).expect("into memory");
+        }
+    };
+    for step in &path.0 {
+        match step {
+            Step::Move(to) => add('M', &[*to]),
+            Step::Line(to) => add('L', &[*to]),
+            Step::Cubic(points) => add('C', points),
+            Step::Close => add('Z', &[]),
+        }
+    }
+    text
+}
+
+fn fill(Paint { colour, alpha }: Paint) -> String {
+    let colour = written(colour);
+    let alpha = if alpha < 1.0 { format!(" fill-opacity=\"{alpha:.3}\"") } else { String::new() };
+    format!(" fill=\"{colour}\"{alpha}")
+}
+
+fn stroke(pen: &Pen, Paint { colour, alpha }: Paint) -> String {
+    let (colour, width) = (written(colour), number(pen.width));
+    let cap = if pen.round { " stroke-linecap=\"round\"" } else { "" };
+    let alpha = if alpha < 1.0 { format!(" stroke-opacity=\"{alpha:.3}\"") } else { String::new() };
+    let dash = match pen.dash[..] {
+        [] => String::new(),
+        _ => {
+            let lengths: Vec<_> = pen.dash.iter().map(|&length| number(length)).collect();
+            format!(" stroke-dasharray=\"{}\"", lengths.join(" "))
+        }
+    };
+    format!(" stroke=\"{colour}\" stroke-width=\"{width}\"{cap} stroke-linejoin=\"round\"{dash}{alpha}")
+}
+
+/// A text without the signs of XML, and without what XML does not allow.
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\n' | '\t' => safe.push(character),
+            '\u{fffe}' | '\u{ffff}' => {}
+            other if other.is_control() => {}
+            other => safe.push(other),
+        }
+    }
+    safe
+}
