@@ -8,7 +8,6 @@ use crate::reading::Mistake;
 #[cfg(feature = "render")]
 use crate::runner::Runner;
 use crate::scene::Scene;
-use crate::scene::Scene;
 use clap::Args;
 use serde_json::{Value, json};
 

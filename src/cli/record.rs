@@ -113,7 +113,7 @@ fn record(
     result
 }
 
-/// One frame of some runs of a scene, and the time series of the scene if it shows one; `None` if the user asked to stop.
+/// One frame of some runs of a scene, and the time series of the scene if its pictures need them; `None` if the user asked to stop.
 /// States wait in `folder`.
 #[cfg(feature = "render")]
 pub(super) fn one_frame(
@@ -124,23 +124,23 @@ pub(super) fn one_frame(
     options: &RunOptions,
     folder: &Path,
 ) -> Result<Option<(Frame, Option<History>)>, Failure> {
-    let course = scene.view.strip;
+    let wanted = scene.time_series();
     let mut frames = pool.install(|| {
         let runner = Runner::new(scene, runs);
-        let runner = match course {
-            Some(diagnostic) => runner.with_course(&[diagnostic]),
+        let runner = match wanted {
+            Some(wanted) => runner.with_time_series(wanted).with_difference(),
             None => runner,
         };
-        Frames::new(runner, &[frame], course.is_some(), folder)
+        Frames::new(runner, &[frame], wanted.is_some(), folder)
     });
-    let bar = options.telling.progress(&scene.title, frames.steps()[1]);
+    let bar = options.printing.progress(&scene.title, frames.steps()[1]);
     let (slice, mut history) = (slice(&scene.body), None);
     while !interrupt::requested() {
         let next = pool.install(|| frames.next(slice)).map_err(OutputError::writing(folder))?;
         bar.set_position(frames.steps()[0]);
         match next {
             Next::Working => {}
-            Next::Course(found) => history = Some(found),
+            Next::TimeSeries(found) => history = Some(found),
             Next::Frame(frame) => {
                 bar.finish_and_clear();
                 return Ok(Some((frame, history)));

@@ -131,7 +131,7 @@ impl Render {
             let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
             return Err(Failure::usage(message));
         };
-        if self.options.states || !self.animate.is_empty() || self.options.telling.json {
+        if self.options.states || !self.animate.is_empty() || self.options.printing.json {
             let message =
                 format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
             return Err(Failure::usage(message));
@@ -164,7 +164,7 @@ impl Render {
         let still = Still { pictures: &pictures, print, source: &source, title, tags: &tags };
         file.append(&still.file(format, gpu.as_ref(), self.device.samples)?)?;
         file.commit()?;
-        if self.options.telling.is_in_words() {
+        if self.options.printing.prints_text() {
             let [width, height] = scene.view.size;
             console::print(&format!("{name}  {width}×{height}\n"))?;
         }

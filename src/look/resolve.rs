@@ -5,7 +5,7 @@ use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
 use super::points::PointsRead;
-use super::print::unit;
+use super::print::{TextScaleFile, unit};
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
 use crate::reading::coordinates::vector;
@@ -68,7 +68,10 @@ pub(crate) fn resolve(
         },
         None => Visible::usual(dimension, body.len()),
     };
-    let panel = [size[0] / columns as u32, size[1] / runs.div_ceil(columns).max(1) as u32];
+    let usual = columns.unwrap_or(panels.clamp(1, 3));
+    // Type in points holds for one arrangement.
+    let columns = columns.or(matches!(typed.text_scale, TextScaleFile::Points(_)).then_some(usual));
+    let panel = [size[0] / usual as u32, size[1] / panels.div_ceil(usual).max(1) as u32];
     let way = [Way::Key("view"), Way::Key("text_scale")];
     let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
     let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;

@@ -16,7 +16,7 @@ use super::layout::Scale;
 use super::narrow::narrow;
 use super::text::{Fonts, Weight};
 use super::{Colour, Curve, Mark, MarkShape, Picture};
-use crate::look::{Look, Theme};
+use crate::look::{Style, Theme};
 use std::f64::consts::TAU;
 
 /// The figure.
@@ -79,7 +79,7 @@ const FAINT: f32 = 0.38;
 impl Ranges {
     /// Composes the figure.
     pub(crate) fn compose(&self) -> Picture {
-        let look = Look::of(Theme::Light);
+        let look = Style::of(Theme::Light);
         let fonts = Fonts::new(&look.font);
         let (palette, scale) = (look.palette, Scale::REFERENCE);
         let (marks, curves, words) = Default::default();
