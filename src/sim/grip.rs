@@ -96,6 +96,17 @@ impl Grip {
         }
     }
 
+    /// Like [`Self::moved`], with the positions after a `share` of the step.
+    pub(super) fn moved_by(
+        &self,
+        interval: Interval,
+        share: f64,
+        memory: &[f64],
+    ) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
+        let left = (1.0 - share) * interval.step;
+        self.moved(interval, memory).map(move |(node, to, speed)| (node, to - speed * left, speed))
+    }
+
     /// Writes the velocities of the nodes that are held at the end of a step, after the integrator has changed them.
     pub(super) fn hold(&self, interval: Interval, memory: &[f64], velocity: &mut [DVec3]) {
         for (node, _, speed) in self.moved(interval, memory) {

@@ -120,6 +120,17 @@ impl System {
         }
     }
 
+    /// Places the nodes that grips hold at the end of a step where they are after a `share` of it, with their velocity in
+    /// the step.
+    pub(super) fn place_held(&self, interval: Interval, share: f64, next: &mut State) {
+        let State { position, velocity, memory: Memory { constraints, .. }, .. } = next;
+        for (grip, memory) in self.grips(constraints) {
+            for (node, to, speed) in grip.moved_by(interval, share, memory) {
+                (position[node], velocity[node]) = (to, speed);
+            }
+        }
+    }
+
     /// Writes the velocities of the nodes that grips hold at the end of a step, after the integrator has changed them.
     pub(super) fn hold(&self, interval: Interval, after: &mut State) {
         let State { velocity, memory: Memory { constraints, .. }, .. } = after;

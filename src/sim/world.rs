@@ -7,7 +7,7 @@ use super::diagnostics::Diagnostic;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator};
-use super::kernel::ByKernel;
+use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Report};
 use super::part::Part;
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
@@ -52,9 +52,9 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// The fastest one that a model has.
-    pub fn of(model: &dyn ElasticModel) -> Self {
-        if model.known().is_some() { Self::Fast } else { Self::Reference }
+    /// The fastest one that a model has with an integrator.
+    pub fn of(model: &dyn ElasticModel, integrator: Integrator) -> Self {
+        if model.known().is_some() && Scheme::of(integrator).is_some() { Self::Fast } else { Self::Reference }
     }
 }
 
@@ -148,7 +148,8 @@ impl World {
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
         let fast = match bodies {
             [(body, model)] if kernel == Kernel::Fast => {
-                model.known().map(|model| ByKernel::new(body, model, integrator, gravity, step))
+                let known = model.known().zip(Scheme::of(integrator));
+                known.map(|(model, scheme)| ByKernel::new(body, model, scheme, gravity, step))
             }
             _ => None,
         };

@@ -13,7 +13,13 @@ use localshape::sim::topology::Springs;
 use localshape::sim::world::{Kernel, Moment, Stepping, Surroundings, World};
 use std::path::Path;
 
-const ALL: [Integrator; 3] = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
+const ALL: [Integrator; 5] = [
+    Integrator::SemiImplicitEuler,
+    Integrator::ExplicitEuler,
+    Integrator::VelocityVerlet,
+    Integrator::Pefrl,
+    Integrator::RungeKutta,
+];
 
 /// Continues from a state that was written and read, in a new world.
 fn revived(world: &World, mut fresh: World) -> World {

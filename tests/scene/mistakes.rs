@@ -305,6 +305,16 @@ fn keys_that_exclude_or_need_each_other() {
     );
     case(PLANE, "mass = 1", "mass = 1\nmasses = [1, 1, 1, 1]", &[(10, 1, "both `mass` and `masses`")]);
     case(SPACE, "1e4 }", "1e4, damping = 1, damping_ratio = 1 }", &[(8, 63, "both `damping` and `damping_ratio`")]);
+    let method = |to: &str| format!("duration = 3\nintegrator = '{to}'");
+    let damped = SPACE.replace("1e4 }", "1e4, damping = 1 }");
+    case(&damped, "duration = 3", &method("pefrl"), &[(4, 14, "\"pefrl\" has substeps backwards in time")]);
+    let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
+    case(
+        &passes,
+        "duration = 3",
+        &method("runge-kutta"),
+        &[(4, 14, "a fixed number of passes gives forces that depend")],
+    );
     case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'exact' }", &[(8, 59, "without; take it out")]);
     case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", &[(6, 1, "`body.masses` needs `nodes`")]);
     case(

@@ -64,13 +64,22 @@ pub(super) fn resolve(
             return None;
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
+        if let Some(reason) = integrator.refusal(model.prepare(&Arc::new(body.body.clone())).as_ref()) {
+            let path = match run.integrator {
+                Some(_) => vec![Way::Key("run"), Way::Index(at), Way::Key("integrator")],
+                None => vec![Way::Key("time"), Way::Key("integrator")],
+            };
+            let message = format!("{} {reason}", words::quoted(&crate::sim::words::typed(&integrator)));
+            report.at(&path, message, None);
+            return None;
+        }
         let colour = run.colour.map(|colour| colour.0);
-        let fastest = Kernel::of(model.as_ref());
+        let fastest = Kernel::of(model.as_ref(), integrator);
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
             let path = [Way::Key("run"), Way::Index(at), Way::Key("kernel")];
             let message = format!(
-                "`run[{at}].kernel` is \"fast\", but this `model.rotation` or `model.damping_of` has no vectorised steps"
+                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of` has no vectorised steps"
             );
             report.at(&path, message, "remove it, or write \"reference\"".to_owned());
             return None;

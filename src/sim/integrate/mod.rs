@@ -1,14 +1,16 @@
 //! Time integration: Eqs. (2) and (3) and alternatives.
 
+pub(in crate::sim) mod composition;
 mod explicit_euler;
+mod runge_kutta;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
 use super::crew::Crew;
 use super::dynamics::{Dynamics, Runaway, SpeedLimit};
-use super::model::Scratch;
+use super::model::{ForceModel, Scratch};
 use super::motion::Interval;
-use super::state::State;
+use super::state::{Nodes, State};
 use super::system::System;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -27,6 +29,36 @@ pub enum Integrator {
     /// Velocity Verlet: of second order, and symplectic without damping and rebounds. It evaluates the forces once in
     /// each step, and twice with damping.
     VelocityVerlet,
+    /// Position-extended Forest–Ruth-like method: of fourth order and symplectic, with four evaluations a step and an
+    /// error about 30 times smaller than that of `forest-ruth` for the same number of evaluations. Without damping only.
+    Pefrl,
+    /// Forest–Ruth: of fourth order and symplectic, with three evaluations a step. Without damping only.
+    ForestRuth,
+    /// Blanes–Moan, the Runge–Kutta–Nyström method with 14 evaluations a step: of sixth order and symplectic. Without
+    /// damping only.
+    BlanesMoan,
+    /// The classical Runge–Kutta method: of fourth order, with four evaluations a step, also with damping. Not
+    /// symplectic: in long runs its energy drifts.
+    RungeKutta,
+}
+
+impl Integrator {
+    /// Why this method cannot advance a model, and which method can; `None` if it can.
+    pub(crate) fn refusal(self, forces: &dyn ForceModel) -> Option<&'static str> {
+        match self {
+            Self::SemiImplicitEuler | Self::ExplicitEuler | Self::VelocityVerlet => None,
+            _ if forces.depends_on_history() => Some(
+                "evaluates forces several times a step, but a fixed number of passes gives forces that depend on the \
+                 evaluation before; use `rotation = \"exact\"` without `passes`, or \"velocity-verlet\"",
+            ),
+            Self::RungeKutta => None,
+            _ if forces.is_damped() => Some(
+                "has substeps backwards in time, in which damping would feed energy in; use \"runge-kutta\" or \
+                 \"velocity-verlet\", or take the damping out",
+            ),
+            _ => None,
+        }
+    }
 }
 
 /// The reference code: evaluates forces, then integrates. Every faster way is tested against it.
@@ -70,6 +102,14 @@ impl Dynamics for ByForces {
                 }
                 Integrator::ExplicitEuler => explicit_euler::step(system, interval, limit, state, &mut self.trial),
                 Integrator::VelocityVerlet => velocity_verlet::step(system, interval, limit, state, &mut self.trial),
+                Integrator::Pefrl => composition::PEFRL.step(system, interval, limit, state, &mut self.trial),
+                Integrator::ForestRuth => {
+                    composition::FOREST_RUTH.step(system, interval, limit, state, &mut self.trial)
+                }
+                Integrator::BlanesMoan => {
+                    composition::BLANES_MOAN.step(system, interval, limit, state, &mut self.trial)
+                }
+                Integrator::RungeKutta => runge_kutta::step(system, interval, limit, state, &mut self.trial),
             }?;
             self.trial.accept(state);
         }
@@ -109,6 +149,40 @@ impl Trial {
         next.memory.integrator.clear();
         check(forces, limit)
     }
+}
+
+/// Computes accelerations (m/s²) and the next memory of the models, and stores them one after the other.
+fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, scratch: &mut Scratch) {
+    out.resize(3 * at.position.len() + memory.len(), 0.0);
+    let (acceleration, next) = out.split_at_mut(3 * at.position.len());
+    let acceleration: &mut [DVec3] = bytemuck::cast_slice_mut(acceleration);
+    system.forces(at, memory, next, scratch, acceleration);
+    acceleration.iter_mut().zip(&system.mass).for_each(|(force, &mass)| *force /= mass);
+}
+
+/// Splits a stored evaluation into accelerations and memory of the models.
+fn split<'a>(evaluation: &'a [f64], system: &System) -> (&'a [DVec3], &'a [f64]) {
+    let (acceleration, model) = evaluation.split_at(3 * system.mass.len());
+    (bytemuck::cast_slice(acceleration), model)
+}
+
+/// Contact and kinematic constraints at the end of a step that was computed without them, by a method of several
+/// evaluations. A node rebounds as if its mean acceleration in the step had been constant.
+fn finish(
+    system: &System,
+    interval: Interval,
+    limit: f64,
+    state: &State,
+    next: &mut State,
+    mean: &mut Vec<f64>,
+) -> Result<(), Runaway> {
+    check(&next.velocity, limit)?;
+    mean.clear();
+    let change = next.velocity.iter().zip(&state.velocity).map(|(&after, &before)| (after - before) / interval.step);
+    mean.extend(change.flat_map(|acceleration| acceleration.to_array()));
+    next.memory.integrator.clear();
+    system.constrain(interval, state, next, Some(bytemuck::cast_slice(mean)));
+    Ok(())
 }
 
 /// Whether all velocities (m/s) are within the limit.

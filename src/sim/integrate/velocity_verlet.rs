@@ -13,10 +13,7 @@
 //! Its memory, without damping, is the evaluation at the present state: the accelerations, then the memory of the
 //! models that belongs to them.
 
-use super::{Interval, Runaway, State, System, Trial, check};
-use crate::sim::model::Scratch;
-use crate::sim::state::Nodes;
-use glam::DVec3;
+use super::{Interval, Runaway, State, System, Trial, check, evaluate, split};
 
 /// Computes a step; `limit` (m/s) is the greatest speed.
 pub(super) fn step(
@@ -56,19 +53,4 @@ pub(super) fn step(
         std::mem::swap(&mut next.memory.integrator, at_end);
     }
     Ok(())
-}
-
-/// Computes accelerations (m/s²) and the next memory of the models, and stores them one after the other.
-fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, scratch: &mut Scratch) {
-    out.resize(3 * at.position.len() + memory.len(), 0.0);
-    let (acceleration, next) = out.split_at_mut(3 * at.position.len());
-    let acceleration: &mut [DVec3] = bytemuck::cast_slice_mut(acceleration);
-    system.forces(at, memory, next, scratch, acceleration);
-    acceleration.iter_mut().zip(&system.mass).for_each(|(force, &mass)| *force /= mass);
-}
-
-/// Splits a stored evaluation into accelerations and memory of the models.
-fn split<'a>(evaluation: &'a [f64], system: &System) -> (&'a [DVec3], &'a [f64]) {
-    let (acceleration, model) = evaluation.split_at(3 * system.mass.len());
-    (bytemuck::cast_slice(acceleration), model)
 }

@@ -10,7 +10,6 @@ use crate::sim::body::{Body, Dimension};
 use crate::sim::contact::{Bound, Floor, Obstacle, Placed};
 use crate::sim::crew::Crew;
 use crate::sim::dynamics::{Dynamics, Runaway, SpeedLimit};
-use crate::sim::integrate::Integrator;
 use crate::sim::lanes::Set;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::{RotationReading, ShapeBased};
@@ -34,21 +33,10 @@ pub(in crate::sim) struct ByKernel {
 
 impl ByKernel {
     /// The kernel for a model on a body.
-    pub(in crate::sim) fn new(
-        body: &Arc<Body>,
-        model: Known<'_>,
-        integrator: Integrator,
-        gravity: DVec3,
-        step: f64,
-    ) -> Self {
+    pub(in crate::sim) fn new(body: &Arc<Body>, model: Known<'_>, scheme: Scheme, gravity: DVec3, step: f64) -> Self {
         /// Relative to the size of the body. Round-off, 1e-15 of the distance from the origin, decides whether a node
         /// is on a surface, so this suffices for bodies that are nearer than a billion times their size.
         const MARGIN: f64 = 1e-3;
-        let scheme = match integrator {
-            Integrator::SemiImplicitEuler => Scheme::SemiImplicitEuler,
-            Integrator::ExplicitEuler => Scheme::ExplicitEuler,
-            Integrator::VelocityVerlet => Scheme::VelocityVerlet,
-        };
         let (stepper, stiffness, of) = match model {
             Known::ShapeBased(model) => {
                 let rotation = rotation(body, model);
@@ -142,9 +130,10 @@ impl Dynamics for ByKernel {
                 }
             };
             let met = Met::new(obstacles, system, way.earliest()..until, *margin);
-            let place = |step: u64, place: &mut Place<'_>| {
+            let place = |step: u64, share: f64, place: &mut Place<'_>| {
                 for (grip, memory) in system.grips(memory) {
-                    grip.moved(system.interval(step), memory).for_each(|(node, to, speed)| place(node, to, speed));
+                    grip.moved_by(system.interval(step), share, memory)
+                        .for_each(|(node, to, speed)| place(node, to, speed));
                 }
             };
             let around = Around {

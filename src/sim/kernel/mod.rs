@@ -21,6 +21,7 @@ pub(in crate::sim) mod stepper;
 mod tests;
 
 pub(in crate::sim) use drive::ByKernel;
+pub(in crate::sim) use stepper::Scheme;
 
 use crate::sim::contact::{Bound, Floor};
 use glam::DVec3;
@@ -45,8 +46,9 @@ pub(in crate::sim) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3)
 /// Called with a node, its position (m) and its velocity (m/s).
 pub(in crate::sim) type Place<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
 
-/// Calls its argument for each node that grips hold at the end of a step of this number.
-pub(in crate::sim) type Held<'a> = dyn Fn(u64, &mut Place<'_>) + Sync + 'a;
+/// Calls its argument for each node that grips hold at the end of a step of this number, with its position after a share
+/// of the step.
+pub(in crate::sim) type Held<'a> = dyn Fn(u64, f64, &mut Place<'_>) + Sync + 'a;
 
 /// What acts on the nodes besides elements and gravity. Its functions take the number of a step.
 #[derive(Clone, Copy)]

@@ -7,7 +7,7 @@ use crate::sim::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
 /// What a pass computes from the forces of one evaluation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::sim) enum Stage {
     /// Eq. (2), then Eq. (3) with the new velocity.
     SemiImplicitEuler,
@@ -21,12 +21,28 @@ pub(in crate::sim) enum Stage {
     FinishDrift,
     /// The first half with known accelerations: no force is evaluated.
     Coast,
+    /// The first drift of a composition, by a share of the step: no force is evaluated.
+    Leave(f64),
+    /// A kick and a drift of a composition, by shares of the step.
+    Kick([f64; 2]),
+    /// Its last kick and drift, at whose end contact is computed.
+    Arrive([f64; 2]),
 }
 
 impl Stage {
-    /// Whether accelerations are kept from one stage to the next.
-    pub(in crate::sim) fn is_verlet(self) -> bool {
+    /// Whether accelerations are kept from one stage to the next; in a composition it is the velocity at the start.
+    pub(in crate::sim) fn keeps_acceleration(self) -> bool {
         !matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
+    }
+
+    /// Whether forces are evaluated.
+    pub(in crate::sim) fn has_forces(self) -> bool {
+        !matches!(self, Self::Coast | Self::Leave(_))
+    }
+
+    /// Whether contact is computed at its end.
+    fn has_contact(self) -> bool {
+        !matches!(self, Self::Finish | Self::Leave(_) | Self::Kick(_))
     }
 }
 
@@ -115,6 +131,23 @@ impl<'a, L: Lanes> Motion<'a, L> {
                 self.drift(nodes);
             }
             Stage::Coast => self.drift(nodes),
+            Stage::Leave(share) => {
+                nodes.acceleration = nodes.velocity;
+                self.shift(nodes, share);
+                return 0;
+            }
+            Stage::Kick([kick, drift]) => {
+                self.kick(nodes, now, kick);
+                self.shift(nodes, drift);
+                return 0;
+            }
+            Stage::Arrive([kick, drift]) => {
+                self.kick(nodes, now, kick);
+                self.shift(nodes, drift);
+                for axis in 0..3 {
+                    nodes.acceleration[axis] = (nodes.velocity[axis] - nodes.acceleration[axis]).div(self.step);
+                }
+            }
             Stage::Finish | Stage::FinishDrift => {
                 for axis in 0..3 {
                     let gain = now[axis] - nodes.acceleration[axis];
@@ -134,7 +167,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
     /// The lanes inside a bound, whose contact has to be computed; also lanes that have no node.
     #[inline(always)]
     pub(in crate::sim) fn near(&self, nodes: &Nodes<L>) -> u32 {
-        if self.stage == Stage::Finish {
+        if !self.stage.has_contact() {
             return 0;
         }
         let mut near = 0;
@@ -153,17 +186,35 @@ impl<'a, L: Lanes> Motion<'a, L> {
         if inside == 0 {
             return;
         }
-        if let (Some(floor), false) = (&self.around.floor, self.stage.is_verlet()) {
+        if let (Some(floor), false) = (&self.around.floor, self.stage.keeps_acceleration()) {
             return rebound(floor, nodes, L::mask(inside));
         }
         let mut position = each!(3, axis => nodes.position[axis].to_array());
         let mut velocity = each!(3, axis => nodes.velocity[axis].to_array());
-        // The constant acceleration in the step: zero, except in velocity Verlet.
-        let rests = if self.stage.is_verlet() { nodes.acceleration } else { [zero; 3] };
+        // The constant acceleration in the step, or the mean one: zero, except in velocity Verlet and compositions.
+        let rests = if self.stage.keeps_acceleration() { nodes.acceleration } else { [zero; 3] };
         let rests = each!(3, axis => rests[axis].to_array());
         touch(self.around.resolve, self.number, inside, &mut position, &mut velocity, &rests);
         nodes.position = each!(3, axis => L::from_array(position[axis]));
         nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
+    }
+
+    /// `V += A ΔT` for a share of the step.
+    #[inline(always)]
+    fn kick(&self, nodes: &mut Nodes<L>, acceleration: [L; 3], share: f64) {
+        let step = self.step * L::splat(share);
+        for axis in 0..3 {
+            nodes.velocity[axis] = acceleration[axis].mul_add(step, nodes.velocity[axis]);
+        }
+    }
+
+    /// `P += V ΔT` for a share of the step.
+    #[inline(always)]
+    fn shift(&self, nodes: &mut Nodes<L>, share: f64) {
+        let step = self.step * L::splat(share);
+        for axis in 0..3 {
+            nodes.position[axis] = nodes.velocity[axis].mul_add(step, nodes.position[axis]);
+        }
     }
 
     /// The new position of velocity Verlet, and the velocity predicted with constant acceleration.

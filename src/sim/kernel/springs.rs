@@ -278,13 +278,13 @@ impl Arrays {
             let mut nodes = Nodes {
                 position: self.load(0, at),
                 velocity: self.load(VELOCITY, at),
-                acceleration: if stage.is_verlet() { self.load(ACCELERATION, at) } else { zero },
+                acceleration: if stage.keeps_acceleration() { self.load(ACCELERATION, at) } else { zero },
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
             let lost = motion.advance(&mut nodes, force, inverse_mass);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
-            if stage.is_verlet() {
+            if stage.keeps_acceleration() {
                 self.store(ACCELERATION, at, nodes.acceleration);
             }
             lost
@@ -328,7 +328,7 @@ impl OneSlab<'_> {
             let base = chunk * CHUNK;
             let count = (springs.nodes.next_multiple_of(BLOCK) - base).min(CHUNK);
             own.0 = [[0.0; CHUNK]; 3];
-            let families = if stage == Stage::Coast { &[][..] } else { &springs.families };
+            let families = if stage.has_forces() { &springs.families } else { &[][..] };
             for (row, family) in families.iter().enumerate() {
                 let &Family { offset, tension, tensions } = family;
                 let listed = tensions.map(|begin| all_tensions.wrapping_add(begin));

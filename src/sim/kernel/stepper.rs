@@ -4,11 +4,13 @@ use super::motion::Stage;
 use super::{Around, Lost};
 use crate::sim::crew::Crew;
 use crate::sim::dynamics::Runaway;
+use crate::sim::integrate::Integrator;
+use crate::sim::integrate::composition::{self, Composition};
 use glam::DVec3;
 use std::ops::Range;
 
 /// How positions and velocities are advanced by a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::sim) enum Scheme {
     /// Eq. (2), then Eq. (3) with the new velocity.
     SemiImplicitEuler,
@@ -16,6 +18,28 @@ pub(in crate::sim) enum Scheme {
     ExplicitEuler,
     /// Velocity Verlet.
     VelocityVerlet,
+    /// Drifts and kicks.
+    Composition(&'static Composition),
+}
+
+impl Scheme {
+    /// Whether nodes have three more numbers, from one pass to the next.
+    pub(in crate::sim) fn keeps_acceleration(self) -> bool {
+        matches!(self, Self::VelocityVerlet | Self::Composition(_))
+    }
+
+    /// The scheme of an integrator; `None` for one that has no vectorised steps.
+    pub(in crate::sim) fn of(integrator: Integrator) -> Option<Self> {
+        match integrator {
+            Integrator::SemiImplicitEuler => Some(Self::SemiImplicitEuler),
+            Integrator::ExplicitEuler => Some(Self::ExplicitEuler),
+            Integrator::VelocityVerlet => Some(Self::VelocityVerlet),
+            Integrator::Pefrl => Some(Self::Composition(&composition::PEFRL)),
+            Integrator::ForestRuth => Some(Self::Composition(&composition::FOREST_RUTH)),
+            Integrator::BlanesMoan => Some(Self::Composition(&composition::BLANES_MOAN)),
+            Integrator::RungeKutta => None,
+        }
+    }
 }
 
 /// One pass over all nodes, with one evaluation of the forces unless they are known.
@@ -27,6 +51,8 @@ pub(in crate::sim) struct Pass {
     pub(in crate::sim) number: u64,
     /// Whether the rotations of this pass are stored, so that the next evaluation starts from them.
     pub(in crate::sim) commit: bool,
+    /// The share of the step after which positions are at its end.
+    pub(in crate::sim) share: f64,
 }
 
 /// The passes of a number of steps.
@@ -54,6 +80,7 @@ impl Passes {
         match self.scheme {
             Scheme::VelocityVerlet if self.is_damped || self.is_held => 2 * self.steps,
             Scheme::VelocityVerlet if self.steps > 0 => self.steps + 1,
+            Scheme::Composition(composition) => (composition.evaluations() as u64 + 1) * self.steps,
             _ => self.steps,
         }
     }
@@ -62,6 +89,7 @@ impl Passes {
     #[inline(always)]
     pub(in crate::sim) fn get(&self, pass: u64) -> Pass {
         let is_last = pass + 1 == self.len();
+        let mut share = 1.0;
         let (stage, step, commit) = match self.scheme {
             Scheme::SemiImplicitEuler => (Stage::SemiImplicitEuler, pass, true),
             Scheme::ExplicitEuler => (Stage::ExplicitEuler, pass, true),
@@ -73,8 +101,20 @@ impl Passes {
             Scheme::VelocityVerlet if pass == 0 => (Stage::Drift, 0, true),
             Scheme::VelocityVerlet if is_last => (Stage::Finish, pass - 1, false),
             Scheme::VelocityVerlet => (Stage::FinishDrift, pass, true),
+            Scheme::Composition(composition) => {
+                let stages = composition.evaluations() as u64 + 1;
+                let (step, at) = (pass / stages, (pass % stages) as usize);
+                let drift = composition.drift(at);
+                let stage = match at {
+                    0 => Stage::Leave(drift),
+                    _ if at < composition.evaluations() => Stage::Kick([composition.kick(at - 1), drift]),
+                    _ => Stage::Arrive([composition.kick(at - 1), drift]),
+                };
+                share = composition.share(at);
+                (stage, step, true)
+            }
         };
-        Pass { stage, number: self.first + step, commit }
+        Pass { stage, number: self.first + step, commit, share }
     }
 }
 
@@ -182,7 +222,8 @@ impl Way {
         // so that this decides only in which step a run stops that does.
         (0..passes.len()).find_map(|pass| {
             let lost = stepper.run(passes, pass..pass + 1, around, crew);
-            grips(passes.get(pass).number, &mut |node, position, velocity| {
+            let Pass { number, share, .. } = passes.get(pass);
+            grips(number, share, &mut |node, position, velocity| {
                 stepper.set_node(node, position, velocity);
             });
             lost

@@ -177,6 +177,12 @@ pub trait ForceModel: Send + Sync {
     /// Whether the forces depend on velocities.
     fn is_damped(&self) -> bool;
 
+    /// Whether forces depend, beyond round-off, on the memory, that is, on the evaluation before. Methods that evaluate
+    /// forces several times a step are of their order only if they do not.
+    fn depends_on_history(&self) -> bool {
+        false
+    }
+
     /// Energy and residuals, from the same computation as the forces with these nodes and this memory. Calls `share`
     /// for each element or spring, in order.
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;

@@ -369,6 +369,11 @@ impl ForceModel for Elements {
         self.model.damping > 0.0
     }
 
+    /// A fixed number of passes leaves an error that depends on the rotation from which they start.
+    fn depends_on_history(&self) -> bool {
+        matches!(self.solver, Solver::Space | Solver::Linear) && self.model.rotation != RotationReading::Exact
+    }
+
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
         let mut shares = vec![0.0; self.rest.len()];
         let mut alphas = vec![0.0; self.body.elements.len()];

@@ -23,8 +23,8 @@ impl Work for OnePart<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
         let part = &self.body.parts[self.part];
-        let Pass { stage, number, commit } = self.pass;
-        if stage != Stage::Coast {
+        let Pass { stage, number, commit, .. } = self.pass;
+        if stage.has_forces() {
             for class in &part.classes {
                 let elements = Elements { part, class, constants: &self.body.constants, commit };
                 match (self.body.law, self.body.constants.damping > 0.0) {
@@ -100,12 +100,12 @@ impl<L: Lanes> Own<'_, L> {
             let force: [L; 3] =
                 each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
             let mut acceleration = [L::splat(0.0); 3];
-            if self.stage.is_verlet() {
+            if self.stage.keeps_acceleration() {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = Nodes { position, velocity, acceleration };
             let lost = self.motion.advance(&mut nodes, force, inverse_mass);
-            if self.stage.is_verlet() {
+            if self.stage.keeps_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
             let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);

@@ -234,7 +234,7 @@ impl Lattice {
         let grid = Grid::of(body)?;
         let (stride, row) = (grid.stride(), grid.row());
         let [_, rows, planes] = grid.cells;
-        let parts = if scheme == Scheme::VelocityVerlet { 10 } else { 7 };
+        let parts = if scheme.keeps_acceleration() { 10 } else { 7 };
         let [nodes, turns] = [(planes + 1) * parts * stride, planes * 4 * grid.box_stride()];
         let kept = [nodes, turns].map(Aligned::zeros);
         let [mut nodes, turns] = [nodes, turns].map(Aligned::zeros);

@@ -13,7 +13,7 @@ use crate::sim::contact::{Bound, Obstacle, Shape};
 use crate::sim::crew::Crew;
 use crate::sim::dynamics::Runaway;
 use crate::sim::grip::Grip;
-use crate::sim::integrate::Integrator;
+use crate::sim::integrate::{Integrator, composition};
 use crate::sim::lanes::Set;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::mass_spring::MassSpring;
@@ -192,6 +192,8 @@ pub(super) fn stepped_by_reference(
         Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
         Scheme::ExplicitEuler => Integrator::ExplicitEuler,
         Scheme::VelocityVerlet => Integrator::VelocityVerlet,
+        Scheme::Composition(_) if scheme == PEFRL => Integrator::Pefrl,
+        Scheme::Composition(_) => Integrator::BlanesMoan,
     };
     World::new(body, start.clone(), model, around, Stepping { integrator, step, kernel: Kernel::Reference })
 }
@@ -222,3 +224,5 @@ fn distance(a: &State, b: &State) -> f64 {
 
 pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
+pub(super) const PEFRL: Scheme = Scheme::Composition(&composition::PEFRL);
+const BLANES_MOAN: Scheme = Scheme::Composition(&composition::BLANES_MOAN);

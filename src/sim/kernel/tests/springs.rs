@@ -6,7 +6,7 @@ use super::*;
 fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
     let start = start(body, 6);
     let model = MassSpring { stiffness: STIFFNESS, damping, springs: springs.into() };
-    for scheme in [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet] {
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         let mut world = reference(body, &start, &model, scheme, Vec::new());
         world.advance(STEPS);
         let (mut by_families, mut gathered): (Option<State>, Option<State>) = (None, None);

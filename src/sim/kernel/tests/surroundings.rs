@@ -15,7 +15,7 @@ fn nodes_rebound_as_in_the_reference() {
         restitution: 0.5,
         friction: 0.3,
     };
-    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         let model = shape_based(TWICE, 10.0);
         let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
         world.advance(300);
@@ -43,7 +43,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
     let body = pieces([4, 3, 4], &[4, 8], 15);
     let start = start(&body, 5);
     let start = (start.clone(), rotations(&body, &start));
-    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet] {
+    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         for damping in [0.0, 10.0] {
             let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
             let mut one_by_one = make();
@@ -115,7 +115,8 @@ fn what_holds_and_moves_is_that_of_the_reference() {
             (&lattice, Box::new(spring(&listed))),
         ];
         for (body, model) in models {
-            for integrator in [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet] {
+            let all = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
+            for integrator in all.into_iter().chain([Integrator::Pefrl]) {
                 // Without damping its energy grows without bound.
                 if integrator == Integrator::ExplicitEuler && damping == 0.0 {
                     continue;

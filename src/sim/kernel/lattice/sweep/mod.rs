@@ -5,7 +5,7 @@ mod plane;
 use super::{Chunk, Grid, Lattice, Parameters, Signal, Slab, slot};
 use crate::sim::crew::{Crew, wait_until};
 use crate::sim::kernel::memory::Aligned;
-use crate::sim::kernel::motion::{Motion, Stage};
+use crate::sim::kernel::motion::Motion;
 use crate::sim::kernel::rotation::{Arctangent, Optimum, Solver};
 use crate::sim::kernel::stepper::{Pass, Passes, Scheme};
 use crate::sim::kernel::{Around, Lost, Rotation};
@@ -191,15 +191,15 @@ impl Sweep<'_> {
     fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Lost>) {
         let [first, end] = self.some;
         for pass in 0..end - first {
-            let Pass { stage, number, commit } = self.passes.get(first + pass);
+            let Pass { stage, number, commit, .. } = self.passes.get(first + pass);
             let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
             // SAFETY: the arrays belong to a lattice, all to this grid, and are accessed by no one but the other
             // threads.
             let bad = unsafe {
-                if stage == Stage::Coast {
-                    self.coast::<L>(pass, &motion)
-                } else {
+                if stage.has_forces() {
                     self.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
+                } else {
+                    self.coast::<L>(pass, &motion)
                 }
             };
             if let Some(node) = bad {

@@ -1,0 +1,127 @@
+//! Symmetric compositions of drifts, `P += a V ΔT`, and kicks, `V += b F/m ΔT`: symplectic methods of higher order for
+//! forces that depend on positions alone.
+//!
+//! Kinematic constraints place their nodes after every drift. Contact acts at the end of the step: in a step in which a
+//! node rebounds, every method is of first order.
+
+use super::{Interval, Runaway, State, System, Trial, evaluate, finish, split};
+
+/// The first half of a palindrome: drift, kick, drift, …
+#[derive(Debug, PartialEq)]
+pub(in crate::sim) struct Composition {
+    /// The shares `a` of the step. The middle one, for an even number of kicks, comes last.
+    drifts: &'static [f64],
+    /// The shares `b` of the step. The middle one, for an odd number of kicks, comes last.
+    kicks: &'static [f64],
+    /// The number of kicks: of evaluations of the forces in each step.
+    evaluations: usize,
+}
+
+/// E. Forest, R. Ruth, Physica D 43, 105 (1990), with `θ = 1/(2 − ∛2)`.
+pub(in crate::sim) static FOREST_RUTH: Composition =
+    Composition { drifts: &[0.5 * THETA, 0.5 - 0.5 * THETA], kicks: &[THETA, 1.0 - 2.0 * THETA], evaluations: 3 };
+const THETA: f64 = 1.351_207_191_959_657_8;
+
+/// I. Omelyan, I. Mryglod, R. Folk, Computer Physics Communications 146, 188 (2002), Eq. (20): ξ, λ and χ.
+pub(in crate::sim) static PEFRL: Composition =
+    Composition { drifts: &[XI, CHI, 1.0 - 2.0 * (CHI + XI)], kicks: &[0.5 - LAMBDA, LAMBDA], evaluations: 4 };
+const XI: f64 = 0.178_617_895_844_809_1;
+const LAMBDA: f64 = -0.212_341_831_062_605_4;
+const CHI: f64 = -0.066_264_582_669_818_49;
+
+/// S. Blanes, P. Moan, Journal of Computational and Applied Mathematics 142, 313 (2002), table 3: SRKN14a, of order 6.
+pub(in crate::sim) static BLANES_MOAN: Composition = Composition {
+    drifts: &[
+        0.037_859_319_840_611_6,
+        0.102_635_633_102_435,
+        -0.025_867_888_266_558_7,
+        0.314_241_403_071_447,
+        -0.130_144_459_517_415,
+        0.106_417_700_369_543,
+        -0.008_794_243_128_510_58,
+        // The sum of all shares is 1.
+        0.207_305_069_056_895_36,
+    ],
+    kicks: &[
+        0.091_719_152_624_461_65,
+        0.183_983_170_005_006,
+        -0.056_534_365_832_888_27,
+        0.004_914_688_774_712_854,
+        0.143_761_127_168_358,
+        0.328_567_693_746_804,
+        -0.196_411_466_486_454_23,
+    ],
+    evaluations: 14,
+};
+
+impl Composition {
+    /// The number of kicks in each step.
+    pub(in crate::sim) fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// The share of the step of a drift; there is one more than kicks.
+    pub(in crate::sim) fn drift(&self, at: usize) -> f64 {
+        self.drifts[at.min(self.evaluations - at)]
+    }
+
+    /// The share of the step of a kick.
+    pub(in crate::sim) fn kick(&self, at: usize) -> f64 {
+        self.kicks[at.min(self.evaluations - 1 - at)]
+    }
+
+    /// The share of the step that has passed after a drift.
+    pub(in crate::sim) fn share(&self, at: usize) -> f64 {
+        if at == self.evaluations { 1.0 } else { (0..=at).map(|at| self.drift(at)).sum() }
+    }
+
+    /// Computes a step; `limit` (m/s) is the greatest speed.
+    pub(super) fn step(
+        &self,
+        system: &System,
+        interval: Interval,
+        limit: f64,
+        state: &State,
+        trial: &mut Trial,
+    ) -> Result<(), Runaway> {
+        let Trial { next, evaluations: [evaluation, mean], scratch } = trial;
+        next.position.copy_from_slice(&state.position);
+        next.velocity.copy_from_slice(&state.velocity);
+        next.memory.model.copy_from_slice(&state.memory.model);
+        for at in 0..=self.evaluations {
+            let drift = self.drift(at) * interval.step;
+            for (position, &velocity) in next.position.iter_mut().zip(&next.velocity) {
+                *position += velocity * drift;
+            }
+            if at == self.evaluations {
+                break;
+            }
+            system.place_held(interval, self.share(at), next);
+            evaluate(system, next.nodes(), &next.memory.model, evaluation, scratch);
+            let (acceleration, model) = split(evaluation, system);
+            next.memory.model.copy_from_slice(model);
+            let kick = self.kick(at) * interval.step;
+            for (velocity, &acceleration) in next.velocity.iter_mut().zip(acceleration) {
+                *velocity += acceleration * kick;
+            }
+        }
+        finish(system, interval, limit, state, next, mean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Drifts and kicks add up to one step each.
+    #[test]
+    fn shares_add_up_to_the_step() {
+        for method in [&FOREST_RUTH, &PEFRL, &BLANES_MOAN] {
+            let count = method.evaluations;
+            let drift: f64 = (0..=count).map(|at| method.drift(at)).sum();
+            let kick: f64 = (0..count).map(|at| method.kick(at)).sum();
+            assert!((drift - 1.0).abs() < 1e-14 && (kick - 1.0).abs() < 1e-14, "{drift} {kick}");
+            assert_eq!((method.drifts.len(), method.kicks.len()), (count / 2 + 1, count.div_ceil(2)));
+        }
+    }
+}
