@@ -447,7 +447,8 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL).with_difference();
+        let mut runner =
+            Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL).with_difference();
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }

@@ -246,13 +246,7 @@ impl Writer<'_> {
 
     /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
     /// room. Returns where it ends (px).
-    pub(super) fn scale_bar(
-        &mut self,
-        panel: Rectangle,
-        between: [f64; 2],
-        metres: f64,
-        pixels: f64,
-    ) -> Option<f64> {
+    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, pixels: f64) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
         let text = number::plain_metres(metres);

@@ -7,7 +7,7 @@
 
 use super::camera::{Framing, Lens};
 use super::layout::{self, Rectangle, Scale};
-use crate::history::{TimeSeries, History};
+use crate::history::{History, TimeSeries};
 use crate::look::{Place, axes};
 use crate::scene::Scene;
 use crate::sim::body::Dimension;

@@ -118,7 +118,10 @@ impl Scene {
             Shape::Floor { .. } => one.floor(0.0) != ground,
             _ => false,
         };
-        let needed = view.strip.is_some() || view.looks_ahead() || view.camera.follow || (!is_flat && self.obstacles.iter().any(has_size));
+        let needed = view.strip.is_some()
+            || view.looks_ahead()
+            || view.camera.follow
+            || (!is_flat && self.obstacles.iter().any(has_size));
         needed.then_some(view.strip.as_slice())
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Without a graphics adapter these tests are skipped with a message. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 
-mod compared;
 mod camera;
+mod compared;
 mod fields;
 mod fine;
 mod forces;

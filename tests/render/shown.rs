@@ -501,8 +501,7 @@ fn flat_elements_are_a_state_of_their_own() {
     let picture = compose(&scene, &frame);
     assert!(picture.panels[0].sound.vertices.iter().all(|vertex| vertex.hatch == 1.0), "dots");
     let squares = |picture: &Picture, colour| {
-        let is_one =
-            |mark: &&Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
+        let is_one = |mark: &&Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
         picture.marks.iter().filter(is_one).count()
     };
     assert_eq!([picture.palette.axis, picture.palette.tally].map(|colour| squares(&picture, colour)), [27, 0]);

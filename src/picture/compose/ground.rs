@@ -140,7 +140,8 @@ impl Draft<'_> {
         let camera = &self.scene.view.camera;
         let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
         // Cameras do not zoom, so cells do not change between frames.
-        let pixels = self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
+        let pixels =
+            self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
         cell(self.composer.extent * self.composer.spread / self.side, most, LEAST_CELL / pixels)
     }
 }

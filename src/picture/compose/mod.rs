@@ -399,7 +399,6 @@ impl<'a> Composer<'a> {
         }
     }
 
-
     /// The line that stands for a run in strips and among arrows, if there are any.
     fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
         let view = &self.scene.view;
@@ -470,7 +469,12 @@ impl<'a> Composer<'a> {
         });
         let of_difference = view.difference.map(|_| {
             let values = self.distances(compared).iter().copied();
-            Bar::new(["distance", "m", "of the same node of the two runs"], self.distance_scale().range, &self.ramp, values)
+            Bar::new(
+                ["distance", "m", "of the same node of the two runs"],
+                self.distance_scale().range,
+                &self.ramp,
+                values,
+            )
         });
         of_field.into_iter().chain(of_springs).chain(of_difference).collect()
     }

@@ -14,8 +14,8 @@ use super::file::{
 use super::resolve::Unwritten;
 use super::step::FractionOfCycle;
 use super::{Limits, Scene};
-use crate::look::print::SizeFile;
 use crate::look::file::{ColourFile, ViewFile};
+use crate::look::print::SizeFile;
 use crate::look::typed::TypedColour;
 use crate::look::{Colour, ColourMap, Theme};
 use crate::reading::Mistakes;

@@ -12,7 +12,7 @@ use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, stem};
 use super::schema::schema_of;
-use crate::look::{Style, Print, Theme};
+use crate::look::{Print, Style, Theme};
 use crate::sim::snapshot::Diagnostic;
 use serde_json::Value;
 use std::path::Path;

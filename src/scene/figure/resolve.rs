@@ -2,8 +2,8 @@
 
 use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, SheetFile};
 use super::{Column, Content, Figure, Forces, Row, Sheet};
-use crate::look::{self, Subject};
 use crate::look::print::{unit, unit_of_sheet};
+use crate::look::{self, Subject};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::list;
 use crate::scene::structure::Checked;
