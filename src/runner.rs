@@ -334,7 +334,7 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end: what strips show, see [`Composer::set_history`].
+    /// Simulates runs of a scene from start to end: what the chart shows, see [`Composer::set_history`].
     ///
     /// [`Composer::set_history`]: crate::picture::Composer::set_history
     ///

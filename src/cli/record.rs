@@ -221,7 +221,7 @@ impl Recording<'_> {
         });
         let bar = telling.progress(&self.scene.title, frames.steps()[1]);
         if course.is_some() {
-            bar.set_message("simulating ahead for the strips");
+            bar.set_message("simulating ahead for the chart");
         }
         let slice = slice(&self.scene.body);
         while !interrupt::requested() {

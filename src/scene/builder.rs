@@ -171,7 +171,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Draws a diagnostic over time below each panel.
+    /// Draws a diagnostic of all runs over time below the panels.
     pub fn strip(mut self, diagnostic: Diagnostic) -> Self {
         self.0.view.strip = Some(diagnostic);
         self

@@ -5,26 +5,27 @@ mod figure;
 mod ground;
 mod panel;
 mod region;
+mod words;
 
 use super::arrows;
 use super::camera::{self, Lens, Middles};
-use super::caption::{self, Heading, Writer, wrapped};
+use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
-use super::layout::{Layout, Rectangle, Scale};
+use super::layout::{self, Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend};
 use super::plane::LEVEL;
 use super::shell::Shell;
 use super::skin::Skin;
-use super::strip::Strips;
 use super::tally::Tally;
-use super::text::{Fonts, Weight};
+use super::text::Fonts;
+use super::timeline::Timeline;
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
 use crate::history::History;
 use crate::look::ramp::ramp;
-use crate::look::{LineStyle, Palette, StrainScale};
+use crate::look::{Palette, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -34,12 +35,12 @@ pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;
+pub(crate) use words::left_out;
+use words::{Around, Clock, Words};
 
 /// Bodies with more elements than this along a side get softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
 
-/// Captions are never longer than this (lines).
-const MOST_LINES: usize = 200;
 /// The scale bar is at most this long (px in the reference picture).
 const SCALE_BAR: f64 = 120.0;
 
@@ -85,13 +86,13 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-    /// The curves below the panels, once the time series are set.
-    strips: Option<Strips>,
+    /// The chart below the panels, once the time series are set.
+    timeline: Option<Timeline>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
 ///
-/// The places of strips stay empty: they need [`Composer::set_history`].
+/// The place of a chart stays empty: it needs [`Composer::set_history`].
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
     Composer::new(scene).compose(frame)
 }
@@ -100,8 +101,8 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the strips'
-    /// places stay empty.
+    /// A scene with a chart ([`crate::look::View::strip`]) needs [`Composer::set_history`], too; without it the chart's
+    /// place stays empty.
     pub fn new(scene: &'a Scene) -> Self {
         Self::with(scene, scene.view.look.palette)
     }
@@ -159,51 +160,60 @@ impl<'a> Composer<'a> {
             start_box: bounds(&start).into(),
             start: mean(&scene.initial.position).unwrap_or_default(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
-            strips: None,
+            timeline: None,
             grips,
             exploded,
         }
     }
 
-    /// Sets the time series for the strips below the panels: those of all runs to be shown, over the whole scene. Scenes
-    /// without strips do not need them.
+    /// Sets the time series for the chart below the panels: those of all runs to be shown, over the whole scene. Scenes
+    /// without a chart do not need them.
     pub fn set_history(&mut self, history: &History) {
-        self.strips = self.scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, self.scene));
+        let Some(diagnostic) = self.scene.view.strip else { return };
+        let runs: Vec<_> = history.courses.iter().map(|course| course.run).collect();
+        let layout = self.words().around(&runs).layout;
+        let writer = self.writer(layout.around);
+        let timeline = Timeline::new(diagnostic, history, self.scene, writer, layout.chart);
+        self.timeline = Some(timeline);
+    }
+
+    /// The words of its pictures.
+    fn words(&self) -> Words<'_> {
+        Words { scene: self.scene, fonts: &self.fonts, palette: &self.palette, descriptions: &self.descriptions }
+    }
+
+    /// Writes nothing yet, in type and lines of a scale.
+    fn writer(&self, scale: Scale) -> Writer<'_> {
+        let (marks, curves, words) = Default::default();
+        Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words }
     }
 
     /// Composes one frame.
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let legend = self.legend(frame.runs.len());
-        let caption = self.caption(frame.runs.len());
-        let layout = Layout::new(view, frame.runs.len(), legend.map_or(0, |legend| legend.height), caption.len());
-        let legend = legend.filter(|_| layout.has_legend);
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        let Around { layout, title, caption, legend, clock } = self.words().around(&runs);
         let (scale, framing) = (layout.scale, self.framing(frame));
-        let (marks, curves, words) = Default::default();
-        let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
+        let mut writer = self.writer(scale);
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        self.write(frame, &layout, &framing, &mut writer);
-        if let Some(strips) = &self.strips {
-            for (place, run) in layout.panels.iter().zip(&frame.runs) {
-                place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
-            }
+        self.write(frame, &layout, &framing, clock == Clock::InPanel, &mut writer);
+        self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
+        writer.title(layout.around, &title);
+        if let Clock::Above(Some(baseline)) = clock {
+            writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
-        if layout.has_title {
-            writer.title(layout.around, f64::from(size[0]), &view.title);
-        }
-        writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
-        if let Some((legend, place)) = legend.zip(layout.panels.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, &framing, scale));
+        writer.caption(layout.around, &caption, layout.caption);
+        if let Some((legend, &panel)) = legend.zip(layout.panels.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, &framing, scale));
             let bars = self.bars(frame);
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &bars);
         }
         let Writer { marks: above, curves, mut words, .. } = writer;
         let (mut under, mut marks) = (Vec::new(), hairlines);
         let draft = |(place, run)| Draft::new(self, place, run, &framing, scale).panel(&mut under, &mut marks);
-        let viewports = layout.panels.iter().map(|place| place.viewport);
-        let panels: Vec<_> = viewports.zip(&frame.runs).map(draft).collect();
+        let panels: Vec<_> = layout.panels.iter().copied().zip(&frame.runs).map(draft).collect();
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
@@ -211,19 +221,6 @@ impl<'a> Composer<'a> {
         }
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
-    }
-
-    /// The lines of the caption.
-    fn caption(&self, runs: usize) -> Vec<String> {
-        let view = &self.scene.view;
-        let around = Layout::around(view, runs);
-        if !Scale::legible(around.caption()) {
-            return Vec::new();
-        }
-        // Panels' margins are no wider than those around them.
-        let room = f64::from(view.size[0]) - 2.0 * around.margin();
-        let lines = wrapped(&self.fonts, &view.caption, Weight::Regular, around.caption(), room);
-        lines.into_iter().take(MOST_LINES).collect()
     }
 
     /// What the camera of all panels looks at.
@@ -234,25 +231,26 @@ impl<'a> Composer<'a> {
     }
 
     /// Writes the words of all panels.
-    fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, writer: &mut Writer<'_>) {
+    fn write(&self, frame: &Frame, layout: &Layout, framing: &Framing, with_clock: bool, writer: &mut Writer<'_>) {
         let view = &self.scene.view;
-        let labels = view.labels;
-        // One clock, upper right.
-        let clock = view.columns.clamp(1, layout.panels.len().max(1)) - 1;
-        for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
-            let viewport = place.viewport;
-            let has_clock = labels.clock && at == clock;
-            let taken = if has_clock { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
-            let shown = |is_shown: bool, text| if is_shown { text } else { "" };
-            let heading = Heading {
-                letter: if labels.letter { caption::letter(at) } else { String::new() },
-                name: shown(labels.name, self.scene.runs.get(run.run).map_or("", |run| &run.name)),
-                sample: self.sample(run.run, place.strip.is_some()),
-                second: shown(labels.model, self.descriptions.get(run.run).map_or("", String::as_str)),
-            };
+        let words = self.words();
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        let names = words.names(&runs);
+        for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
+            let written = layout::written(view, f64::from(viewport[3]), layout.scale.unit);
+            let layout::Written { labels, scale_bar, events, .. } = written;
+            let heading = words.heading(at, &runs, &names, labels, layout.chart.is_some());
+            let has_clock = labels.clock && with_clock && at == words.clock_panel(runs.len());
+            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(written)) } else { [0.0; 2] };
             writer.heading(viewport, &heading, taken);
+            if let (Some(timeline), Some(shown)) =
+                (self.timeline.as_ref().filter(|_| events), self.scene.runs.get(run.run))
+            {
+                let colour = shown.line(&self.palette).colour;
+                writer.events(viewport, timeline.events_of(run.run), colour, run.snapshot.time);
+            }
             if has_clock {
-                writer.clock(viewport, frame.time, &view.clock);
+                writer.clock(viewport, frame.time, words.clock_label(written));
             }
             let margin = writer.scale.margin();
             let mut from = f64::from(viewport[0]) + margin;
@@ -268,23 +266,12 @@ impl<'a> Composer<'a> {
             }
             to = to.min(writer.left_of_numbers(viewport, &usual));
             // One camera for all panels, and so one bar.
-            if view.scale_bar && at == 0 {
+            if scale_bar && at == 0 {
                 let room = to - from - 2.0 * writer.scale.gap();
                 let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
-                writer.scale_bar(viewport, [from, to], metres, pixels);
+                writer.scale_bar(viewport, [from, to], &number::round_length(metres, self.extent), pixels);
             }
         }
-    }
-
-    /// The line that stands for a run in strips and among arrows, if there are any.
-    fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
-        let view = &self.scene.view;
-        let has_arrows = view.visible.displacements && view.colour.is_none();
-        (view.legend && (has_strip || has_arrows)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
-            let line = run.line(&self.palette);
-            // Arrows are solid.
-            if has_strip { line } else { LineStyle { dash: &[], ..line } }
-        })
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is in this frame and without a moving camera (px).
@@ -305,22 +292,12 @@ impl<'a> Composer<'a> {
         [pixels(framing), pixels(&Framing::still(&scene.view.camera))]
     }
 
-    /// The key of colours and arrows, if there are any.
-    fn legend(&self, runs: usize) -> Option<Legend> {
-        let view = &self.scene.view;
-        let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-        if !view.legend || !view.visible.displacements && bars == 0 {
-            return None;
-        }
-        Legend::new(view.size.map(|length| length.max(1)), Layout::around(view, runs), view.visible.displacements, bars)
-    }
-
     /// The scales of colours in a frame.
     fn bars(&self, frame: &Frame) -> Vec<Bar<'_>> {
         let view = &self.scene.view;
         let of_field = view.colour.as_ref().map(|colour| {
             let values = frame.runs.iter().flat_map(|run| &run.snapshot.field).copied();
-            Bar::new([colour.field.name(), colour.field.unit()], colour.range, &self.ramp, values)
+            Bar::new([colour.field.name(), colour.field.unit()], colour.range, self.extent, &self.ramp, values)
         });
         let body = &*self.scene.body;
         let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
@@ -329,19 +306,19 @@ impl<'a> Composer<'a> {
                 let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
                 springs.iter().map(|&ends| spring_strain(body, &run.snapshot.position, ends))
             });
-            Bar::new(["spring strain", ""], range, &self.spring_ramp, strains)
+            Bar::new(["spring strain", ""], range, self.extent, &self.spring_ramp, strains)
         });
         of_field.into_iter().chain(of_springs).collect()
     }
 
-    /// What the arrow of the key stands for (m), which no motion changes, its length in this frame (px), and
+    /// What the arrow of the key stands for, in words, which no motion changes, its length in this frame (px), and
     /// how large it is beside those of the reference picture.
-    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> (String, [f64; 2]) {
         let [now, usual] = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
         let metres = legend.arrow_metres(usual * times);
         let size = arrows::size(now * self.scene.view.side, scale.unit) * scale.line_factor;
-        [metres, metres * now * times, size]
+        (number::round_length(metres, self.extent), [metres * now * times, size])
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
