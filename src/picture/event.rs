@@ -131,8 +131,8 @@ mod tests {
     #[test]
     fn time_has_two_scales_where_all_happens_early() {
         let early = series(0, true, &[[0.0, 0.0], [0.02, 3.0], [0.085, 9.0], [3.0, 9.0]]);
-        assert_eq!(split(&[early.clone()], 3.0), Some(0.1));
-        assert_eq!(split(&[early.clone()], 0.5), None);
+        assert_eq!(split(std::slice::from_ref(&early), 3.0), Some(0.1));
+        assert_eq!(split(std::slice::from_ref(&early), 0.5), None);
         let late = series(1, true, &[[0.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
         assert_eq!(split(&[early, late], 3.0), None);
         assert_eq!(split(&[series(0, true, &[[0.0, 0.0], [3.0, 0.0]])], 3.0), None);
