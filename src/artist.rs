@@ -48,7 +48,7 @@ impl<'a> Artist<'a> {
         Ok(Self { composers: composers(scene), renderer: Renderer::new(gpu, scene.view.size, samples)? })
     }
 
-    /// Sets the time series of the scene, which strips show; see [`Composer::set_history`].
+    /// Sets the time series of the scene, which the chart shows; see [`Composer::set_history`].
     pub(crate) fn set_history(&mut self, history: &History) {
         self.composers.iter_mut().for_each(|composer| composer.set_history(history));
     }

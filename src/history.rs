@@ -1,4 +1,4 @@
-//! The time series of a scene: its diagnostics from start to end, for strips and other charts, and where its bodies are,
+//! The time series of a scene: its diagnostics from start to end, for charts, and where its bodies are,
 //! for cameras that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the
 //! requested frames.
 
@@ -11,6 +11,9 @@ use glam::DVec3;
 
 /// Least number of moments, if there are as many steps: a curve as wide as a picture then looks smooth.
 const FEWEST_MOMENTS: u64 = 600;
+/// The first of so many equal parts of the scene has as many moments again: bodies are often dropped or thrown, and charts
+/// show what happens early on a scale of its own.
+const EARLY: u64 = 16;
 /// Greatest number of moments for any number of frames: charts have no higher resolution.
 const MOST_MOMENTS: u64 = 2000;
 
@@ -113,8 +116,8 @@ impl Reach {
 }
 
 /// The moments of the time series of a run, rising: all frames with moments between them, or evenly chosen frames. The
-/// interval `closer` (s) has as many moments as the whole scene usually has; the steps nearest to each of `shown` (s)
-/// are added.
+/// beginning of the scene and the interval `closer` (s) each have as many moments as the whole scene usually has; the steps
+/// nearest to each of `shown` (s) are added.
 pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, shown: &[f64]) -> Vec<Moment> {
     let last = scene.last_frame();
     let rate = scene.frames_per_second;
@@ -129,7 +132,8 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
         (0..=last * parts).map(|at| Moment { count: at as f64 / parts as f64, rate }).collect()
     };
     let end = world.steps_at(scene.moment(last));
-    let closely = closer.into_iter().flat_map(|[start, end]| {
+    let early = [0.0, scene.frame_time(last) / EARLY as f64];
+    let closely = std::iter::once(early).chain(closer).flat_map(|[start, end]| {
         (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
     });
     let more = closely.chain(shown.iter().copied()).map(Moment::at);
@@ -178,7 +182,7 @@ mod tests {
             }
         }
         for series in &history.series {
-            assert!(series.times.len() > 300 && series.times.len() <= 601, "{}", series.times.len());
+            assert!(series.times.len() > 300 && series.times.len() <= 1201, "{}", series.times.len());
             assert!(series.times.windows(2).all(|two| two[0] < two[1]));
             assert_eq!(series.times.len(), series.diagnostics.len());
             let step = scene.runs[series.run].step;
@@ -211,8 +215,8 @@ mod tests {
             moments(scene, &world, None, &[]).into_iter().map(|moment| world.steps_at(moment)).collect()
         };
         let sampled = steps(&long, 0);
-        assert_eq!(sampled.len() as u64, MOST_MOMENTS + 1);
-        assert_eq!((sampled[0], sampled[2000]), (0, long.frame_step(0, long.last_frame())));
+        assert!((MOST_MOMENTS..=MOST_MOMENTS + FEWEST_MOMENTS + 2).contains(&(sampled.len() as u64)));
+        assert_eq!((sampled[0], sampled.last()), (0, Some(&long.frame_step(0, long.last_frame()))));
         // Fewer steps than moments: each step once.
         let short = scene("0.01", "100", "T/70");
         assert_eq!(steps(&short, 1), (0..=short.frame_step(1, 1)).collect::<Vec<_>>());

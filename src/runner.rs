@@ -440,7 +440,7 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end: what strips and cameras that follow need, see [`Composer::set_history`].
+    /// Simulates runs of a scene from start to end: what charts and cameras that follow need, see [`Composer::set_history`].
     ///
     /// [`Composer::set_history`]: crate::picture::Composer::set_history
     ///

@@ -1,7 +1,7 @@
 //! `check`: what scenes contain, or every mistake in them.
 
 use super::console::{print, print_json};
-use super::failure::{Failure, Status, complain, warn, with_causes};
+use super::failure::{Failure, Status, complain, note, warn, with_causes};
 use super::options::{PrintOptions, SceneOptions};
 use super::scenes::{status_of, worse};
 use crate::reading::Mistake;
@@ -59,13 +59,21 @@ impl Check {
                 Ok(mut scene) => {
                     scene.warnings.extend(cut(&scene));
                     if self.printing.json {
+                        let no_room = no_room(&scene);
                         let (scene, warnings) = (scene.summary(), &scene.warnings);
-                        documents.push(json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings }));
+                        documents.push(
+                            json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings, "no_room": no_room }),
+                        );
                         continue;
                     }
                     let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
                     warn(path, &scene);
+                    let no_room = no_room(&scene);
+                    if !no_room.is_empty() {
+                        let [width, height] = scene.view.size;
+                        note(&format!("{file}: not everything has room in {width}×{height}: {}", no_room.join("; ")));
+                    }
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));
@@ -107,4 +115,15 @@ fn cut(scene: &Scene) -> Option<Mistake> {
 #[cfg(not(feature = "render"))]
 fn cut(_: &Scene) -> Option<Mistake> {
     None
+}
+
+/// What finds no room in the pictures of a scene.
+fn no_room(scene: &Scene) -> Vec<String> {
+    #[cfg(feature = "render")]
+    return crate::picture::left_out(scene);
+    #[cfg(not(feature = "render"))]
+    {
+        let _ = scene;
+        Vec::new()
+    }
 }

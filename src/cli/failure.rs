@@ -120,6 +120,11 @@ pub(super) fn warn_of_figure(figure: &Figure) {
     }
 }
 
+/// Prints a warning that is no mistake in a scene.
+pub(super) fn note(message: &str) {
+    let _ = writeln!(std::io::stderr(), "warning: {message}");
+}
+
 /// Prints an error on standard error. If that fails there is nowhere to report it.
 pub(super) fn complain(message: &str) {
     let _ = writeln!(std::io::stderr(), "error: {message}");

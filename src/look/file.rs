@@ -28,8 +28,9 @@ pub(crate) struct ViewFile {
     pub(crate) colours: ColoursFile,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek letters.
     pub(crate) font: Option<FontFile>,
-    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Text for which there is no room,
-    /// or that would be too small to read, is left out; pictures for print with type below 5 pt are refused.
+    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are wrapped;
+    /// `localshape check` says what else finds no room and is shortened or left out. No text is smaller than a fiftieth of the
+    /// height of a wide picture, times this scale if that is below 1; pictures for print with type below 5 pt are refused.
     pub(crate) text_scale: TextScaleFile,
     /// Scale of the width of all lines and of the size of nodes, of signs on elements in the plane and of marks on moved and
     /// held nodes. Arrows of displacements become thicker, not longer; text keeps its size.
@@ -60,7 +61,7 @@ pub(crate) struct ViewFile {
     /// at the node.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) arrow_scale: f64,
-    /// A title above all panels. Default: none.
+    /// A title above all panels, wrapped at the width of the picture. Default: none.
     #[schemars(length(max = 200))]
     pub(crate) title: String,
     /// A caption below all panels, wrapped at the width of the picture; `\n` begins a new line. Panels keep at least half of
@@ -75,9 +76,10 @@ pub(crate) struct ViewFile {
     pub(crate) scale_bar: bool,
     /// Whether a legend says what colours and arrows mean, if there are any and room for it.
     pub(crate) legend: bool,
-    /// A diagnostic plotted over the whole time of the scene below each panel, with the current time marked. The whole scene
-    /// is simulated before the first frame is drawn. In scenes of up to 16 runs the curves of the others are drawn faintly
-    /// behind, and names are written at the ends of curves as far as there is room. Default: none.
+    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time marked. The
+    /// whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as far as there is
+    /// room; numbered flags, also in the panels, say when elements first turn over and when their count settles, or the
+    /// extreme value; and where nearly everything happens early, that part of the time has a larger scale. Default: none.
     pub(crate) strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]

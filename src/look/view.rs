@@ -46,7 +46,7 @@ pub struct View {
     pub scale_bar: bool,
     /// Whether keys say what colours and arrows mean.
     pub legend: bool,
-    /// The diagnostic that is drawn over time below each panel.
+    /// The diagnostic of all runs that is drawn over time below the panels.
     pub strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over, from 0.1 to 1.
     pub opacity: f64,

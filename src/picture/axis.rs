@@ -1,6 +1,6 @@
 //! Round numbers along an axis of a chart or a scale of colours.
 
-use super::number::{times_ten, with_minus};
+use super::number::{self, times_ten, with_minus};
 use crate::sim::words::{prefix, rounded};
 
 /// What an axis shows, which decides how it is divided.
@@ -34,14 +34,15 @@ pub(super) struct Axis {
 const NEAR: f64 = 0.13;
 const BEYOND: f64 = 0.05;
 /// The units that take an SI prefix; `kkg m/s` would be wrong.
-const WITH_PREFIX: [&str; 3] = ["m", "m/s", "J"];
+const WITH_PREFIX: [&str; 2] = ["m/s", "J"];
 
 impl Axis {
     /// An axis for values of a unit between two ends, with `most` ticks at most and two at least, if there are such
-    /// round numbers.
-    pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, most: usize) -> Self {
+    /// round numbers. Lengths are in the unit for a body of a size (m).
+    pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
+            _ if unit == "m" => number::metre(extent),
             // Kiloseconds are not in use.
             Kind::Time if largest >= 1.0 => (1.0, ""),
             Kind::Time => prefix(largest),
@@ -189,7 +190,7 @@ mod tests {
             (Kind::Colour, [0.0, 3e-7], "", 5, &["0", "1e−7", "2e−7", "3e−7"], ""),
         ];
         for (kind, range, unit, most, texts, with_prefix) in expected {
-            let axis = Axis::new(kind, range, unit, most);
+            let axis = Axis::new(kind, range, unit, 0.3, most);
             assert_eq!(axis.texts, texts, "{range:?}: {axis:?}");
             assert_eq!(axis.unit, with_prefix, "{range:?}");
         }
@@ -202,7 +203,7 @@ mod tests {
             for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high, 0.95 * high] {
                 for kind in [Kind::Time, Kind::Value, Kind::Colour] {
                     for most in if kind == Kind::Colour { 5..=5 } else { 2..=6 } {
-                        let axis = Axis::new(kind, [low, high], "m", most);
+                        let axis = Axis::new(kind, [low, high], "m", 0.3, most);
                         let told = || format!("{kind:?} {low} {high} {most}: {axis:?}");
                         let fewest = if kind == Kind::Colour { 3 } else { 2 };
                         assert!((fewest..=most).contains(&axis.ticks.len()), "{}", told());
@@ -217,7 +218,7 @@ mod tests {
             }
         }
         for count in 1..500 {
-            let axis = Axis::new(Kind::Count, [0.0, f64::from(count)], "", 4);
+            let axis = Axis::new(Kind::Count, [0.0, f64::from(count)], "", 0.3, 4);
             assert!((2..=4).contains(&axis.ticks.len()), "{count}: {axis:?}");
             assert!(axis.ticks.iter().all(|tick| tick.fract() == 0.0), "{count}: {axis:?}");
         }
@@ -227,10 +228,10 @@ mod tests {
     fn odd_ranges_do_no_harm() {
         for odd in [[0.0, 0.0], [3.0, 3.0], [-f64::MAX, f64::MAX], [0.0, 5e-324], [1.0, 1.0 + 1e-15]] {
             for kind in [Kind::Time, Kind::Count, Kind::Value, Kind::Colour] {
-                let axis = Axis::new(kind, odd, "J", 4);
+                let axis = Axis::new(kind, odd, "J", 0.3, 4);
                 assert!(axis.ticks.len() <= 4 && axis.ticks.len() == axis.texts.len(), "{odd:?} {axis:?}");
             }
         }
-        assert_eq!(Axis::new(Kind::Value, [0.0, 0.0], "m", 4).texts, ["0"]);
+        assert_eq!(Axis::new(Kind::Value, [0.0, 0.0], "m", 0.3, 4).texts, ["0"]);
     }
 }

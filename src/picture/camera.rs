@@ -63,7 +63,7 @@ impl Lens {
     /// the reference size.
     pub(crate) fn new(view: &View, framing: &Framing, dimension: Dimension, panel: [f64; 4], unit: f64) -> Self {
         let camera = &view.camera;
-        let [above, below] = layout::rooms(view);
+        let [above, below] = layout::rooms(view, panel[3], unit);
         let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
         // Narrower margins have the effect of a larger panel with usual ones.
         let gained = layout::gained(view);

@@ -1,5 +1,7 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
+use super::event::Event;
+use super::flag;
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
@@ -16,9 +18,14 @@ const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
 
-/// Size of the title above all panels, in parts of that of names, and its baseline (px in the reference picture).
+/// Radius of the ring of an event, in sizes of its number; between it and its words, and between events (px in the reference
+/// picture).
+const EVENT_RING: f64 = 0.68;
+const EVENT_BESIDE: f64 = 7.0;
+const EVENTS_APART: f64 = 18.0;
+
+/// Size of the title above all panels, in parts of that of names.
 const TITLE: f64 = 1.16;
-const TITLE_BASELINE: f64 = 62.0;
 /// Between a panel's letter and its name, and the height of small letters, in parts of the type's size.
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
@@ -64,12 +71,13 @@ impl Room {
 pub(super) struct Heading<'a> {
     /// A letter to speak of the panel by; empty for none.
     pub(super) letter: String,
-    /// The run's name.
+    /// The run's name, and those of all runs shown.
     pub(super) name: &'a str,
+    pub(super) names: &'a [&'a str],
     /// The style of its curves and arrows.
     pub(super) sample: Option<LineStyle>,
     /// The line below.
-    pub(super) second: &'a str,
+    pub(super) second: String,
 }
 
 /// A number in a panel.
@@ -85,13 +93,21 @@ pub(super) struct Number {
 
 impl Writer<'_> {
     /// The title above all panels.
-    pub(super) fn title(&mut self, around: Scale, width: f64, title: &str) {
+    pub(super) fn title(&mut self, around: Scale, lines: &[String]) {
         // Its left edge is that of the panels' words.
-        let (margin, size) = (self.scale.margin(), TITLE * around.title());
-        let title = self.fonts.shortened(title, Weight::SemiBold, size, width - 2.0 * margin);
-        // Nor is its margin wider than theirs, where panels give up margins for bodies.
-        let baseline = around.row(TITLE_BASELINE) - around.widened() * (around.unit - self.scale.unit);
-        self.left(&title, Weight::SemiBold, size, self.palette.text, margin, baseline);
+        let (margin, size) = (self.scale.margin(), title_size(around));
+        for (at, line) in lines.iter().enumerate() {
+            let baseline = layout::title_baseline(around, at + 1);
+            self.left(line, Weight::SemiBold, size, self.palette.text, margin, baseline);
+        }
+    }
+
+    /// Whether there is room for the clock with its label behind the last line of a title, in a picture of a width (px).
+    pub(super) fn has_room_beside(&self, around: Scale, title: &[String], label: &str, width: u32) -> bool {
+        let wide = |text: &str, weight, size| self.fonts.width(text, weight, size) + around.gap();
+        let title = title.last().map(|line| wide(line, Weight::SemiBold, title_size(around)));
+        let clock = wide(WIDEST_TIME, Weight::Regular, around.title()) + wide(label, Weight::Regular, around.caption());
+        title.is_some_and(|title| title + clock + 2.0 * self.scale.margin() <= f64::from(width))
     }
 
     /// The caption below all panels, with its first baseline at a height (px).
@@ -116,14 +132,53 @@ impl Writer<'_> {
         }
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
-        let name = self.fonts.shortened(heading.name, Weight::SemiBold, title, free[0] - (left - room.left) - reserved);
+        let free_for_name = free[0] - (left - room.left) - reserved;
+        let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, title, free_for_name);
         self.left(&name, Weight::SemiBold, title, self.palette.text, left, baseline);
         if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
             let left = left + self.fonts.width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        let second = self.fonts.shortened(heading.second, Weight::Regular, caption, free[1]);
+        let second = self.fonts.shortened(&heading.second, Weight::Regular, caption, free[1]);
         self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+    }
+
+    /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is
+    /// room for. Rings are filled as soon as it has happened.
+    pub(super) fn events<'e>(
+        &mut self,
+        panel: Rectangle,
+        events: impl Iterator<Item = (usize, &'e Event)>,
+        colour: Colour,
+        now: f64,
+    ) {
+        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
+        let events: Vec<_> = events.collect();
+        let number_size = self.scale.small();
+        let radius = EVENT_RING * number_size;
+        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let wide = |words: &str| {
+            let words = if words.is_empty() { 0.0 } else { beside + self.fonts.width(words, Weight::Regular, size) };
+            2.0 * radius + words
+        };
+        let words = |event: &'e Event, at: usize| event.words.get(at).map_or("", String::as_str);
+        let width = |at: usize| {
+            let widths = events.iter().map(|(_, event)| wide(words(event, at)));
+            widths.sum::<f64>() + apart * events.len().saturating_sub(1) as f64
+        };
+        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()).filter(|_| Scale::legible(size)) else { return };
+        let (mut left, baseline) = (room.left, room.top + lines.events);
+        let palette = self.palette;
+        for (number, event) in &events {
+            let [ground, letter] =
+                if event.time <= now { [colour, palette.background] } else { [palette.background, palette.text] };
+            let middle = [left + radius, baseline - 0.36 * size];
+            flag::ring(self, middle, [radius, number_size], [colour, ground, letter], &number.to_string());
+            let text = words(event, at);
+            self.left(text, Weight::Regular, size, palette.second_text, left + 2.0 * radius + beside, baseline);
+            left += wide(text) + apart;
+        }
     }
 
     /// A sample of the line of a run, from a place on (px).
@@ -151,6 +206,24 @@ impl Writer<'_> {
         }
     }
 
+    /// How wide a heading is, with letter and sample: its first and its second line (px).
+    pub(super) fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
+        let title = self.scale.title();
+        let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
+        let letter = if heading.letter.is_empty() { 0.0 } else { wide(&heading.letter) + LETTER_GAP * title };
+        let has_sample = heading.sample.is_some() && !heading.name.is_empty();
+        let sample = if has_sample { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
+        let second = self.fonts.width(&heading.second, Weight::Regular, self.scale.caption());
+        [letter + wide(heading.name) + sample, second]
+    }
+
+    /// Whether a heading leaves the clock no room beside it.
+    pub(super) fn is_crowded(&self, panel: Rectangle, heading: &Heading<'_>, label: &str) -> bool {
+        let free = Room::new(panel, self.scale).width() - self.scale.gap();
+        let clock = self.clock_room(panel, label);
+        self.heading_width(heading).iter().zip(clock).any(|(heading, clock)| heading + clock > free)
+    }
+
     /// How much room the clock and its label take (px), at any time.
     pub(super) fn clock_room(&self, panel: Rectangle, label: &str) -> [f64; 2] {
         let label = self.clock_label(panel, label);
@@ -171,6 +244,20 @@ impl Writer<'_> {
         self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
         let label = self.clock_label(panel, label);
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
+    }
+
+    /// The clock with its label behind it, at the right of a picture of a width, with its baseline at a height (px).
+    pub(super) fn clock_alone(&mut self, around: Scale, [width, baseline]: [f64; 2], time: f64, label: &str) {
+        let right = width - self.scale.margin();
+        let time = number::time(time);
+        let beside = if label.is_empty() { 0.0 } else { around.gap() };
+        let room =
+            right - self.scale.margin() - beside - self.fonts.width(WIDEST_TIME, Weight::Regular, around.title());
+        let label = self.fonts.shortened(label, Weight::Regular, around.caption(), room);
+        let palette = self.palette;
+        self.right(&label, Weight::Regular, around.caption(), palette.second_text, right, baseline);
+        let right = right - self.fonts.width(&label, Weight::Regular, around.caption()) - beside;
+        self.right(&time, Weight::Regular, around.title(), palette.text, right, baseline);
     }
 
     /// Tally and count, lower left. Returns where they end at the widest (px).
@@ -198,7 +285,7 @@ impl Writer<'_> {
             &mut self.marks,
         );
         let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
-        let all = snapshot.turned_over.len();
+        let [count, all] = [count, snapshot.turned_over.len()].map(number::count);
         let free = room.right - left;
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
@@ -244,13 +331,12 @@ impl Writer<'_> {
         self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
     }
 
-    /// A bar that is `pixels` long and stands for a round length (m), in the middle between two places (px), if there is
+    /// A bar that is `pixels` long and stands for a length in words, in the middle between two places (px), if there is
     /// room. Returns where it ends (px).
-    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], metres: f64, pixels: f64) -> Option<f64> {
+    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], text: &str, pixels: f64) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
-        let text = number::plain_metres(metres);
-        let wide = self.fonts.width(&text, Weight::Regular, caption);
+        let wide = self.fonts.width(text, Weight::Regular, caption);
         let free = between[1] - between[0] - 2.0 * self.scale.gap();
         if !Scale::legible(caption) || pixels.max(wide) > free {
             return None;
@@ -272,7 +358,7 @@ impl Writer<'_> {
         }
         let colour = self.palette.second_text;
         let baseline = room.top + lines.caption;
-        self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, baseline);
+        self.left(text, Weight::Regular, caption, colour, middle - 0.5 * wide, baseline);
         Some(middle + 0.5 * pixels.max(wide))
     }
 
@@ -284,19 +370,12 @@ impl Writer<'_> {
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
         let first = f64::from(layout.ground[1]);
-        for place in &layout.panels {
-            let [left, top, width, height] = place.viewport.map(f64::from);
-            let height = height + place.strip.map_or(0.0, |strip| f64::from(strip[1] + strip[3]) - top - height);
+        for panel in &layout.panels {
+            let [left, top, width, height] = panel.map(f64::from);
             let mut line = |rectangle| self.marks.push(Mark::upright(rectangle, MarkShape::Filled, halved));
-            // Beside strips it goes as far down as these.
-            let above_bottom = if place.strip.is_some() { 0.0 } else { inset };
-            if left > 0.0 && height > inset + above_bottom {
-                line([
-                    left - (thickness / 2.0).floor(),
-                    top + inset.round(),
-                    thickness,
-                    (height - inset - above_bottom).round(),
-                ]);
+            if left > 0.0 && height > 2.0 * inset {
+                let length = (height - 2.0 * inset).round();
+                line([left - (thickness / 2.0).floor(), top + inset.round(), thickness, length]);
             }
             if top > first && width > 2.0 * inset {
                 line([left + inset.round(), top - (thickness / 2.0).floor(), (width - 2.0 * inset).round(), thickness]);
@@ -347,6 +426,11 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room
         lines.push(line);
     }
     lines
+}
+
+/// Size of the title above all panels (px).
+pub(super) fn title_size(around: Scale) -> f64 {
+    TITLE * around.title()
 }
 
 /// The letter of a panel: a to z, then aa, ab and so on.

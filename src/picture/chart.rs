@@ -74,7 +74,7 @@ impl Chart {
 
     /// An axis of time between two moments (s) with as many ticks as there is room for.
     pub(super) fn times(self, fonts: &Fonts, [start, end]: [f64; 2]) -> Axis {
-        let axis = |most: usize| Axis::new(Kind::Time, [start, end], "s", most);
+        let axis = |most: usize| Axis::new(Kind::Time, [start, end], "s", 1.0, most);
         let fits = |axis: &Axis| {
             let widest = axis.texts.iter().map(|text| wide(fonts, text, self.unit)).fold(0.0, f64::max);
             let shares = [0, 1].map(|at| axis.ticks.get(at).map_or(at as f64, |&tick| axis.share(tick)));

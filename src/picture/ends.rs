@@ -38,41 +38,46 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    /// The names of curves in a room of a width and a height (px). `None` for a single curve, which needs no name, and if
+    /// The names of curves in a room of a width and a height (px). `None` for a single run, which needs no name, and if
     /// no name would be legible or unique.
     pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
         let size = NUMBERS * unit;
         let shown = series.iter().filter(|one| !one.points.is_empty()).count();
         let sample = if shown > FEW { SAMPLE.iter().sum::<f64>() * unit } else { 0.0 };
         let room = width - GAP * unit - sample;
-        if shown < 2 || fitting(height, unit) == 0 || room < LEAST_ROOM * size || !Scale::legible(size) {
+        if shown == 0
+            || series.len() < 2
+            || fitting(height, unit) == 0
+            || room < LEAST_ROOM * size
+            || !Scale::legible(size)
+        {
             return None;
         }
-        let names: Vec<_> = series.iter().map(|one| fonts.shortened(&one.name, Weight::SemiBold, size, room)).collect();
+        let whole: Vec<_> = series.iter().map(|one| &*one.name).collect();
+        let names = whole.iter().map(|name| fonts.told_apart(name, &whole, Weight::Regular, size, room));
+        let names: Vec<_> = names.collect();
         let is_alike =
             |at: usize| series.iter().zip(&names).any(|(one, name)| names[at] == *name && one.name != series[at].name);
         let are_clear: Vec<_> = (0..names.len()).map(|at| !is_alike(at)).collect();
-        let widest = names.iter().map(|name| fonts.width(name, Weight::SemiBold, size)).fold(0.0, f64::max);
+        let widest = names.iter().map(|name| fonts.width(name, Weight::Regular, size)).fold(0.0, f64::max);
         let width = GAP * unit + sample + widest;
         are_clear.contains(&true).then(|| Self { names: names.into_iter().zip(are_clear).collect(), sample, width })
     }
 
-    /// Writes them beside a chart, between two heights (px). `ends` are the ends of the curves (px), of those that have
-    /// any; the name of one run may be stronger than the others, and is always among those that have room.
+    /// Writes them beside a chart, between two heights (px), as many as have room. `ends` are the ends of the curves (px), of
+    /// those that have any.
     pub(super) fn write(
         &self,
         writer: &mut Writer<'_>,
         chart: Chart,
         series: &[Series],
         ends: &[Option<[f64; 2]>],
-        strong: Option<usize>,
         [top, bottom]: [f64; 2],
     ) {
         let (unit, size) = (chart.unit, NUMBERS * chart.unit);
-        let own = series.iter().position(|one| strong == Some(one.run));
-        let all = (0..series.len()).filter(|&at| self.names[at].1 || own == Some(at));
+        let all = (0..series.len()).filter(|&at| self.names[at].1);
         let all: Vec<_> = all.filter_map(|at| Some((at, ends[at]?))).collect();
-        let mut order = farthest(all, own, fitting(bottom - top, unit));
+        let mut order = farthest(all, fitting(bottom - top, unit));
         order.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
         let heights: Vec<_> = order.iter().map(|&(_, [_, y])| y).collect();
         let half = 0.5 * CURVE_NAME * unit;
@@ -105,9 +110,8 @@ impl Ends {
                     alpha: 1.0,
                 });
             }
-            let weight = if strong == Some(one.run) { Weight::SemiBold } else { Weight::Regular };
             let colour = writer.palette.text_like(one.style.colour);
-            writer.left(&self.names[at].0, weight, size, colour, left + self.sample, place + 0.36 * size);
+            writer.left(&self.names[at].0, Weight::Regular, size, colour, left + self.sample, place + 0.36 * size);
         }
     }
 }
@@ -117,14 +121,13 @@ fn fitting(height: f64, unit: f64) -> usize {
     (height / (CURVE_NAME * unit) + 1e-6) as usize
 }
 
-/// At most so many ends of curves: the own one, then repeatedly the one farthest from all chosen ones.
-fn farthest(mut all: Vec<(usize, [f64; 2])>, own: Option<usize>, most: usize) -> Vec<(usize, [f64; 2])> {
+/// At most so many ends of curves: the first one, then repeatedly the one farthest from all chosen ones.
+fn farthest(mut all: Vec<(usize, [f64; 2])>, most: usize) -> Vec<(usize, [f64; 2])> {
     if all.len() <= most || most == 0 {
         all.truncate(most);
         return all;
     }
-    let first = all.iter().position(|&(at, _)| own == Some(at)).unwrap_or(0);
-    let mut chosen = vec![all.remove(first)];
+    let mut chosen = vec![all.remove(0)];
     while chosen.len() < most {
         let apart = |(_, [_, y]): &(usize, [f64; 2])| {
             chosen.iter().map(|(_, [_, other])| (y - other).abs()).fold(f64::INFINITY, f64::min)
@@ -157,13 +160,11 @@ mod tests {
     use super::{farthest, spread};
 
     #[test]
-    fn where_few_names_have_room_the_own_one_and_those_apart_are_chosen() {
+    fn where_few_names_have_room_those_apart_are_chosen() {
         let all: Vec<_> = [10.0, 11.0, 12.0, 50.0, 90.0].into_iter().map(|y| [0.0, y]).enumerate().collect();
-        let chosen = |own, most| farthest(all.clone(), own, most).iter().map(|one| one.0).collect::<Vec<_>>();
-        assert_eq!(chosen(Some(1), 1), [1]);
-        assert_eq!(chosen(Some(1), 3), [1, 4, 3]);
-        assert_eq!(chosen(None, 2), [0, 4]);
-        assert_eq!((chosen(Some(4), 5), chosen(Some(4), 0)), (vec![0, 1, 2, 3, 4], vec![]));
+        let chosen = |most| farthest(all.clone(), most).iter().map(|one| one.0).collect::<Vec<_>>();
+        assert_eq!((chosen(1), chosen(2), chosen(3)), (vec![0], vec![0, 4], vec![0, 4, 3]));
+        assert_eq!((chosen(5), chosen(0)), (vec![0, 1, 2, 3, 4], vec![]));
     }
 
     #[test]

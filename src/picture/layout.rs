@@ -2,19 +2,24 @@
 //!
 //! ```text
 //! title
+//! (clock, where names leave it no room)
 //! ┌ panel ──────────┬ panel ──────────┐
 //! │ name            │ name      clock │
+//! │ events          │ events          │
 //! │      body       │      body       │
 //! │ count    number │ count    number │
-//! │ strip           │ strip           │
 //! └─────────────────┴─────────────────┘
+//! chart of all runs
 //! keys of colours and arrows
 //! caption
 //! ```
 
 use crate::look::{Labels, View, print};
 
-/// Type smaller than this cannot be read and is left out (px).
+/// The smallest type of a picture (px in the reference picture): panels that are too small for words of this size have
+/// fewer words.
+const LEAST_TYPE: f64 = 14.0;
+/// Type smaller than this cannot be read in any picture and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
 /// Free around and inside each panel unless the scene says otherwise (px in the reference picture).
@@ -22,55 +27,55 @@ const MARGIN: f64 = 40.0;
 /// The narrowest margin, at type of the usual size: words keep off the picture's sides, and off those of the next panel
 /// (px in the reference picture).
 const LEAST_MARGIN: f64 = 10.0;
-/// Above a strip the margin is so many times as wide: there is text of the same size on both sides.
-const ABOVE_STRIP: f64 = 2.0;
+/// Above a chart the margin is so many times as wide: there is text of the same size on both sides.
+const ABOVE_CHART: f64 = 2.0;
 /// This part of what narrow margins lack is added between rows, or the lowest text of panels would touch what is below.
 const MADE_UP: f64 = 0.25;
-/// Height of the ground of the title, and of a strip with the room around it (px in the reference picture).
+/// Height of the ground of the title, and of the chart with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
-const STRIP: f64 = 128.0;
-/// Free below a strip with usual margins (px in the reference picture).
-const BELOW_STRIP: f64 = 22.0;
+/// The baseline of the title, and the distance of its lines; height of a row for the clock alone, and its baseline, which reaches into the margin of the
+/// panels below (px in the reference picture).
+const TITLE_BASELINE: f64 = 62.0;
+const TITLE_LINE: f64 = 38.0;
+const CLOCK_ROW: f64 = 40.0;
+const CLOCK_BASELINE: f64 = 50.0;
+const CHART: f64 = 140.0;
+/// Free below the chart with usual margins (px in the reference picture).
+const BELOW_CHART: f64 = 18.0;
 /// Distance of the caption's lines, free above the first baseline and, with usual margins, below the last (px in the
 /// reference picture).
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
-/// Strips are no smaller than this part of the reference, so that their numbers stay legible.
-pub(super) const LEAST_STRIP_UNIT: f64 = 0.5;
-/// The text above and below a body takes at most this part of its panel.
-const MOST_WORDS: f64 = 0.62;
-/// What a strip needs besides its chart (px in the reference picture), and the lowest chart (px).
-const LEAST_STRIP: f64 = 46.0;
+/// The text above and below a body takes at most this part of its panel with second lines, the second part without, and the
+/// third with the margins.
+const MOST_WORDS: [f64; 3] = [0.34, 0.45, 0.8];
+/// What a chart needs besides its curves (px in the reference picture), and the lowest chart (px).
+const LEAST_CHART_ROOM: f64 = 54.0;
 pub(super) const LEAST_CHART: f64 = 14.0;
-/// A strip takes at most this part of its panel; the second part from so many runs on, whose curves it names.
-const STRIP_SHARE: f64 = 0.34;
-const STRIP_SHARE_OF_MANY: f64 = 0.42;
-const MANY: usize = 5;
-/// With more other runs than this, strips leave their curves out: they could not be told apart.
-pub(super) const MOST_OTHERS: usize = 15;
-/// From one name at the end of a curve to the next, and the height of the room for these names in strips of the usual
-/// height (px in the reference picture).
+/// The chart takes at most this part of what panels and chart have together.
+const CHART_SHARE: f64 = 0.34;
+/// From one name at the end of a curve to the next, the height of the room for these names in a chart of the usual height
+/// (px in the reference picture), and how many names make it higher.
 pub(super) const CURVE_NAME: f64 = 15.0;
-const CURVE_NAMES: f64 = 86.0;
+const CURVE_NAMES: f64 = 94.0;
+const MOST_NAMES: usize = 8;
 
-/// Room above and below the body in a panel with and without words there (px in the reference picture).
-const WORDS_ABOVE: f64 = 95.0;
-const NAME_ABOVE: f64 = 70.0;
-const WORDS_BELOW: f64 = 85.0;
+/// Free above and below the body in a panel without words there (px in the reference picture).
 const NO_WORDS: f64 = 28.0;
+/// Distances of lines of words in a panel: from its margin to the name, on to the second line and to the events; from the
+/// lowest words up to the count; and from words to the body (px in the reference picture).
+const ROWS: [f64; 3] = [20.0, 26.0, 24.0];
+const COUNT_ABOVE: f64 = 20.0;
+const CLEAR: [f64; 3] = [10.0, 9.0, 27.0];
+/// The least distance of lines, in sizes of their type.
+const LINE: f64 = 1.25;
+const ASCENT: f64 = 0.77;
+/// What is free below the baseline of a title or a clock, in sizes of its type.
+const DESCENT: f64 = 0.4;
 
 /// A rectangle: left, top, width, height (px).
 pub(crate) type Rectangle = [u32; 4];
-
-/// Where a run is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PanelRoom {
-    /// The part for its body and its text.
-    pub(super) viewport: Rectangle,
-    /// The part for its strip, below that.
-    pub(super) strip: Option<Rectangle>,
-}
 
 /// The places of everything in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,11 +85,16 @@ pub(super) struct Layout {
     /// Sizes of type and lines around panels.
     pub(super) around: Scale,
     /// One for each run shown, row by row.
-    pub(super) panels: Vec<PanelRoom>,
+    pub(super) panels: Vec<Rectangle>,
+    /// The room of the chart below them.
+    pub(super) chart: Option<Rectangle>,
     /// The part of the picture that the panels cover.
     pub(super) ground: Rectangle,
-    /// Whether there is room for the title, and for the keys of colours and arrows.
-    pub(super) has_title: bool,
+    /// For how many lines of the title there is room.
+    pub(super) title_lines: usize,
+    /// Height of the clock's baseline (px from the top), if it has a row for itself.
+    pub(super) clock: Option<f64>,
+    /// Whether there is room for the keys of colours and arrows.
     pub(super) has_legend: bool,
     /// For how many lines of the caption there is room.
     pub(super) caption_lines: usize,
@@ -95,13 +105,23 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of a view of a number of runs in columns, with room for a key of a height (px) and for lines of a caption.
-    pub(super) fn new(view: &View, runs: usize, columns: usize, legend: u32, caption_lines: usize) -> Self {
+    /// The layout of a view of a number of panels in columns, with room for what stands around them.
+    pub(super) fn new(view: &View, panels: usize, columns: usize, wanted: Wanted) -> Self {
+        // How wide the margins of panels are follows from their size.
+        let margin = Self::with_margin(view, panels, columns, wanted, f64::INFINITY).scale.margin();
+        Self::with_margin(view, panels, columns, wanted, margin)
+    }
+
+    /// The same for panels with margins of a width (px), if these are too narrow for what reaches into them.
+    fn with_margin(view: &View, count: usize, columns: usize, around_them: Wanted, margin: f64) -> Self {
+        let Wanted { title_lines, clock, legend, caption_lines } = around_them;
         let size = view.size.map(|length| length.max(1));
-        let around = Self::around(view, runs, columns);
+        let around = Self::around(view);
         let rows = |length: f64| (length * around.unit).round() as u32;
-        let title =
-            if view.title.is_empty() || !Scale::legible(around.title()) { 0 } else { rows(around.of_type(TITLE)) };
+        let title_height = |lines: usize| match lines {
+            0 => 0,
+            lines => rows(around.of_type(TITLE + (lines - 1) as f64 * TITLE_LINE)),
+        };
         let caption_height = |lines: usize| match lines {
             0 => 0,
             lines => rows(
@@ -109,59 +129,55 @@ impl Layout {
                     + around.like_margin(BELOW_CAPTION),
             ),
         };
-        // Panels keep at least half of the picture: of the rest, first the title gets room, then the keys, then the caption.
+        // Panels keep at least half of the picture: of the rest, first the title gets room, then the clock, then the keys, then
+        // the caption.
         let most = size[1] / 2;
-        let title = if title <= most { title } else { 0 };
+        let clock_row = Some(rows(around.of_type(CLOCK_ROW))).filter(|&row| clock && row <= most);
+        let left = most - clock_row.unwrap_or(0);
+        let title_lines = (0..=title_lines).rev().find(|&lines| title_height(lines) <= left).unwrap_or(0);
+        let title = title_height(title_lines);
+        let title_end = if title_lines > 0 { title_baseline(around, title_lines) } else { 0.0 };
+        let in_row = f64::from(title) + around.of_type(CLOCK_BASELINE * around.unit);
+        let clock = clock_row.map(|_| in_row.max(title_end + LINE * around.title()));
+        let top = title + clock_row.unwrap_or(0);
+        // What stands there reaches into the margin of the panels, unless that is too narrow.
+        let reach = clock.unwrap_or(title_end) + DESCENT * around.title() - f64::from(top);
+        let spared = (reach - margin).max(0.0).ceil() as u32;
+        let title = (top + spared).min(most.max(top));
         let legend = if title + legend <= most { legend } else { 0 };
         let fits = |lines: &usize| title + legend + caption_height(*lines) <= most;
         let caption_lines = (0..=caption_lines).rev().find(fits).unwrap_or(0);
         let caption = caption_height(caption_lines);
         let height = size[1] - title - legend - caption;
-        let panels = panels([size[0], height], runs, columns);
-        let scale = panels.first().map_or(around, |&panel| Scale::new(size, panel).with(view));
-        let lowest = panels.iter().map(|panel| f64::from(panel[3])).fold(f64::INFINITY, f64::min);
-        // The names at the ends of curves have room above each other.
-        let names = if runs <= MOST_OTHERS + 1 { runs as f64 * CURVE_NAME } else { 0.0 };
-        let strip_units = STRIP + (names - CURVE_NAMES).max(0.0);
-        let share = if runs < MANY { STRIP_SHARE } else { STRIP_SHARE_OF_MANY };
-        let strip_height = |height: f64| match view.strip {
-            Some(_) => {
-                let usual = strip_units * scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
-                let more = (scale.like_margin(BELOW_STRIP) - BELOW_STRIP) * scale.unit;
-                (usual + more).min(share * height).round()
-            }
-            None => 0.0,
-        };
-        // A strip too low to be read leaves its room to the body.
-        let strip_unit = scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
-        let below = scale.like_margin(BELOW_STRIP) * scale.unit;
-        let has_strips = view.strip.is_some() && strip_height(lowest) - below > LEAST_STRIP * strip_unit + LEAST_CHART;
-        let strip_height = |height: f64| if has_strips { strip_height(height) } else { 0.0 };
-        // However large type and margins are, bodies have some of their panel for themselves.
-        let room = MOST_WORDS * (lowest - strip_height(lowest)) / rooms(view).iter().sum::<f64>();
-        let scale = Scale { unit: scale.unit.min(room), ..scale };
-        let strip = |panel: Rectangle| {
-            let [width, height] = [panel[2], panel[3]].map(f64::from);
-            let room = strip_height(height);
-            let (side, below) =
-                (scale.margin().min(width / 2.0), (scale.like_margin(BELOW_STRIP) * scale.unit).min(room));
-            let top = f64::from(title + panel[1]) + height - room;
-            [f64::from(panel[0]) + side, top, width - 2.0 * side, room - below].map(|length| length.round() as u32)
-        };
-        let place = |mut panel: Rectangle| {
-            let strip = has_strips.then(|| strip(panel));
-            panel[1] += title;
-            if let Some([_, top, ..]) = strip {
-                panel[3] = top - panel[1];
-            }
-            PanelRoom { viewport: panel, strip }
-        };
+        let chart = view.strip.map_or(0.0, |_| {
+            // The names at the ends of curves have room above each other.
+            let names = count.min(MOST_NAMES) as f64 * CURVE_NAME;
+            let units = CHART + (names - CURVE_NAMES).max(0.0) - BELOW_CHART;
+            let usual = units * around.type_unit() + around.like_margin(BELOW_CHART) * around.unit;
+            usual.min(CHART_SHARE * f64::from(height)).round()
+        });
+        // A chart too low to be read leaves its room to the bodies.
+        let below = (around.like_margin(BELOW_CHART) * around.unit).min(chart);
+        let has_room = chart - below > LEAST_CHART_ROOM * around.type_unit() + LEAST_CHART;
+        let has_chart = has_room && Scale::legible(LEAST_TYPE * around.type_unit());
+        let chart = if has_chart { chart as u32 } else { 0 };
+        let mut panels = panels([size[0], height - chart], count, columns);
+        panels.iter_mut().for_each(|panel| panel[1] += title);
+        // Together with the chart, panels are as high as without it.
+        let rows = count.div_ceil(columns.clamp(1, count.max(1))).max(1) as u32;
+        let with_chart = |panel: Rectangle| [panel[0], panel[1], panel[2], panel[3] + chart / rows];
+        let scale = panels.first().map_or(around, |&panel| Scale::new(size, with_chart(panel)).within(view));
+        let side = scale.margin().min(f64::from(size[0]) / 2.0);
+        let of_chart =
+            [side, f64::from(title + height - chart), f64::from(size[0]) - 2.0 * side, f64::from(chart) - below];
         Self {
             scale,
             around,
-            panels: panels.into_iter().map(place).collect(),
+            panels,
+            chart: has_chart.then(|| of_chart.map(|length| length.round() as u32)),
             ground: [0, title, size[0], height],
-            has_title: title > 0,
+            title_lines,
+            clock,
             has_legend: legend > 0,
             caption_lines,
             legend: title + height,
@@ -169,36 +185,95 @@ impl Layout {
         }
     }
 
-    /// Sizes of type and lines around the panels of a view of a number of runs in columns.
-    pub(super) fn around(view: &View, runs: usize, columns: usize) -> Scale {
-        let size = view.size.map(|length| length.max(1));
-        panels(size, runs, columns).first().map_or(Scale::REFERENCE, |&panel| Scale::new(size, panel)).with(view)
+    /// Sizes of type and lines around the panels of a view, which do not depend on these.
+    pub(super) fn around(view: &View) -> Scale {
+        Scale { unit: whole(view), ..Scale::REFERENCE }.within(view)
     }
 }
 
-/// The room above and below the body in a panel that words need (px in the reference picture).
-pub(super) fn rooms(view: &View) -> [f64; 2] {
-    let Labels { letter, name, model, clock, count, number } = view.labels;
-    let above = match (letter || name, model || clock) {
-        (_, true) => WORDS_ABOVE,
-        (true, false) => NAME_ABOVE,
-        (false, false) => NO_WORDS,
+/// What wants room around panels: lines of the title, a row for the clock, a key of a height (px), and lines of the caption.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wanted {
+    pub(super) title_lines: usize,
+    pub(super) clock: bool,
+    pub(super) legend: u32,
+    pub(super) caption_lines: usize,
+}
+
+/// The last baseline of a title of a number of lines (px).
+pub(super) fn title_baseline(around: Scale, lines: usize) -> f64 {
+    around.row(TITLE_BASELINE) + lines.saturating_sub(1) as f64 * TITLE_LINE * around.type_unit()
+}
+
+/// Pixels of the picture of a view for one of the reference picture.
+fn whole(view: &View) -> f64 {
+    let [width, height] = view.size.map(|length| f64::from(length.max(1)));
+    // Panels that arrange themselves stand side by side where the picture is wide.
+    let columns = view.columns.unwrap_or(if width < height { 1 } else { 2 }).clamp(1, 2) as u32;
+    print::unit(view.size, [(width / f64::from(columns)) as u32, u32::MAX])
+}
+
+/// What is written in a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Written {
+    pub(super) labels: Labels,
+    /// Whether there is a second line, with the model and what the clock counts from.
+    pub(super) second: bool,
+    pub(super) scale_bar: bool,
+    /// Whether there is a line for events.
+    pub(super) events: bool,
+}
+
+/// What is written in a panel of a height (px), with a number of pixels for each of the reference picture: where not
+/// everything has room beside the body, first the events are left out, then second lines, then what stands below.
+pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
+    let scale = Scale { unit, ..Scale::REFERENCE }.within(view);
+    let Labels { letter, name, model, clock, .. } = view.labels;
+    let events = view.strip.is_some();
+    let all = Written { labels: view.labels, second: model || clock, scale_bar: view.scale_bar, events };
+    let plain = Written { events: false, ..all };
+    let labels = Labels { model: false, ..view.labels };
+    let names = Labels { letter, name, clock, ..Labels::default() };
+    let none = Written { labels: Labels::default(), second: false, scale_bar: false, events: false };
+    let choices = [all, plain, Written { labels, second: false, ..plain }, Written { labels: names, ..none }];
+    let margins = (scale.margin + scale.lower_margin) * unit;
+    let fits = |written: &Written| {
+        let taken: f64 = rooms_of(*written, scale).iter().sum();
+        let words = if written.second { MOST_WORDS[0] } else { MOST_WORDS[1] };
+        taken - margins <= words * height && taken <= MOST_WORDS[2] * height
     };
-    let below = if count || number || view.scale_bar { WORDS_BELOW } else { NO_WORDS };
-    // Inside the margin, rows are as high as their type.
-    let room = |room: f64, margin: f64| {
-        (room.min(MARGIN) + margin - MARGIN).max(0.0) + (room - MARGIN).max(0.0) * view.look.text_scale
+    choices.into_iter().find(fits).unwrap_or(none)
+}
+
+/// The room above and below the body in a panel of a height (px) that words need (px in the reference picture), with a
+/// number of pixels for each of the reference picture.
+pub(super) fn rooms(view: &View, height: f64, unit: f64) -> [f64; 2] {
+    rooms_of(written(view, height, unit), Scale { unit, ..Scale::REFERENCE }.within(view)).map(|room| room / unit)
+}
+
+/// The same for chosen words (px).
+fn rooms_of(Written { labels, second, scale_bar, events }: Written, scale: Scale) -> [f64; 2] {
+    let Labels { letter, name, clock, count, number, .. } = labels;
+    let unit = scale.type_unit();
+    let rows = Baselines::new(scale, [0; 4]);
+    let nothing = |margin: f64| (NO_WORDS + margin - MARGIN).max(0.0) * scale.unit;
+    let above = match (letter || name || clock, second) {
+        _ if events => rows.events + CLEAR[1] * unit,
+        (_, true) => rows.second + CLEAR[1] * unit,
+        (true, false) => rows.title + CLEAR[0] * unit,
+        (false, false) => nothing(scale.margin),
     };
-    let [margin, lower] = margins(view);
-    [room(above, margin), room(below, lower)]
+    let has_below = count || number || scale_bar;
+    let below = if has_below { CLEAR[2] * unit - rows.count } else { nothing(scale.lower_margin) };
+    [above, below]
 }
 
 /// Free around and inside each panel, and below its lowest words (px in the reference picture).
 fn margins(view: &View) -> [f64; 2] {
     let least = LEAST_MARGIN * view.look.text_scale;
     let margin = (MARGIN * view.look.margin).max(least);
-    // To a strip the words keep a distance of their own.
-    let lower = if view.strip.is_some() { margin.clamp((ABOVE_STRIP * least).min(MARGIN), MARGIN) } else { margin };
+    // To a chart the words keep a distance of their own.
+    let lower = if view.strip.is_some() { margin.clamp((ABOVE_CHART * least).min(MARGIN), MARGIN) } else { margin };
     [margin, lower]
 }
 
@@ -232,6 +307,8 @@ pub(super) struct Scale {
     pub(super) unit: f64,
     /// How many times larger than usual type is, with its rows.
     type_factor: f64,
+    /// The smallest type (px).
+    least: f64,
     /// How many times thicker than usual lines are.
     pub(super) line_factor: f64,
     /// Free around and inside each panel, and below its lowest words (px in the reference picture).
@@ -242,7 +319,7 @@ pub(super) struct Scale {
 impl Scale {
     /// That of the reference picture.
     pub(super) const REFERENCE: Self =
-        Self { unit: 1.0, type_factor: 1.0, line_factor: 1.0, margin: MARGIN, lower_margin: MARGIN };
+        Self { unit: 1.0, type_factor: 1.0, least: 0.0, line_factor: 1.0, margin: MARGIN, lower_margin: MARGIN };
 
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         Self { unit: print::unit(size, [panel[2], panel[3]]), ..Self::REFERENCE }
@@ -264,6 +341,11 @@ impl Scale {
         Self { type_factor: look.text_scale, line_factor: look.line_scale, margin, lower_margin, ..self }
     }
 
+    /// The same for a part of the picture of a scene, which has no smaller type than that.
+    fn within(self, view: &View) -> Self {
+        Self { least: LEAST_TYPE * whole(view) * view.look.text_scale.min(1.0), ..self.with(view) }
+    }
+
     /// Pixels for one pixel of type in the reference picture, and of what stands in its rows.
     pub(super) fn type_unit(self) -> f64 {
         self.of_type(self.unit)
@@ -282,12 +364,17 @@ impl Scale {
 
     /// Names, clock and count (px).
     pub(super) fn title(self) -> f64 {
-        26.0 * self.type_unit()
+        (26.0 * self.type_unit()).max(self.least)
     }
 
     /// Everything else (px).
     pub(super) fn caption(self) -> f64 {
-        16.0 * self.type_unit()
+        (16.0 * self.type_unit()).max(self.least)
+    }
+
+    /// Numbers in charts and in rings (px).
+    pub(super) fn small(self) -> f64 {
+        (14.0 * self.type_unit()).max(self.least)
     }
 
     /// Free space around and inside each panel (px).
@@ -303,11 +390,6 @@ impl Scale {
     /// A free length as much longer as margins are wider.
     fn like_margin(self, length: f64) -> f64 {
         length * (self.margin / MARGIN)
-    }
-
-    /// How much wider than usual margins are, if they are (px in the reference picture).
-    pub(super) fn widened(self) -> f64 {
-        (self.margin - MARGIN).max(0.0)
     }
 
     /// What is added between rows where margins are narrower than usual (px in the reference picture).
@@ -350,25 +432,26 @@ const BELOW_BASELINE: f64 = 2.0;
 pub(super) struct Baselines {
     pub(super) title: f64,
     pub(super) second: f64,
+    pub(super) events: f64,
     pub(super) count: f64,
     pub(super) caption: f64,
 }
 
 impl Baselines {
     pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
-        let height = f64::from(panel[3]);
-        Self {
-            title: scale.row(60.0),
-            second: scale.row(86.0),
-            count: height - (scale.lower_margin - BELOW_BASELINE + 20.0 * scale.type_factor) * scale.unit,
-            caption: height - (scale.lower_margin - BELOW_BASELINE) * scale.unit,
-        }
+        let apart = |length: f64| scale.of_type(length * scale.unit).max(LINE * scale.caption());
+        let title = scale.margin() + scale.of_type(ROWS[0] * scale.unit).max(ASCENT * scale.title());
+        let below = (scale.lower_margin - BELOW_BASELINE) * scale.unit;
+        let caption = f64::from(panel[3]) - below.max(0.5 * scale.caption());
+        let count = caption - scale.of_type(COUNT_ABOVE * scale.unit).max(LINE * scale.caption());
+        Self { title, second: title + apart(ROWS[1]), events: title + apart(ROWS[1]) + apart(ROWS[2]), count, caption }
     }
 }
 
-/// The part of a panel between its lines of text, which need rooms above and below, inside its margins.
-pub(super) fn clear_of_words(panel: Rectangle, scale: Scale, [above, below]: [f64; 2]) -> Rectangle {
+/// The part of a panel of a view between its lines of text, inside its margins.
+pub(super) fn clear_of_words(panel: Rectangle, view: &View, scale: Scale) -> Rectangle {
     let [left, top, width, height] = panel;
+    let [above, below] = rooms(view, f64::from(height), scale.unit);
     let inside = |at: f64, length: u32| at.clamp(0.0, f64::from(length)) as u32;
     let side = inside(scale.margin(), width / 2);
     let above = inside((above + 7.0) * scale.unit, height);
@@ -403,10 +486,10 @@ mod tests {
 
     #[test]
     fn the_ground_between_the_words_lies_inside_the_panel() {
-        let rooms = [WORDS_ABOVE, WORDS_BELOW];
-        assert_eq!(clear_of_words([640, 0, 640, 720], Scale::REFERENCE, rooms), [680, 102, 560, 518]);
+        let view = View::default();
+        assert_eq!(clear_of_words([640, 0, 640, 720], &view, Scale::REFERENCE), [680, 102, 560, 518]);
         for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
-            let [x, y, width, height] = clear_of_words(panel, Scale::new([64, 64], panel), rooms);
+            let [x, y, width, height] = clear_of_words(panel, &view, Scale::new([64, 64], panel));
             assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
             assert!(y >= panel[1] && y + height <= panel[1] + panel[3]);
         }
@@ -421,19 +504,19 @@ mod tests {
                 strip: Some(crate::sim::snapshot::Diagnostic::TurnedOver),
                 ..View::default()
             };
-            let layout = Layout::new(&view, runs, 2, 40 * size[1] / 720, 2);
+            let wanted = Wanted { title_lines: 1, clock: true, legend: 40 * size[1] / 720, caption_lines: 2 };
+            let layout = Layout::new(&view, runs, 2, wanted);
             let [_, top, width, height] = layout.ground;
             assert!(width == size[0] && height >= size[1] / 2 && layout.legend == top + height);
             assert!(layout.caption >= f64::from(layout.legend));
-            for PanelRoom { viewport, strip } in &layout.panels {
-                // Where a strip could not be read, its room is the body's.
-                let Some(strip) = strip else {
-                    assert!(size[1] <= 200 && viewport[1] + viewport[3] <= top + height);
-                    continue;
-                };
-                assert!(viewport[1] >= top && viewport[1] + viewport[3] <= strip[1]);
-                assert!(strip[1] + strip[3] <= top + height, "{strip:?} in {:?}", layout.ground);
-                assert!(strip[0] >= viewport[0] && strip[0] + strip[2] <= viewport[0] + viewport[2]);
+            // Where a chart could not be read, its room is the bodies'.
+            assert_eq!(layout.chart.is_some(), size[1] > 200, "{size:?}");
+            let bottom = layout.chart.map_or(top + height, |chart| chart[1]);
+            for panel in &layout.panels {
+                assert!(panel[1] >= top && panel[1] + panel[3] <= bottom, "{panel:?} in {:?}", layout.ground);
+            }
+            if let Some(chart) = layout.chart {
+                assert!(chart[1] + chart[3] <= top + height && chart[0] + chart[2] <= width, "{chart:?}");
             }
         }
     }
@@ -458,7 +541,7 @@ mod tests {
         let panel = [0, 0, 640, 720];
         let rows = Baselines::new(large, panel);
         assert!(rows.second - rows.title > large.caption() && rows.caption - rows.count >= large.caption());
-        let [_, top, _, height] = clear_of_words(panel, large, rooms(&view));
+        let [_, top, _, height] = clear_of_words(panel, &view, large);
         assert!(f64::from(top) > rows.second && f64::from(top + height) < rows.count - large.title());
     }
 }

@@ -24,7 +24,7 @@ const MOST_HEIGHT: f64 = 0.1;
 /// picture).
 const ARROW_ROOM: f64 = 250.0;
 const SAMPLE_ROOM: f64 = 220.0;
-const BAR_ROOM: f64 = 390.0;
+const BAR_ROOM: f64 = 365.0;
 /// Size of the numbers at the ticks (px in the reference picture).
 const NUMBERS: f64 = 14.0;
 /// Height of the bar, its least and largest length, and the length of a tick (px in the reference picture).
@@ -53,22 +53,26 @@ pub(super) struct Bar<'a> {
     definition: &'static str,
     /// The values at its ends.
     range: [f64; 2],
+    /// The size of the body (m).
+    extent: f64,
     ramp: &'a [Colour],
     /// Whether there are values below and above it.
     beyond: [bool; 2],
 }
 
 impl<'a> Bar<'a> {
-    /// The scale of something with a name, a unit and a definition, over a range in which its values lie, or beyond which.
+    /// The scale of something of a body of a size (m) with a name, a unit and a definition, over a range in which its values lie, or beyond
+    /// which.
     pub(super) fn new(
         [name, unit, definition]: [&'static str; 3],
         range: [f64; 2],
+        extent: f64,
         ramp: &'a [Colour],
         values: impl Iterator<Item = f64>,
     ) -> Self {
         let [low, high] = range;
         let beyond = values.fold([false; 2], |[below, above], value| [below || value < low, above || value > high]);
-        Self { name, unit, definition, range, ramp, beyond }
+        Self { name, unit, definition, range, extent, ramp, beyond }
     }
 }
 
@@ -115,13 +119,13 @@ impl Legend {
     }
 
     /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that
-    /// the arrow stands for (m), its own (px), and how large it is beside those of the reference picture.
+    /// the arrow stands for, in words, its own (px), and how large it is beside those of the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
         picture_width: f64,
         ground: f64,
-        arrow: Option<[f64; 3]>,
+        arrow: Option<(String, [f64; 2])>,
         samples: &[Sample<'_>],
         bars: &[Bar<'_>],
     ) {
@@ -131,12 +135,12 @@ impl Legend {
         let top = (ground + made_up - ABOVE * writer.scale.unit).round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
-        if let Some([metres, length, size]) = arrow {
+        if let Some((metres, [length, size])) = arrow {
             // However thick lines are, the arrow stays inside the key and clear of the text above.
             let free = middle - ground + 0.5 * margin - CLEAR * writer.scale.unit;
             let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
             let size = size.min(most.max(size / writer.scale.line_factor));
-            left = self.arrow(writer, [left, middle], [metres, length, size]) + APART * unit;
+            left = self.arrow(writer, [left, middle], &metres, [length, size]) + APART * unit;
         }
         for sample in samples {
             left = self.sample(writer, [left, middle], sample) + APART * unit;
@@ -153,7 +157,7 @@ impl Legend {
     }
 
     /// An arrow and the length that it stands for; returns where the text ends (px).
-    fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], [metres, length, size]: [f64; 3]) -> f64 {
+    fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], metres: &str, [length, size]: [f64; 2]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
         writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
@@ -161,7 +165,7 @@ impl Legend {
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(
             writer,
-            &format!("displacement {}", number::metres(metres)),
+            &format!("displacement {metres}"),
             Weight::Regular,
             16.0,
             palette.second_text,
@@ -209,7 +213,7 @@ impl Legend {
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
         let &Bar { name, ramp, beyond, mut definition, .. } = bar;
-        let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, MOST_TICKS);
+        let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, bar.extent, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
         let wide = |text: &String| fonts.width(text, Weight::Regular, numbers);

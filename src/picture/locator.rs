@@ -92,7 +92,7 @@ impl Locator {
 
     /// Where it stands in a panel (px: left, top, width and height); `None` where it would be too small.
     pub(super) fn place(&self, view: &crate::look::View, viewport: Rectangle, scale: Scale) -> Option<[f64; 4]> {
-        let [left, top, width, height] = layout::clear_of_words(viewport, scale, layout::rooms(view)).map(f64::from);
+        let [left, top, width, height] = layout::clear_of_words(viewport, view, scale).map(f64::from);
         let most = [WIDTH * f64::from(viewport[2]), HEIGHT * height];
         let inside = 2.0 * INSIDE * scale.unit;
         let shape = self.high - self.low;

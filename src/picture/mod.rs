@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
-//! the scene and that frame only. Strips ([`crate::look::View::strip`]), paths and the panel of a difference show time series of
-//! the whole scene, which the composer gets beforehand; they depend on the scene only, too.
+//! the scene and that frame only. A chart ([`crate::look::View::strip`]), paths and the panel of a difference shows time series of
+//! the whole scene, which the composer gets beforehand; these depend on the scene only, too.
 
 mod arrows;
 mod axis;
@@ -17,8 +17,10 @@ mod chart;
 mod compose;
 mod ears;
 mod ends;
+mod event;
 mod exploded;
 mod field;
+mod flag;
 mod ghost;
 mod grip;
 mod layout;
@@ -39,6 +41,7 @@ mod strip;
 mod surface;
 mod tally;
 mod text;
+mod timeline;
 mod tracking;
 mod wire;
 
@@ -46,7 +49,7 @@ pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};
 pub(crate) use camera::Framing;
 pub use compose::{Composer, compose};
-pub(crate) use compose::{NoRoom, compose_figure};
+pub(crate) use compose::{NoRoom, compose_figure, left_out};
 pub(crate) use layout::Rectangle;
 pub(crate) use ranges::{RangeRow, Ranges, SIZE_MM as RANGES_SIZE_MM, power_of_ten};
 pub(crate) use shadow::{CELLS, Shade};

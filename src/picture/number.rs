@@ -1,6 +1,8 @@
 //! Numbers as text: few digits, a suitable unit, a true minus sign.
 
-use crate::sim::words::{prefix, rounded};
+use super::text::THIN_SPACE;
+use crate::sim::snapshot::Diagnostic;
+use crate::sim::words::{prefix as prefix_of, rounded};
 
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.
 pub(super) fn time(seconds: f64) -> String {
@@ -45,20 +47,46 @@ pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> Strin
 /// What is shorter is written in milliseconds (s).
 const LEAST_SECOND: f64 = 0.999_95;
 
+/// The factor and the prefix of the unit of all lengths in pictures of a body of a size (m).
+pub(super) fn metre(extent: f64) -> (f64, &'static str) {
+    match extent {
+        extent if extent >= 30.0 => (1.0, ""),
+        extent if extent >= 0.03 => (1e-3, "m"),
+        _ => (1e-6, "µ"),
+    }
+}
+
+/// A count.
+pub(super) fn count(count: usize) -> String {
+    with_minus(count.to_string())
+}
+
 /// A small length (m), in the unit that suits the size of the body (m) throughout a run.
 pub(super) fn length(metres: f64, extent: f64) -> String {
     if !metres.is_finite() {
         return "∞".to_owned();
     }
-    let (value, unit) = match extent {
-        extent if extent >= 30.0 => (metres, "m"),
-        extent if extent >= 0.03 => (metres * 1e3, "mm"),
-        _ => (metres * 1e6, "µm"),
-    };
+    let (factor, prefix) = metre(extent);
+    let (value, unit) = (metres / factor, format!("{prefix}m"));
     match value.abs() {
         size if size < 9.95 => with_minus(format!("{value:.1} {unit}")),
         size if size < 99_999.5 => with_minus(format!("{value:.0} {unit}")),
         _ => with_minus(format!("{value:.1e} {unit}")),
+    }
+}
+
+/// A value of a diagnostic with its unit, of a body of a size (m).
+pub(super) fn value(diagnostic: Diagnostic, value: f64, extent: f64) -> String {
+    match diagnostic {
+        Diagnostic::TurnedOver => value.to_string(),
+        Diagnostic::VolumeRatio => ratio(value),
+        Diagnostic::ShapeError => length(value, extent),
+        _ => {
+            let unit = diagnostic.unit();
+            let value = rounded(value, 3);
+            let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
+            with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
+        }
     }
 }
 
@@ -71,9 +99,21 @@ pub(super) fn ratio(value: f64) -> String {
     }
 }
 
+/// A number as it is set: with a true minus sign, no negative zero, and thin spaces between thousands from 10 000 on.
 pub(super) fn with_minus(text: String) -> String {
     let zero = text.strip_prefix('-').filter(|rest| !rest.contains(|c: char| ('1'..='9').contains(&c)));
-    zero.map_or_else(|| text.replace('-', "−"), str::to_owned)
+    let text = zero.map_or_else(|| text.replace('-', "−"), str::to_owned);
+    let is_digit = |c: char| c.is_ascii_digit();
+    let Some(first) = text.find(is_digit) else { return text };
+    let length = text[first..].find(|c| !is_digit(c)).unwrap_or(text.len() - first);
+    let mut set = text[..first].to_owned();
+    for (at, digit) in text[first..first + length].chars().enumerate() {
+        if at > 0 && length > 4 && (length - at).is_multiple_of(3) {
+            set.push(THIN_SPACE);
+        }
+        set.push(digit);
+    }
+    set + &text[first + length..]
 }
 
 /// How many times: in words up to twelve, then in digits, from a thousand on in powers of ten.
@@ -109,17 +149,14 @@ pub(super) fn times_ten(digits: f64, power: f64) -> f64 {
     format!("{digits}e{power}").parse().unwrap_or(digits)
 }
 
-/// A round length (m) with the prefix that suits it.
-pub(super) fn metres(length: f64) -> String {
-    let (factor, prefix) = prefix(length);
-    let value = length / factor;
+/// A round length (m) in pictures of a body of a size (m): in the unit of its other lengths, but no thousands of these.
+pub(super) fn round_length(metres: f64, extent: f64) -> String {
+    let (factor, prefix) = metre(extent);
+    let suits = (1e-2..0.999e3).contains(&(metres / factor));
+    let (factor, prefix) = if suits { (factor, prefix) } else { prefix_of(metres) };
+    let value = metres / factor;
     let plain = (0.01..1e4).contains(&value);
-    if plain { format!("{} {prefix}m", rounded(value, 3)) } else { format!("{value:.0e} {prefix}m") }
-}
-
-/// A round length in metres, without a prefix as long as that is short.
-pub(super) fn plain_metres(length: f64) -> String {
-    if (1e-3..1e4).contains(&length) { format!("{length} m") } else { metres(length) }
+    if plain { format!("{} {prefix}m", rounded(value, 3)) } else { with_minus(format!("{value:.0e} {prefix}m")) }
 }
 
 #[cfg(test)]
@@ -139,7 +176,8 @@ mod tests {
     #[test]
     fn moments_are_what_was_typed() {
         let times = [0.0, 0.07, 0.0125, 1.0 / 3.0, 0.999_96, 1.0, 1.46, 12.345_678, 1e5];
-        let expected = ["0 ms", "70 ms", "12.5 ms", "333.3 ms", "1.0 s", "1.0 s", "1.46 s", "12.35 s", "100000.0 s"];
+        let expected =
+            ["0 ms", "70 ms", "12.5 ms", "333.3 ms", "1.0 s", "1.0 s", "1.46 s", "12.35 s", "100\u{2009}000.0 s"];
         assert_eq!(times.map(|time| moment(time, true, decimals(time))), expected);
         assert_eq!((moment(0.0, false, 2), moment(1.5, false, 2)), ("0 s".to_owned(), "1.50 s".to_owned()));
     }
@@ -160,9 +198,18 @@ mod tests {
     }
 
     #[test]
-    fn round_lengths_have_a_prefix() {
+    fn round_lengths_have_the_unit_of_the_others() {
         let lengths = [0.0123, 0.05, 0.99, 1.0, 2.6, 4000.0, 3e-6, 7e-13, 6e13];
-        let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "5e-4 nm", "5e4 Gm"];
-        assert_eq!(lengths.map(|length| metres(round_below(length))), expected);
+        let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "5e−4 nm", "5e4 Gm"];
+        assert_eq!(lengths.map(|length| round_length(round_below(length), 0.3)), expected);
+        assert_eq!((round_length(0.5, 50.0), round_length(0.5, 0.3)), ("0.5 m".to_owned(), "500 mm".to_owned()));
+    }
+
+    #[test]
+    fn thousands_stand_apart() {
+        let set = |text: &str| with_minus(text.to_owned());
+        assert_eq!(set("-12345.6789"), "−12\u{2009}345.6789");
+        assert_eq!([set("9999"), set("1234567 J")], ["9999", "1\u{2009}234\u{2009}567 J"]);
+        assert_eq!([set("-0.0"), set("1.5e-7"), count(27), count(39_304)], ["0.0", "1.5e−7", "27", "39\u{2009}304"]);
     }
 }

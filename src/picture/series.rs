@@ -3,18 +3,24 @@
 use super::Curve;
 use super::axis::Axis;
 use super::caption::Writer;
-use super::chart::Chart;
+use super::chart::{Chart, filled};
 use super::narrow::narrow;
+use crate::colour::mixed;
 use crate::history::TimeSeries;
 use crate::look::{LineStyle, Palette};
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
 use crate::sim::snapshot::Diagnostic;
 
-/// Widths of the curve that matters and of a cross, and the arms of a cross (px in the reference picture).
+/// Widths of a curve and of a cross, and the arms of a cross (px in the reference picture).
 pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
+/// A curve is dense where it turns four times within this length, by more than the second one (px in the reference picture);
+/// for a count a band of this strength of its colour stands for it.
+const DENSE: f64 = 12.0;
+const TURN: f64 = 3.0;
+const BAND: f64 = 0.55;
 /// Curves are simplified as long as no point moves by more than this (px).
 pub(super) const EXACT: f64 = 0.08;
 
@@ -79,14 +85,9 @@ impl Series {
         Some([chart.x(times, time), chart.y(values, value).clamp(chart.top, chart.bottom)])
     }
 
-    /// The curve at a width (px in the reference picture) and an opacity, with a cross where the run diverged.
-    pub(super) fn draw(
-        &self,
-        writer: &mut Writer<'_>,
-        chart: Chart,
-        [times, values]: [&Axis; 2],
-        [width, alpha]: [f64; 2],
-    ) {
+    /// Draws the curve, with a cross where the run diverged. Counts are solid steps; where they go up and down too densely for
+    /// a line, their least and greatest values enclose a band. Other curves have no dashes there, which would be a hatch.
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
         let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
         let mut points: Vec<_> = points.collect();
         if self.is_count {
@@ -99,18 +100,34 @@ impl Series {
             width: narrow(width * thickness),
             dash,
             colour: self.style.colour,
-            alpha: narrow(alpha),
+            alpha: 1.0,
         };
-        let dash: Vec<_> = self.style.dash.iter().map(|length| narrow(length * thickness)).collect();
-        for part in within(&points, borders) {
-            writer.curves.push(curve(&simplified(&part, EXACT), width, dash.clone()));
+        let dash = if self.is_count { &[] } else { self.style.dash };
+        let dash: Vec<_> = dash.iter().map(|length| narrow(length * thickness)).collect();
+        let dense = dense(&points, [DENSE, TURN].map(|length| length * thickness));
+        for &[from, to] in &dense {
+            if !self.is_count {
+                let inside: Vec<_> = points.iter().copied().filter(|&[x, _]| (from..=to).contains(&x)).collect();
+                for part in within(&inside, borders) {
+                    writer.curves.push(curve(&simplified(&part, EXACT), OWN, Vec::new()));
+                }
+                continue;
+            }
+            let colour = mixed(writer.palette.background, self.style.colour, BAND);
+            for [left, right, high, low] in band(&points, [from, to], DENSE * thickness) {
+                let [high, low] = [high, low].map(|y| y.clamp(chart.top, chart.bottom));
+                writer.marks.push(filled([left, high.round(), right - left, (low - high).round().max(1.0)], colour));
+            }
+        }
+        for part in outside(&points, &dense).iter().flat_map(|part| within(part, borders)) {
+            writer.curves.push(curve(&simplified(&part, EXACT), OWN, dash.clone()));
         }
         if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
             let [x, y] = [chart.x(times, time), last.clamp(chart.top, chart.bottom)];
             let arm = ARM * thickness;
             for slope in [-1.0, 1.0] {
                 let ends = [[x - arm, y - slope * arm], [x + arm, y + slope * arm]];
-                writer.curves.push(curve(&ends, CROSS.min(width), Vec::new()));
+                writer.curves.push(curve(&ends, CROSS, Vec::new()));
             }
         }
     }
@@ -175,6 +192,66 @@ fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         steps.push([x, y]);
     }
     steps
+}
+
+/// The stretches, from left to right, in which a curve turns up and down four times within a length, by more than a height
+/// (px).
+fn dense(points: &[[f64; 2]], [length, height]: [f64; 2]) -> Vec<[f64; 2]> {
+    let Some(&[first, start]) = points.first() else { return Vec::new() };
+    // Where it turns: the last extreme value is one as soon as the curve has left it by that height.
+    let mut turns = Vec::new();
+    let (mut extreme, mut sense) = ([first, start], 0.0);
+    for &[x, y] in points {
+        let way = y - extreme[1];
+        if way * sense > 0.0 || sense == 0.0 && way.abs() > height {
+            (extreme, sense) = ([x, y], way.signum());
+        } else if way.abs() > height {
+            turns.push(extreme[0]);
+            (extreme, sense) = ([x, y], -sense);
+        }
+    }
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for four in turns.windows(4).filter(|four| four[3] - four[0] <= length) {
+        // What lies between two of them is no rest for the eye, either.
+        match spans.last_mut().filter(|last| four[0] <= last[1] + 3.0 * length) {
+            Some(last) => last[1] = four[3],
+            None => spans.push([four[0], four[3]]),
+        }
+    }
+    spans
+}
+
+/// The area that a curve covers within a stretch and so far to both sides of each place (px): left and right side, upper
+/// and lower end of each part of it.
+fn band(points: &[[f64; 2]], [from, to]: [f64; 2], reach: f64) -> Vec<[f64; 4]> {
+    let inside = &points[points.partition_point(|&[x, _]| x < from)..points.partition_point(|&[x, _]| x <= to)];
+    let mut parts: Vec<[f64; 4]> = Vec::new();
+    let mut left = from.floor();
+    while left < to {
+        let first = inside.partition_point(|&[x, _]| x < left - 0.5 * reach);
+        let last = inside.partition_point(|&[x, _]| x <= left + 1.0 + 0.5 * reach);
+        let ends = inside[first..last].iter().fold(None, |ends: Option<[f64; 2]>, &[_, y]| {
+            Some(ends.map_or([y; 2], |[high, low]| [high.min(y), low.max(y)]))
+        });
+        if let Some([high, low]) = ends {
+            match parts.last_mut().filter(|last| last[1] == left && [last[2], last[3]] == [high, low]) {
+                Some(last) => last[1] = left + 1.0,
+                None => parts.push([left, left + 1.0, high, low]),
+            }
+        }
+        left += 1.0;
+    }
+    parts
+}
+
+/// The parts of a curve outside of stretches (px).
+fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let ends = std::iter::once(f64::NEG_INFINITY).chain(spans.iter().map(|span| span[1]));
+    let starts = spans.iter().map(|span| span[0]).chain([f64::INFINITY]);
+    let part = |(from, to): (f64, f64)| -> Vec<[f64; 2]> {
+        points.iter().copied().filter(|&[x, _]| (from..=to).contains(&x)).collect()
+    };
+    ends.zip(starts).map(part).filter(|part| !part.is_empty()).collect()
 }
 
 /// The parts of a curve between an upper and a lower border.
@@ -313,6 +390,23 @@ mod tests {
         assert!(within(&[], [0.0, 1.0]).is_empty());
         assert_eq!(within(&[[3.0, 0.5]], [0.0, 1.0]), [[[3.0, 0.5]]]);
         assert!(within(&[[0.0, 1e300], [1.0, 1e300]], [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn dense_stretches_are_cut_out() {
+        let calm = |from: i32| (from..from + 50).map(|x| [f64::from(x), 10.0]);
+        let busy = (50..100).map(|x| [f64::from(x), if x % 2 == 0 { 10.0 } else { 30.0 }]);
+        let points: Vec<_> = calm(0).chain(busy).chain(calm(100)).collect();
+        let spans = dense(&points, [12.0, 2.0]);
+        let [[from, to]] = spans[..] else { panic!("{spans:?}") };
+        assert!((45.0..55.0).contains(&from) && (95.0..105.0).contains(&to), "{spans:?}");
+        let parts = outside(&points, &spans);
+        assert!(parts.len() == 2 && parts[0][0] == points[0] && parts[1].last() == points.last());
+        let band = band(&points, spans[0], 12.0);
+        assert!(band.iter().all(|&[left, right, high, low]| right > left && high == 10.0 && low == 30.0), "{band:?}");
+        // Steep, but only upwards.
+        let rise: Vec<_> = (0..50).map(|x| [f64::from(x), f64::from(x * x)]).collect();
+        assert!(dense(&rise, [12.0, 2.0]).is_empty());
     }
 
     #[test]

@@ -1,154 +1,177 @@
-//! The strip below a panel: the time series of a diagnostic of its run, those of the other runs faintly behind it, and a
-//! mark at the present time. All strips of a picture have the same axes, and nothing in them moves but that mark.
+//! Time series of a diagnostic: the curves of several runs in one chart, which has two scales of time where the story is
+//! short. Its name stands left of it, those of the runs at the ends of their curves.
 
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
-use super::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
+use super::chart::{Chart, GAP, MOST_TICKS, ROWS_APART, wide};
 use super::ends::Ends;
-use super::layout::{LEAST_CHART, LEAST_STRIP_UNIT, MOST_OTHERS, Rectangle, Scale};
-use super::series::{self, OWN, Series};
-use super::text::Weight;
+use super::layout::Scale;
+use super::number;
+use super::series::{self, Series};
+use super::text::{Fonts, Weight};
 use crate::history::History;
+use crate::look::Palette;
 use crate::scene::Scene;
-use crate::sim::snapshot::{Diagnostic, RunFrame, Status};
+use crate::sim::snapshot::Diagnostic;
+use crate::sim::words::elements;
 
-/// Size of the name's type (px in the reference picture).
-const NAME: f64 = 16.0;
-/// From the top of the strip to the baseline of its name and to its chart (px in the reference picture).
-const NAME_BASELINE: f64 = 13.0;
-const ABOVE: f64 = 26.0;
-/// The narrowest chart (px).
-const LEAST_WIDTH: f64 = 40.0;
-/// Width of other runs' curves, and their opacity; radius of the dot, and its halo (px in the reference picture).
-const OTHER: f64 = 1.4;
-const FAINT: f64 = 0.55;
-const DOT: f64 = 4.5;
-const HALO: f64 = 2.2;
-/// The part of a strip's width that the names at the ends of curves take at most, and how far above the chart they begin
-/// at most (px in the reference picture).
-const NAMES: f64 = 0.4;
-const NAMES_ABOVE: f64 = 8.0;
+/// Size of the unit's type, and from the name to the unit (px in the reference picture).
+const UNIT: f64 = 14.0;
+const UNIT_BELOW: f64 = 19.0;
+/// Between the name and the numbers beside the chart (px in the reference picture).
+const BESIDE_NAME: f64 = 14.0;
+/// The first time begins at most so far left of the chart (px in the reference picture).
+const BEFORE_TIMES: f64 = 5.0;
+/// Where the scale of time changes: the part of the width before, and the gap (px in the reference picture).
+const BEFORE: f64 = 0.8;
+const SPLIT_GAP: f64 = 12.0;
 
-/// What the strips of a scene show.
+/// The time series of a diagnostic.
 #[derive(Debug)]
-pub(super) struct Strips {
-    diagnostic: Diagnostic,
-    /// Its name in the picture.
-    name: &'static str,
-    /// The last time shown (s).
-    end: f64,
-    series: Vec<Series>,
-    /// The values that all strips show; `None` if there are none.
+pub(super) struct Strip {
+    pub(super) diagnostic: Diagnostic,
+    name: String,
+    unit: String,
+    /// One for each run shown.
+    pub(super) series: Vec<Series>,
+    /// The values shown; `None` if there are none.
     range: Option<[f64; 2]>,
+    /// The size of the body (m).
+    extent: f64,
 }
 
-impl Strips {
-    /// Prepares to show a diagnostic of all runs of a history.
-    pub(super) fn new(diagnostic: Diagnostic, history: &History, scene: &Scene) -> Self {
-        let palette = &scene.view.look.palette;
-        let one = |of_run| Series::new(diagnostic, of_run, scene, palette);
+impl Strip {
+    /// A diagnostic of all runs of a history, in the colours of a picture; `label` replaces names of runs.
+    pub(super) fn new(
+        diagnostic: Diagnostic,
+        history: &History,
+        scene: &Scene,
+        palette: &Palette,
+        label: impl Fn(&str) -> String,
+    ) -> Self {
+        let one = |of_run| {
+            let one = Series::new(diagnostic, of_run, scene, palette);
+            Series { name: label(&one.name), ..one }
+        };
         let series: Vec<_> = history.series.iter().map(one).collect();
+        let is_count = diagnostic == Diagnostic::TurnedOver;
         // Counts are bounded by the number of elements, so diverged runs are shown whole.
-        let range = series::range(&series, diagnostic != Diagnostic::TurnedOver);
-        let name = series::name(diagnostic, scene);
-        Self { diagnostic, name, end: history.end, series, range }
-    }
-
-    /// Draws the strip of a run into a rectangle; nothing if that is too small to be read.
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, rectangle: Rectangle, shown: &RunFrame) {
-        let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_STRIP_UNIT));
-        let [left, top_of_all, width, height] = rectangle.map(f64::from);
-        let [top, bottom] = [top_of_all + (ABOVE * unit).round(), top_of_all + height - (BELOW * unit).round()];
-        let chart = Chart {
-            left,
-            right: left + width,
-            top,
-            bottom,
-            unit,
-            line: writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT),
-            thin: writer.scale.line_factor * unit,
+        let range = series::range(&series, !is_count);
+        let mut name = series::name(diagnostic, scene).to_owned();
+        if let Some(first) = name.get_mut(..1) {
+            first.make_ascii_uppercase();
+        }
+        let one = Self { diagnostic, name, unit: String::new(), series, range, extent: scene.body.extent() };
+        let unit = match one.values(MOST_TICKS) {
+            _ if is_count => match elements(&scene.body)[..] {
+                [(count, name)] => format!("of {} {name}", number::count(count)),
+                _ => format!("of {} elements", number::count(scene.body.elements.len())),
+            },
+            Some(axis) => axis.unit,
+            None => "none".to_owned(),
         };
-        let enough = width >= LEAST_WIDTH && bottom - top >= LEAST_CHART && Scale::legible(NUMBERS * unit);
-        if !enough || self.end <= 0.0 {
-            return;
-        }
-        let kind = if self.is_count() { Kind::Count } else { Kind::Value };
-        let rows = ((bottom - top) / (ROWS_APART * unit)) as usize + 1;
-        let values = self.range.map(|range| Axis::new(kind, range, self.diagnostic.unit(), rows.min(MOST_TICKS)));
-        let own = self.series.iter().find(|one| one.run == shown.run && !one.points.is_empty());
-        let unit_text = values.as_ref().map_or("", |axis| &axis.unit);
-        let note = match (unit_text, own) {
-            ("", Some(_)) => String::new(),
-            ("", None) => ": none".to_owned(),
-            (unit_text, Some(_)) => format!(" ({unit_text})"),
-            (unit_text, None) => format!(" ({unit_text}): none"),
-        };
-        let numbers =
-            values.iter().flat_map(|axis| &axis.texts).map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
-        let indent = if numbers > 0.0 { numbers + GAP * unit } else { 0.0 };
-        let between = [chart.top - NAMES_ABOVE * unit, top_of_all + height];
-        let few = self.series.len() <= MOST_OTHERS + 1;
-        let room = [NAMES * width, between[1] - between[0]];
-        let names = few.then(|| Ends::new(writer.fonts, &self.series, unit, room)).flatten();
-        let taken = names.as_ref().map_or(0.0, |names| names.width);
-        let chart = Chart { left: (left + indent).round(), right: (chart.right - taken).round(), ..chart };
-        if chart.right - chart.left < LEAST_WIDTH {
-            return;
-        }
-        self.write_name(writer, [left, top - (ABOVE - NAME_BASELINE) * unit, width], &note, unit);
-        let times = chart.times(writer.fonts, [0.0, self.end]);
-        if let Some(values) = &values {
-            if let Some(own) = own.filter(|_| self.is_count()) {
-                chart.area(writer, [&times, values], &own.points);
-            }
-            chart.rows(writer, values, true);
-        }
-        chart.columns(writer, &times, values.is_none(), f64::NEG_INFINITY);
-        let palette = writer.palette;
-        if let Some(values) = &values {
-            let others = self.series.iter().filter(|one| one.run != shown.run);
-            for one in others.filter(|_| few) {
-                one.draw(writer, chart, [&times, values], [OTHER, FAINT]);
-            }
-            if let Some(names) = &names {
-                let ends: Vec<_> = self.series.iter().map(|one| one.end(chart, [&times, values])).collect();
-                names.write(writer, chart, &self.series, &ends, Some(shown.run), between);
-            }
-        }
-        let now = chart.x(&times, shown.snapshot.time);
-        writer.curves.push(chart.moment(now, palette.text));
-        let Some((own, values)) = own.zip(values.as_ref()) else { return };
-        own.draw(writer, chart, [&times, values], [OWN, 1.0]);
-        let value = self.diagnostic.of(&shown.snapshot.diagnostics);
-        let y = chart.y(values, value);
-        if shown.snapshot.status == Status::Ok && (chart.top - 1.0..=chart.bottom + 1.0).contains(&y) {
-            for (radius, colour) in [(DOT + HALO, palette.background), (DOT, own.style.colour)] {
-                writer.curves.push(dot([now, y], radius * chart.thickness(), colour));
-            }
-        }
+        Self { unit, ..one }
     }
 
-    fn is_count(&self) -> bool {
-        self.diagnostic == Diagnostic::TurnedOver
+    /// The axis of values with so many ticks at most; `None` if there are no values.
+    fn values(&self, most: usize) -> Option<Axis> {
+        let kind = if self.diagnostic == Diagnostic::TurnedOver { Kind::Count } else { Kind::Value };
+        self.range.map(|range| Axis::new(kind, range, self.diagnostic.unit(), self.extent, most))
     }
 
-    /// The name with a note behind it.
-    fn write_name(&self, writer: &mut Writer<'_>, [left, baseline, room]: [f64; 3], note: &str, unit: f64) {
-        let size = NAME * unit;
-        let fonts = writer.fonts;
-        let name = fonts.shortened(self.name, Weight::SemiBold, size, room);
-        let after = left + fonts.width(&name, Weight::SemiBold, size);
-        writer.words.push(writer.fonts.lay_out(&name, Weight::SemiBold, size, writer.palette.text, left, baseline));
-        if !note.is_empty() && fonts.width(note, Weight::Regular, size) <= left + room - after {
-            // Shortening would lose the space before it, so the note is written whole or not at all.
-            writer.words.push(writer.fonts.lay_out(
-                note,
-                Weight::Regular,
-                size,
-                writer.palette.second_text,
-                after,
-                baseline,
-            ));
+    /// The axis of values in a chart.
+    pub(super) fn values_in(&self, chart: Chart) -> Option<Axis> {
+        let rows = ((chart.bottom - chart.top) / (ROWS_APART * chart.unit)) as usize + 1;
+        self.values(rows.min(MOST_TICKS))
+    }
+
+    /// The room that the numbers beside it take (px), however many ticks there are, with the gap to its name.
+    pub(super) fn numbers_width(&self, fonts: &Fonts, type_unit: f64) -> f64 {
+        let texts = (2..=MOST_TICKS).filter_map(|most| self.values(most)).flat_map(|axis| axis.texts);
+        texts.map(|text| wide(fonts, &text, type_unit)).fold(0.0, f64::max) + (GAP + BESIDE_NAME) * type_unit
+    }
+
+    /// The room that its name takes (px).
+    pub(super) fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
+        let unit = fonts.width(&self.unit, Weight::Regular, UNIT * scale.type_unit());
+        fonts.width(&self.name, Weight::SemiBold, scale.caption()).max(unit)
+    }
+
+    /// Writes name and unit from a left end around a height (px).
+    pub(super) fn write_name(&self, writer: &mut Writer<'_>, [left, middle]: [f64; 2]) {
+        let (scale, palette) = (writer.scale, writer.palette);
+        let unit = scale.type_unit();
+        let has_unit = !self.unit.is_empty() && Scale::legible(UNIT * unit);
+        let baseline = middle + 0.36 * scale.caption() - if has_unit { 0.5 * UNIT_BELOW * unit } else { 0.0 };
+        writer.left(&self.name, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
+        let below = baseline + UNIT_BELOW * unit;
+        writer.left(&self.unit, Weight::Regular, UNIT * unit, palette.second_text, left, below);
+    }
+
+    /// Draws it, optionally with times below, and with names at the ends of its curves between two heights (px).
+    pub(super) fn draw(
+        &self,
+        writer: &mut Writer<'_>,
+        parts: &Parts,
+        with_times: bool,
+        names: Option<&Ends>,
+        between: [f64; 2],
+    ) {
+        let mut ends = vec![None; self.series.len()];
+        for (at, &(chart, span)) in parts.0.iter().enumerate() {
+            let times = chart.times(writer.fonts, span);
+            let values = self.values_in(chart);
+            let series: Vec<_> = self.series.iter().map(|one| one.between(span)).collect();
+            if let Some(values) = &values {
+                for one in series.iter().filter(|one| one.is_count) {
+                    chart.area(writer, [&times, values], &one.points);
+                }
+                chart.rows(writer, values, at == 0);
+            }
+            if with_times || values.is_none() {
+                // Beside the lowest value's number, and beside the times of the other scale.
+                let from = chart.left - if at == 0 { BEFORE_TIMES * chart.unit } else { 0.0 };
+                chart.columns(writer, &times, values.is_none(), from);
+            }
+            let Some(values) = &values else { continue };
+            for (one, end) in series.iter().zip(&mut ends) {
+                one.draw(writer, chart, [&times, values]);
+                *end = one.end(chart, [&times, values]).or(*end);
+            }
         }
+        if let (Some(names), Some(&(chart, _))) = (names, parts.0.last()) {
+            names.write(writer, chart, &self.series, &ends, between);
+        }
+    }
+}
+
+/// A chart, or two beside each other for two scales of time, each with the time that it shows (s).
+#[derive(Clone, Debug)]
+pub(super) struct Parts(Vec<(Chart, [f64; 2])>);
+
+impl Parts {
+    /// A chart over some pixels to the right and down, from a first time to a last one (s); their scale may change between.
+    pub(super) fn new(
+        scale: Scale,
+        [left, right]: [f64; 2],
+        [top, bottom]: [f64; 2],
+        [from, to]: [f64; 2],
+        split: Option<f64>,
+    ) -> Self {
+        let line = scale.line_factor * scale.unit;
+        let [unit, thin] = [1.0, scale.line_factor].map(|factor| factor * scale.type_unit());
+        let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit, line, thin };
+        let Some(split) = split else { return Self(vec![(chart([left, right]), [from, to])]) };
+        let gap = (SPLIT_GAP * scale.unit).round();
+        let middle = (left + BEFORE * (right - left - gap)).round();
+        Self(vec![(chart([left, middle]), [from, split]), (chart([middle + gap, right]), [split, to])])
+    }
+
+    /// The chart that shows a time (s), and where that stands in it (px).
+    pub(super) fn place(&self, time: f64) -> (Chart, f64) {
+        let part = self.0.iter().find(|(_, [_, to])| time <= *to).unwrap_or(&self.0[self.0.len() - 1]);
+        let &(chart, [from, to]) = part;
+        let share = ((time - from) / (to - from)).clamp(0.0, 1.0);
+        (chart, chart.left + share * (chart.right - chart.left))
     }
 }

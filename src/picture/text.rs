@@ -100,8 +100,13 @@ pub(super) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// Replaces what was cut off.
+/// The space between thousands, and its width in parts of that between words.
+pub(super) const THIN_SPACE: char = '\u{2009}';
+const THIN: f64 = 0.6;
+/// Replaces what was cut out.
 const ELLIPSIS: char = '…';
+/// How much of the room for a text that is too long its beginning gets; others are for texts with equal beginnings and ends.
+const BEGINNINGS: [f64; 5] = [0.6, 1.0, 0.0, 0.8, 0.3];
 
 impl Default for Fonts {
     /// Those that are built in.
@@ -177,7 +182,11 @@ impl Fonts {
     /// do not jump from frame to frame.
     fn advance(&self, weight: Weight, character: char) -> f64 {
         let of = |character| self.own_advance(self.glyph(weight, character));
-        if character.is_ascii_digit() { ('0'..='9').map(of).fold(0.0, f64::max) } else { of(character) }
+        match character {
+            '0'..='9' => ('0'..='9').map(of).fold(0.0, f64::max),
+            THIN_SPACE => THIN * of(' '),
+            _ => of(character),
+        }
     }
 
     /// The width of a text set at a size (px).
@@ -185,25 +194,51 @@ impl Fonts {
         text.chars().map(|character| self.advance(weight, character)).sum::<f64>() * size
     }
 
-    /// The text itself if it is at most `room` wide (px), else its beginning and an ellipsis; nothing if even that is
-    /// too wide. Characters that take no place of their own, such as line breaks, become spaces.
+    /// The text itself if it is at most `room` wide (px), else its beginning and its end with an ellipsis between them;
+    /// nothing if even that is too wide. Characters that take no place of their own, such as line breaks, become spaces.
     pub(crate) fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
+        self.cut_out(text, weight, size, room, BEGINNINGS[0])
+    }
+
+    /// The same for one of several texts: if they are too long, what tells this one from the others stays as far as possible.
+    pub(crate) fn told_apart(&self, text: &str, all: &[&str], weight: Weight, size: f64, room: f64) -> String {
+        let cut = |text: &str, beginning: f64| self.cut_out(text, weight, size, room, beginning);
+        let own = |&beginning: &f64| {
+            let own = cut(text, beginning);
+            all.iter().all(|&other| other == text || cut(other, beginning) != own)
+        };
+        cut(text, BEGINNINGS.into_iter().find(own).unwrap_or(BEGINNINGS[0]))
+    }
+
+    /// The text without what is too wide for a room (px) between its beginning, which gets a part of that, and its end.
+    fn cut_out(&self, text: &str, weight: Weight, size: f64, room: f64, beginning: f64) -> String {
         let seen = text.chars().filter(|&c| !is_invisible(c));
         let text: String = seen.map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = text.trim();
         if self.width(text, weight, size) <= room {
             return text.to_owned();
         }
-        let mut used = self.advance(weight, ELLIPSIS) * size;
-        let mut kept = String::new();
-        for character in text.chars() {
-            used += self.advance(weight, character) * size;
-            if used > room {
-                break;
-            }
-            kept.push(character);
+        let room = room - self.advance(weight, ELLIPSIS) * size;
+        let letters: Vec<char> = text.chars().collect();
+        let fitting = |letters: &mut dyn Iterator<Item = &char>, room: f64| {
+            let mut used = 0.0;
+            letters
+                .take_while(|&&letter| {
+                    used += self.advance(weight, letter) * size;
+                    used <= room
+                })
+                .count()
+        };
+        let kept = fitting(&mut letters.iter(), beginning * room);
+        let start: String = letters[..kept].iter().collect();
+        let left = room - self.width(&start, weight, size);
+        let end = letters.len() - fitting(&mut letters[kept..].iter().rev(), left);
+        let end: String = letters[end..].iter().collect();
+        if kept == 0 && end.is_empty() {
+            String::new()
+        } else {
+            format!("{}{ELLIPSIS}{}", start.trim_end(), end.trim_start())
         }
-        if kept.is_empty() { String::new() } else { format!("{}{ELLIPSIS}", kept.trim_end()) }
     }
 
     /// Lays out one line that begins at `left` (px).
@@ -300,11 +335,28 @@ mod tests {
         for room in [0.0, 10.0, 30.0, 100.0, 300.0] {
             let short = fonts.shortened(name, Weight::SemiBold, 26.0, room);
             assert!(fonts.width(&short, Weight::SemiBold, 26.0) <= room, "{short}");
-            assert!(short.is_empty() || short.ends_with('…'));
+            assert!(short.is_empty() || short.contains('…'));
         }
+        let short = fonts.shortened(name, Weight::SemiBold, 26.0, 300.0);
+        assert!(short.starts_with("A very") && short.ends_with("its end"), "{short}");
         assert_eq!(fonts.shortened("Short", Weight::SemiBold, 26.0, 300.0), "Short");
         assert_eq!(fonts.shortened("in\u{200b}vis\u{fe0f}ible", Weight::Regular, 16.0, 300.0), "invisible");
         assert_eq!(fonts.shortened("two\nlines", Weight::Regular, 16.0, 300.0), "two lines");
+    }
+
+    #[test]
+    fn what_tells_names_apart_stays() {
+        let fonts = Fonts::default();
+        let end = "with accumulated rotations and the usual stiffness";
+        for all in [
+            ["Local shape", "Local shape, soft", "Local shape, stiff"].map(|name| format!("{name} {end}")),
+            ["soft", "stiff", "usual"].map(|name| format!("{end} and {end}, {name}")),
+        ] {
+            let all = all.each_ref().map(String::as_str);
+            let short = all.map(|name| fonts.told_apart(name, &all, Weight::SemiBold, 26.0, 330.0));
+            assert!(short[0] != short[1] && short[1] != short[2] && short[0] != short[2], "{short:?}");
+            assert!(short.iter().all(|name| fonts.width(name, Weight::SemiBold, 26.0) <= 330.0), "{short:?}");
+        }
     }
 
     #[test]

@@ -147,7 +147,7 @@ impl Tracking {
         let (view, dimension) = (&scene.view, scene.body.dimension);
         let lens = near(scene, viewport, scale);
         let [left, top, width, height] =
-            layout::clear_of_words(viewport, scale, layout::rooms(view)).map(|length| f64::from(length).max(1.0));
+            layout::clear_of_words(viewport, view, scale).map(|length| f64::from(length).max(1.0));
         let [above, below] = NEARER.map(|length| length * scale.unit);
         let room = [left, top - above, width, height + above + below];
         // What is nearer than the point looked at is seen larger; the outline lies on the way to the nearest.

@@ -107,6 +107,23 @@ fn warns_of_what_is_probably_not_meant() {
     assert_eq!(document["scenes"][0]["warnings"][0]["help"], "use at least 10 to show the end");
 }
 
+/// What the pictures of a scene have no room for is told, without a mistake.
+#[cfg(feature = "render")]
+#[test]
+fn tells_what_finds_no_room() {
+    let place = Place::new();
+    let view = "size = [640, 360]\ntext_scale = 3.0\nstrip = 'energy'";
+    place.write("large.toml", &SMALL.replace("size = [96, 64]", view));
+    let ran = place.run("check large.toml");
+    assert_eq!(ran.status, Some(0));
+    let told = "warning: large.toml: not everything has room in 640×360: ";
+    assert!(ran.err.starts_with(told) && ran.err.contains("panels do not describe the models"), "{}", ran.err);
+    let document = place.run("check large.toml --json").good().json();
+    assert!(document["scenes"][0]["no_room"].as_array().is_some_and(|told| told.len() > 1), "{document}");
+    place.write("roomy.toml", &SMALL.replace("size = [96, 64]", "size = [1280, 720]\nstrip = 'energy'"));
+    assert_eq!(place.run("check roomy.toml").good().err, "");
+}
+
 /// The example of `docs/bodies.md` makes the documented body: a stored archive of it, and a new one if there is NumPy.
 #[test]
 fn a_mesh_written_with_numpy() {

@@ -195,7 +195,7 @@ fn every_line_becomes_thicker_and_no_word_larger() {
         some(picture, |mark| mark.rectangle[3] == thickness && mark.rectangle[2] > 300.0).len()
     };
     assert!(
-        rows(&usual, 1.0) >= 6 && rows(&twice, 2.0) == rows(&usual, 1.0),
+        rows(&usual, 1.0) >= 3 && rows(&twice, 2.0) == rows(&usual, 1.0),
         "{} {}",
         rows(&usual, 1.0),
         rows(&twice, 2.0)
@@ -208,7 +208,8 @@ fn every_line_becomes_thicker_and_no_word_larger() {
     };
     assert_eq!([&usual, &twice].map(frame), [1.0, 2.0]);
     assert!(!usual.curves.is_empty());
-    for (thin, thick) in usual.curves.iter().zip(&twice.curves) {
+    // Rings around numbers go with the type.
+    for (thin, thick) in usual.curves.iter().zip(&twice.curves).filter(|(thin, _)| thin.points.len() > 1) {
         assert!((thick.width - 2.0 * thin.width).abs() < 1e-4);
     }
 }

@@ -1,6 +1,7 @@
 //! Positions of texts: nowhere overlapping, and the same in every frame.
 
 use super::{all, assert_words_are_clear, fig4b, frame, parse};
+use localshape::history::History;
 use localshape::look::Labels;
 use localshape::picture::{Composer, Mark, MarkShape, Picture, compose};
 use localshape::runner::Runner;
@@ -211,7 +212,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
     let scene = parse(&text.replace("step = 0.005", "step = 0.02"));
     let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
-    let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with(" m")).map(|word| word.span);
+    let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with("00 mm")).map(|word| word.span);
     let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
     assert!(frames[1].words.iter().any(|word| word.text.starts_with("diverged")), "it blows up");
     assert!(bar(&frames[0]).is_some());
@@ -233,7 +234,7 @@ fn everything_is_written_where_there_is_room() {
         "0 of 27",
         "turned over",
         "shape error",
-        "0.1 m",
+        "100 mm",
         "strain",
         "spring strain",
         "0.25",
@@ -244,6 +245,45 @@ fn everything_is_written_where_there_is_room() {
     for beginning in ["A title above all", "A caption of several", "A third model", "displacement ", "diverged"] {
         assert!(said.iter().any(|words| words.starts_with(beginning)), "“{beginning}…” is not in {said:?}");
     }
+}
+
+/// What is too small for words of the least size has fewer words.
+#[test]
+fn no_type_is_smaller_than_the_least() {
+    for (size, columns) in [([1280, 720], 3), ([1600, 1000], 3), ([1920, 1080], 1), ([1280, 720], 2)] {
+        let mut scene = parse(&ALL.replace("[view]", "[view]\nshow = ['springs', 'displacements']"));
+        (scene.view.size, scene.view.columns) = (size, Some(columns));
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&History::new(&scene, &[0, 1, 2]));
+        let picture = composer.compose(&Runner::new(&scene, &[0, 1, 2]).frame(3));
+        let width = size[0] as f32 / if columns == 1 { 540.0 } else { 1080.0 };
+        let least = 14.0 * width.min(size[1] as f32 / 720.0) - 0.01;
+        assert!(picture.words.len() > 20, "{size:?}");
+        for word in &picture.words {
+            assert!(word.size >= least, "“{}” has {} px, less than {least}, in {size:?}", word.text, word.size);
+        }
+        assert_words_are_clear(&picture, &format!("{size:?} in {columns} columns"));
+    }
+}
+
+#[test]
+fn large_type_wraps_and_gives_the_clock_a_place_of_its_own() {
+    let said = |text_scale: f64| {
+        let (mut scene, frame) = fig4b(4);
+        scene.view.title = "27 cubes dropped from 5 m: springs turn the lowest layer inside out".to_owned();
+        scene.view.look.text_scale = text_scale;
+        let picture = compose(&scene, &frame);
+        assert_words_are_clear(&picture, &text_scale.to_string());
+        let top = picture.panels[0].viewport[1] as f32;
+        let clock = picture.words.iter().find(|word| word.text == "67 ms").expect("a clock").baseline - top;
+        let name = picture.words.iter().find(|word| word.text == "Mass-spring").expect("a whole name").baseline - top;
+        let title = picture.words.iter().filter(|word| word.baseline < top).map(|word| word.text.clone());
+        (title.collect::<Vec<_>>(), clock < name)
+    };
+    assert!(!said(1.0).1);
+    let (title, clock_above) = said(1.8);
+    assert!(title.len() >= 2 && title[0].starts_with("27 cubes") && clock_above, "{title:?}");
+    assert!(title.iter().all(|line| !line.contains('…')), "{title:?}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::look::ColourScale;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::chart::{BELOW, Chart, GAP, MOST_TICKS, ROWS_APART, dot, wide};
-use crate::picture::layout::{LEAST_STRIP_UNIT, Rectangle, Scale};
+use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::narrow::narrow;
 use crate::picture::series::{EXACT, OWN, simplified};
 use crate::picture::text::Weight;
@@ -33,6 +33,9 @@ const HALO: f64 = 2.2;
 /// The lowest and the narrowest chart (px).
 const LEAST: [f64; 2] = [14.0, 40.0];
 
+/// The chart is no smaller than this part of the reference, so that its numbers stay legible.
+const LEAST_STRIP_UNIT: f64 = 0.5;
+
 /// The room of the panel, and that below it for a chart, if there is any.
 type Place = (Rectangle, Option<Rectangle>);
 
@@ -43,11 +46,13 @@ pub(super) struct Course {
     end: f64,
     /// Times (s) and distances (m).
     points: Vec<[f64; 2]>,
+    /// The size of the body (m).
+    extent: f64,
 }
 
 impl Course {
-    pub(super) fn new(history: &History) -> Self {
-        Self { end: history.end, points: history.difference.clone() }
+    pub(super) fn new(history: &History, extent: f64) -> Self {
+        Self { end: history.end, points: history.difference.clone(), extent }
     }
 }
 
@@ -133,7 +138,8 @@ impl Composer<'_> {
             letter: if labels.letter { caption::letter(at) } else { String::new() },
             name: if labels.name { name } else { "" },
             sample: None,
-            second: if labels.model { &second } else { "" },
+            second: if labels.model { second } else { String::new() },
+            names: &[],
         };
         writer.heading(viewport, &heading, taken);
         time.iter().for_each(|&time| writer.clock(viewport, time, &view.clock));
@@ -176,7 +182,7 @@ impl Course {
         let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
         let largest = self.points.iter().fold(0.0, |largest: f64, [_, distance]| distance.max(largest));
         let rows = ((bottom - top) / (ROWS_APART * unit)).max(0.0) as usize + 1;
-        let values = Axis::new(Kind::Value, [0.0, largest], "m", rows.min(MOST_TICKS));
+        let values = Axis::new(Kind::Value, [0.0, largest], "m", self.extent, rows.min(MOST_TICKS));
         let numbers = values.texts.iter().map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
         let indent = (numbers + GAP * unit).round();
         let [lowest, narrowest] = LEAST;

@@ -49,6 +49,7 @@ impl Draft<'_> {
         let middle = DVec2::ZERO;
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
+        let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
@@ -57,7 +58,7 @@ impl Draft<'_> {
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
-            fade_above: narrow((layout::rooms(view)[1] + FADE_ABOVE) * self.scale.unit),
+            fade_above: narrow((below + FADE_ABOVE) * self.scale.unit),
             is_filled: view.floor != FloorStyle::None,
             has_grid: view.floor == FloorStyle::Grid,
             shades: self.shadows(staged, &plane, middle, fade[1]),

@@ -8,27 +8,28 @@ mod ground;
 mod panel;
 mod paths;
 mod region;
+mod words;
 
 use super::arrows;
 use super::camera::Lens;
-use super::caption::{self, Heading, Writer, wrapped};
+use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::exploded::Exploded;
-use super::layout::{Layout, Rectangle, Scale};
+use super::layout::{self, Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::locator::{Located, Locator};
 use super::shell::Shell;
 use super::skin::Skin;
-use super::strip::Strips;
 use super::tally::Tally;
-use super::text::{Fonts, Weight};
+use super::text::Fonts;
+use super::timeline::Timeline;
 use super::tracking::{Shot, Tracking};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
 use crate::history::{History, Reach, TimeSeries};
 use crate::look::ramp::ramp;
-use crate::look::{ColourMap, Ghost, LineStyle, Palette, Place, StrainScale};
+use crate::look::{ColourMap, Palette, Place, StrainScale};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
@@ -39,12 +40,12 @@ pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;
+pub(crate) use words::left_out;
+use words::{Around, Clock, Words};
 
 /// Bodies with more elements than this along a side get softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
 
-/// Captions are never longer than this (lines).
-const MOST_LINES: usize = 200;
 /// The scale bar is at most this long (px in the reference picture).
 const SCALE_BAR: f64 = 120.0;
 /// Panels that a scene leaves to be arranged stand in at most so many columns, and in fewer than possible only where that
@@ -92,8 +93,8 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-    /// The curves below the panels, once the time series are set.
-    strips: Option<Strips>,
+    /// The chart below the panels, once the time series are set.
+    timeline: Option<Timeline>,
     /// The difference of two runs over time, and the paths of all runs, likewise.
     course: Option<difference::Course>,
     traced: Vec<TimeSeries>,
@@ -107,7 +108,7 @@ pub struct Composer<'a> {
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
 ///
-/// The time series of the scene are not known ([`Composer::set_history`]): the places of strips stay empty, and a camera that
+/// The time series of the scene are not known ([`Composer::set_history`]): the place of a chart stays empty, and a camera that
 /// follows takes its scale from the start.
 pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
     Composer::new(scene).compose(frame)
@@ -117,7 +118,7 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with strips ([`crate::look::View::strip`]), paths, a difference or a camera that follows
+    /// A scene with a chart ([`crate::look::View::strip`]), paths, a difference or a camera that follows
     /// ([`crate::look::Camera::follow`]) needs [`Composer::set_history`], too; without it their places stay empty, and the
     /// camera's scale is that of the start.
     pub fn new(scene: &'a Scene) -> Self {
@@ -179,7 +180,7 @@ impl<'a> Composer<'a> {
             spread: 1.0 + apart,
             start_box: bounds(&start).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
-            strips: None,
+            timeline: None,
             course: None,
             traced: Vec::new(),
             tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
@@ -190,17 +191,33 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Sets the time series: those of all runs to be shown, over the whole scene. Strips, paths and a difference show them, a
-    /// camera that follows takes its path and its scale from them, and plates and walls their size.
+    /// Sets the time series: those of all runs to be shown, over the whole scene. The chart, paths and a difference show them,
+    /// a camera that follows takes its path and its scale from them, and plates and walls their size.
     pub fn set_history(&mut self, history: &History) {
         let scene = self.scene;
-        self.strips = scene.view.strip.map(|diagnostic| Strips::new(diagnostic, history, scene));
         self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
         self.locator = self.tracking.as_ref().map(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
         history.series.iter().for_each(|series| self.reach.merge(&series.reach));
-        self.course = self.scene.view.difference.map(|_| difference::Course::new(history));
-        self.traced = if self.scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
+        self.course = scene.view.difference.map(|_| difference::Course::new(history, self.extent));
+        self.traced = if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
+        let Some(diagnostic) = scene.view.strip else { return };
+        let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
+        let layout = self.words().around(&runs, self.columns(&runs)).layout;
+        let writer = self.writer(layout.around);
+        let timeline = Timeline::new(diagnostic, history, scene, writer, layout.chart);
+        self.timeline = Some(timeline);
+    }
+
+    /// The words of its pictures.
+    fn words(&self) -> Words<'_> {
+        Words { scene: self.scene, fonts: &self.fonts, palette: &self.palette, descriptions: &self.descriptions }
+    }
+
+    /// Writes nothing yet, in type and lines of a scale.
+    fn writer(&self, scale: Scale) -> Writer<'_> {
+        let (marks, curves, words) = Default::default();
+        Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words }
     }
 
     /// Composes one frame.
@@ -208,47 +225,40 @@ impl<'a> Composer<'a> {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
         let compared = self.compared(frame);
-        let (runs, panels) = (frame.runs.len(), frame.runs.len() + usize::from(compared.is_some()));
-        let columns = self.columns(panels);
-        let legend = self.legend(panels, columns);
-        let caption = self.caption(panels, columns);
-        let layout = Layout::new(view, panels, columns, legend.map_or(0, |legend| legend.height), caption.len());
-        let legend = legend.filter(|_| layout.has_legend);
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        let columns = self.columns(&runs);
+        let Around { layout, title, caption, legend, clock } = self.words().around(&runs, columns);
         let scale = layout.scale;
-        let shot = layout.panels.first().and_then(|place| self.shot(place.viewport, scale));
+        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
         let places = layout.panels.iter().zip(&frame.runs);
-        let framings: Vec<_> =
-            places.map(|(place, run)| self.framing(shot.as_ref(), run, (place.viewport, scale))).collect();
-        let (marks, curves, words) = Default::default();
-        let mut writer = Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words };
+        let framings: Vec<_> = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale))).collect();
+        let mut writer = self.writer(scale);
         writer.hairlines(&layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        self.write(frame, &layout, columns, framings.first(), &mut writer);
-        let place = layout.panels.get(frame.runs.len()).map(|place| (place.viewport, place.strip));
+        let with_clock = clock == Clock::InPanel;
+        self.write(frame, &layout, columns, framings.first(), with_clock, &mut writer);
+        let place = layout.panels.get(runs.len()).map(|&panel| (panel, None));
         let compared = compared.as_ref().zip(place);
         if let Some((compared, place)) = compared {
-            let has_clock = view.labels.clock && clock(&layout, columns) == frame.runs.len();
-            let time = has_clock.then_some(frame.time);
-            self.write_difference(compared, place, frame.runs.len(), time, &mut writer);
+            let has_clock =
+                view.labels.clock && with_clock && words::clock_panel(layout.panels.len(), columns) == runs.len();
+            self.write_difference(compared, place, runs.len(), has_clock.then_some(frame.time), &mut writer);
         }
-        if let Some(strips) = &self.strips {
-            for (place, run) in layout.panels.iter().zip(&frame.runs) {
-                place.strip.iter().for_each(|&room| strips.draw(&mut writer, room, run));
-            }
+        self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
+        writer.title(layout.around, &title);
+        if let Clock::Above(Some(baseline)) = clock {
+            writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
-        if layout.has_title {
-            writer.title(layout.around, f64::from(size[0]), &view.title);
-        }
-        writer.caption(layout.around, &cut(caption, layout.caption_lines), layout.caption);
-        if let Some(((legend, place), framing)) = legend.zip(layout.panels.first()).zip(framings.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, place.viewport, framing, scale));
+        writer.caption(layout.around, &caption, layout.caption);
+        if let Some(((legend, &panel), framing)) = legend.zip(layout.panels.first()).zip(framings.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
-        let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs));
+        let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs.len()));
         let mut ghosts = Vec::new();
-        for ((place, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
-            let draft = Draft::new(self, place.viewport, run, framing, scale);
+        for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
+            let draft = Draft::new(self, panel, run, framing, scale);
             let room = draft.between_words();
             draft.ghost(&frame.runs, room, &mut ghosts);
             draft.paths(&self.traced, room, &mut ghosts);
@@ -274,28 +284,28 @@ impl<'a> Composer<'a> {
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
     }
 
-    /// In how many columns panels stand: as the scene says, or so that bodies are largest.
-    fn columns(&self, runs: usize) -> usize {
-        let view = &self.scene.view;
+    /// In how many columns the panels of some runs stand: as the scene says, or so that bodies are largest.
+    fn columns(&self, runs: &[usize]) -> usize {
+        let (view, words) = (&self.scene.view, self.words());
         let pixels = |columns: usize| {
-            let legend = self.legend(runs, columns).map_or(0, |legend| legend.height);
-            let layout = Layout::new(view, runs, columns, legend, 0);
-            let viewport = layout.panels.first()?.viewport;
+            let layout = words.around(runs, columns).layout;
+            let viewport = *layout.panels.first()?;
             let shot = self.shot(viewport, layout.scale).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))
         };
-        let most = runs.clamp(1, MOST_COLUMNS);
+        let panels = words.panels(runs);
+        let most = panels.clamp(1, MOST_COLUMNS);
         let chosen = || {
             let mut best = (most, pixels(most).unwrap_or(0.0));
             // With as many rows, as even as possible; side by side unless that costs much.
-            for columns in (2..=runs).map(|rows| runs.div_ceil(rows)).filter(|&columns| columns < most) {
+            for columns in (2..=panels).map(|rows| panels.div_ceil(rows)).filter(|&columns| columns < most) {
                 let pixels = pixels(columns).unwrap_or(0.0);
                 best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };
             }
             best.0
         };
-        view.columns.map_or_else(chosen, |columns| columns.clamp(1, runs.max(1)))
+        view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
     /// How a camera that follows sees a panel.
@@ -337,19 +347,6 @@ impl<'a> Composer<'a> {
         locator.draw(writer, place, tracking, run, &located);
     }
 
-    /// The lines of the caption.
-    fn caption(&self, runs: usize, columns: usize) -> Vec<String> {
-        let view = &self.scene.view;
-        let around = Layout::around(view, runs, columns);
-        if !Scale::legible(around.caption()) {
-            return Vec::new();
-        }
-        // Panels' margins are no wider than those around them.
-        let room = f64::from(view.size[0]) - 2.0 * around.margin();
-        let lines = wrapped(&self.fonts, &view.caption, Weight::Regular, around.caption(), room);
-        lines.into_iter().take(MOST_LINES).collect()
-    }
-
     /// Writes the words of all panels.
     fn write(
         &self,
@@ -357,25 +354,28 @@ impl<'a> Composer<'a> {
         layout: &Layout,
         columns: usize,
         framing: Option<&Framing>,
+        with_clock: bool,
         writer: &mut Writer<'_>,
     ) {
         let view = &self.scene.view;
-        let labels = view.labels;
-        let clock = clock(layout, columns);
-        for (at, (place, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
-            let viewport = place.viewport;
-            let has_clock = labels.clock && at == clock;
-            let taken = if has_clock { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
-            let shown = |is_shown: bool, text| if is_shown { text } else { "" };
-            let heading = Heading {
-                letter: if labels.letter { caption::letter(at) } else { String::new() },
-                name: shown(labels.name, self.scene.runs.get(run.run).map_or("", |run| &run.name)),
-                sample: self.sample(run.run, place.strip.is_some()),
-                second: shown(labels.model, self.descriptions.get(run.run).map_or("", String::as_str)),
-            };
+        let words = self.words();
+        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+        let names = words.names(&runs);
+        for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
+            let written = layout::written(view, f64::from(viewport[3]), layout.scale.unit);
+            let layout::Written { labels, scale_bar, events, .. } = written;
+            let heading = words.heading(at, &runs, &names, labels, layout.chart.is_some());
+            let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
+            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(written)) } else { [0.0; 2] };
             writer.heading(viewport, &heading, taken);
+            if let (Some(timeline), Some(shown)) =
+                (self.timeline.as_ref().filter(|_| events), self.scene.runs.get(run.run))
+            {
+                let colour = shown.line(&self.palette).colour;
+                writer.events(viewport, timeline.events_of(run.run), colour, frame.time);
+            }
             if has_clock {
-                writer.clock(viewport, frame.time, &view.clock);
+                writer.clock(viewport, frame.time, words.clock_label(written));
             }
             let margin = writer.scale.margin();
             let mut from = f64::from(viewport[0]) + margin;
@@ -386,10 +386,12 @@ impl<'a> Composer<'a> {
             let usual = caption::number(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
             // One scale for all panels, and so one bar.
-            if let Some(framing) = framing.filter(|_| view.scale_bar && at == 0) {
+            if let Some(framing) = framing.filter(|_| scale_bar && at == 0) {
                 let room = to - from - 2.0 * writer.scale.gap();
                 let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
-                from = writer.scale_bar(viewport, [from, to], metres, pixels).unwrap_or(from);
+                from = writer
+                    .scale_bar(viewport, [from, to], &number::round_length(metres, self.extent), pixels)
+                    .unwrap_or(from);
             }
             match caption::divergence(run) {
                 Some(divergence) => writer.number(viewport, from, &divergence),
@@ -397,19 +399,6 @@ impl<'a> Composer<'a> {
                 None => {}
             }
         }
-    }
-
-    /// The line that stands for a run in strips and among arrows, if there are any.
-    fn sample(&self, run: usize, has_strip: bool) -> Option<LineStyle> {
-        let view = &self.scene.view;
-        let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_ghost =
-            matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
-        (view.legend && (has_strip || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
-            let line = run.line(&self.palette);
-            // Arrows are solid.
-            if has_strip || has_ghost { line } else { LineStyle { dash: &[], ..line } }
-        })
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is (px).
@@ -424,19 +413,6 @@ impl<'a> Composer<'a> {
         let Self { scene, .. } = self;
         let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
         lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
-    }
-
-    /// The key of colours and arrows, if there are any.
-    fn legend(&self, runs: usize, columns: usize) -> Option<Legend> {
-        let view = &self.scene.view;
-        let bars = [view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()];
-        let bars = bars.into_iter().filter(|&is_shown| is_shown).count();
-        let (arrow, samples) = (view.visible.displacements, self.samples().len());
-        if !view.legend || !arrow && samples + bars == 0 {
-            return None;
-        }
-        let around = Layout::around(view, runs, columns);
-        Legend::new(view.size.map(|length| length.max(1)), around, arrow, samples, bars)
     }
 
     /// What lines and marks mean.
@@ -456,7 +432,7 @@ impl<'a> Composer<'a> {
         let of_field = view.colour.as_ref().map(|colour| {
             let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
             let field = colour.field;
-            Bar::new([field.name(), field.unit(), field.definition()], colour.range, &self.ramp, values)
+            Bar::new([field.name(), field.unit(), field.definition()], colour.range, self.extent, &self.ramp, values)
         });
         let body = &*self.scene.body;
         let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
@@ -465,13 +441,20 @@ impl<'a> Composer<'a> {
                 let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
                 springs.iter().map(|&ends| spring_strain(body, &run.shown().position, ends))
             });
-            Bar::new(["spring strain", "", "change of length over length at rest"], range, &self.spring_ramp, strains)
+            Bar::new(
+                ["spring strain", "", "change of length over length at rest"],
+                range,
+                self.extent,
+                &self.spring_ramp,
+                strains,
+            )
         });
         let of_difference = view.difference.map(|_| {
             let values = self.distances(compared).iter().copied();
             Bar::new(
                 ["distance", "m", "of the same node of the two runs"],
                 self.distance_scale().range,
+                self.extent,
                 &self.ramp,
                 values,
             )
@@ -479,13 +462,13 @@ impl<'a> Composer<'a> {
         of_field.into_iter().chain(of_springs).chain(of_difference).collect()
     }
 
-    /// What the arrow of the key stands for (m), its length (px), and how large it is beside those of the reference picture.
-    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> [f64; 3] {
+    /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> (String, [f64; 2]) {
         let pixels = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
         let metres = legend.arrow_metres(pixels * times);
         let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
-        [metres, metres * pixels * times, size]
+        (number::round_length(metres, self.extent), [metres * pixels * times, size])
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
@@ -523,9 +506,4 @@ fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
 fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
-}
-
-/// The panel with the only clock, upper right.
-fn clock(layout: &Layout, columns: usize) -> usize {
-    columns.clamp(1, layout.panels.len().max(1)) - 1
 }

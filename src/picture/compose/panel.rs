@@ -329,8 +329,7 @@ impl<'a> Draft<'a> {
 
     /// The part of the panel that words leave free.
     pub(super) fn clear_of_words(&self) -> Rectangle {
-        let view = &self.scene.view;
-        layout::clear_of_words(self.viewport, self.scale, layout::rooms(view))
+        layout::clear_of_words(self.viewport, &self.scene.view, self.scale)
     }
 
     /// The same as wide as the panel.

@@ -10,7 +10,7 @@ use crate::picture::text::Weight;
 use crate::picture::{Mark, number, series};
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostic, RunFrame, Snapshot, Status};
-use crate::sim::words::{elements, rounded};
+use crate::sim::words::elements;
 
 /// Size of diagnostics (px in the reference picture).
 const NUMBER: f64 = 14.0;
@@ -87,7 +87,7 @@ impl Below {
             count: match count {
                 _ if over.is_empty() => String::new(),
                 0 if flattened > 0 => format!("{flattened} flat"),
-                count => count.to_string(),
+                count => number::count(count),
             },
             is_alarm: count > 0,
             number: number.and_then(|diagnostic| text(diagnostic, composer.scene, run)).unwrap_or_default(),
@@ -146,17 +146,9 @@ fn text(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String>
     let value = diagnostic.of(&run.snapshot.diagnostics);
     let name = series::name(diagnostic, scene);
     let name = name.strip_suffix(" ratio").unwrap_or(name);
-    let value = match diagnostic {
-        _ if !value.is_finite() => return None,
-        Diagnostic::TurnedOver => return None,
-        Diagnostic::VolumeRatio => number::ratio(value),
-        Diagnostic::ShapeError => number::length(value, scene.body.extent()),
-        _ => {
-            let unit = diagnostic.unit();
-            let value = rounded(value, 3);
-            let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
-            number::with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
-        }
-    };
+    if !value.is_finite() || diagnostic == Diagnostic::TurnedOver {
+        return None;
+    }
+    let value = number::value(diagnostic, value, scene.body.extent());
     Some(format!("{name} {value}"))
 }

@@ -1,0 +1,237 @@
+//! The words of a scene's pictures: what stands where, whatever the frame, and what finds no room.
+
+use super::cut;
+use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
+use crate::picture::caption::{self, Heading, Writer, wrapped};
+use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
+use crate::picture::legend::Legend;
+use crate::picture::text::{Fonts, Weight};
+use crate::scene::Scene;
+
+/// Titles and captions are never longer than this (lines).
+const MOST_LINES: [usize; 2] = [4, 200];
+
+/// From so many panels on, not each of them says what is the same in all.
+const MANY: usize = 4;
+/// What stands between the parts of a description.
+const BETWEEN_PARTS: &str = ", ";
+
+/// The words of a scene.
+pub(super) struct Words<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) fonts: &'a Fonts,
+    pub(super) palette: &'a Palette,
+    /// The second line of each run.
+    pub(super) descriptions: &'a [String],
+}
+
+/// What stands around panels, and where everything stands.
+pub(super) struct Around {
+    pub(super) layout: Layout,
+    /// Lines of the title and of the caption, as many as have room.
+    pub(super) title: Vec<String>,
+    pub(super) caption: Vec<String>,
+    /// The key of colours and arrows.
+    pub(super) legend: Option<Legend>,
+    /// Where the clock stands.
+    pub(super) clock: Clock,
+}
+
+/// Where a clock stands: in a panel, or where it has no room beside the heading there, at a baseline (px) above all panels,
+/// if it has room there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Clock {
+    InPanel,
+    Above(Option<f64>),
+}
+
+impl<'a> Words<'a> {
+    fn view(&self) -> &'a View {
+        &self.scene.view
+    }
+
+    /// The number of panels of some runs: a difference has one of its own.
+    pub(super) fn panels(&self, runs: &[usize]) -> usize {
+        let compares = |difference: &Difference| difference.runs.iter().all(|run| runs.contains(run));
+        runs.len() + usize::from(self.view().difference.as_ref().is_some_and(compares))
+    }
+
+    /// What stands around the panels of some runs, in columns.
+    pub(super) fn around(&self, runs: &[usize], columns: usize) -> Around {
+        let (view, scale, panels) = (self.view(), Layout::around(self.view()), self.panels(runs));
+        let [title, caption] = self.lines(scale);
+        let legend = self.legend(scale);
+        let wanted = Wanted {
+            title_lines: title.len(),
+            clock: false,
+            legend: legend.map_or(0, |legend| legend.height),
+            caption_lines: caption.len(),
+        };
+        let layout = Layout::new(view, panels, columns, wanted);
+        // Where names are so long or type is so large that they would be in each other's way, the clock stands alone.
+        let is_crowded = self.is_crowded(&layout, runs, columns);
+        let is_beside = layout.title_lines == title.len()
+            && self.writer(layout.scale).has_room_beside(scale, &title, &view.clock, view.size[0]);
+        let needs_row = is_crowded && !is_beside;
+        let layout =
+            if needs_row { Layout::new(view, panels, columns, Wanted { clock: true, ..wanted }) } else { layout };
+        let clock = match is_crowded {
+            true if is_beside => Clock::Above(Some(layout::title_baseline(layout.around, title.len()))),
+            true => Clock::Above(layout.clock),
+            false => Clock::InPanel,
+        };
+        let (title, caption) = (cut(title, layout.title_lines), cut(caption, layout.caption_lines));
+        Around { title, caption, legend: legend.filter(|_| layout.has_legend), layout, clock }
+    }
+
+    /// All lines of title and caption.
+    fn lines(&self, around: Scale) -> [Vec<String>; 2] {
+        let view = self.view();
+        // Panels' margins are no wider than those around them.
+        let room = f64::from(view.size[0]) - 2.0 * around.margin();
+        let title = (&view.title, Weight::SemiBold, caption::title_size(around));
+        let caption = (&view.caption, Weight::Regular, around.caption());
+        let mut all = [title, caption].map(|(text, weight, size)| {
+            if Scale::legible(size) { wrapped(self.fonts, text, weight, size, room) } else { Vec::new() }
+        });
+        all.iter_mut().zip(MOST_LINES).for_each(|(lines, most)| lines.truncate(most));
+        all
+    }
+
+    /// The key of colours and arrows, if there are any.
+    fn legend(&self, around: Scale) -> Option<Legend> {
+        let view = self.view();
+        let count = |shown: &[bool]| shown.iter().filter(|&&is_shown| is_shown).count();
+        let bars = count(&[view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()]);
+        let samples = count(&[view.ghost.is_some(), !view.paths.is_empty(), view.points.is_some()]);
+        let arrow = view.visible.displacements;
+        if !view.legend || !arrow && samples + bars == 0 {
+            return None;
+        }
+        Legend::new(view.size.map(|length| length.max(1)), around, arrow, samples, bars)
+    }
+
+    /// The words below the clock.
+    pub(super) fn clock_label(&self, written: Written) -> &'a str {
+        if written.second { &self.view().clock } else { "" }
+    }
+
+    /// The names of runs.
+    pub(super) fn names(&self, runs: &[usize]) -> Vec<&'a str> {
+        runs.iter().map(|&run| self.scene.runs.get(run).map_or("", |run| &*run.name)).collect()
+    }
+
+    /// What describes the run of a panel. Where there are many, only the first one says what is the same in all.
+    fn description(&self, at: usize, runs: &[usize]) -> String {
+        let all: Vec<_> = runs.iter().filter_map(|&run| self.descriptions.get(run)).collect();
+        let Some(&own) = all.get(at) else { return String::new() };
+        let is_shared = |part: &str| all.iter().all(|one| one.split(BETWEEN_PARTS).any(|other| other == part));
+        let differs = |part: &&str| at == 0 || all.len() < MANY || !is_shared(part);
+        own.split(BETWEEN_PARTS).filter(differs).collect::<Vec<_>>().join(BETWEEN_PARTS)
+    }
+
+    /// The heading of a panel of several runs, with some of the labels.
+    pub(super) fn heading<'w>(
+        &'w self,
+        at: usize,
+        runs: &[usize],
+        names: &'w [&'w str],
+        labels: Labels,
+        has_chart: bool,
+    ) -> Heading<'w> {
+        let shown = |is_shown: bool, text| if is_shown { text } else { "" };
+        Heading {
+            letter: if labels.letter { caption::letter(at) } else { String::new() },
+            name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
+            names,
+            sample: self.sample(runs[at], has_chart),
+            second: if labels.model { self.description(at, runs) } else { String::new() },
+        }
+    }
+
+    /// The line that stands for a run in the chart and among arrows, if there are any.
+    fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
+        let view = self.view();
+        let has_arrows = view.visible.displacements && view.colour.is_none();
+        let has_ghost =
+            matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
+        (view.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
+            let line = run.line(self.palette);
+            // Arrows are solid.
+            if has_chart || has_ghost { line } else { LineStyle { dash: &[], ..line } }
+        })
+    }
+
+    /// Whether the clock has no room beside the heading of its panel.
+    fn is_crowded(&self, layout: &Layout, runs: &[usize], columns: usize) -> bool {
+        let (names, at) = (self.names(runs), clock_panel(layout.panels.len(), columns));
+        let Some(&panel) = layout.panels.get(at).filter(|_| at < runs.len()) else { return false };
+        let written = layout::written(self.view(), f64::from(panel[3]), layout.scale.unit);
+        let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
+        written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, self.clock_label(written))
+    }
+
+    fn writer(&self, scale: Scale) -> Writer<'_> {
+        let (marks, curves, words) = Default::default();
+        Writer { palette: self.palette, fonts: self.fonts, scale, marks, curves, words }
+    }
+
+    /// What finds no room in pictures of some runs, each with what becomes of it.
+    fn left_out(&self, runs: &[usize], columns: usize) -> Vec<String> {
+        let (view, around) = (self.view(), self.around(runs, columns));
+        let layout = &around.layout;
+        let mut told = Vec::new();
+        // Nobody expects words in a thumbnail.
+        if !Scale::legible(layout.around.small()) {
+            return told;
+        }
+        let mut tell = |is_so: bool, what: &str| {
+            if is_so {
+                told.push(what.to_owned());
+            }
+        };
+        let [title, caption] = self.lines(layout.around);
+        tell(!view.title.is_empty() && around.title != title, "the title is cut off");
+        tell(!view.caption.is_empty() && around.caption != caption, "the caption is cut off");
+        let wants_key =
+            view.legend && (view.visible.displacements || view.colour.is_some() || view.spring_strain.is_some());
+        tell(wants_key && around.legend.is_none(), "the key of colours and arrows is left out");
+        tell(view.strip.is_some() && layout.chart.is_none(), "the chart is left out");
+        tell(around.clock == Clock::Above(None), "the clock is left out");
+        let Some(panel) = layout.panels.first() else { return told };
+        let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
+        let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
+        tell(view.strip.is_some() && !written.events, "panels do not say what happens in the chart");
+        tell(has(|labels| labels.model), "panels do not describe the models");
+        tell(has(|labels| labels.count || labels.number), "panels have no numbers");
+        tell(has(|labels| labels.name), "panels have no names");
+        let (names, writer) = (self.names(runs), self.writer(layout.scale));
+        for (at, &panel) in layout.panels.iter().enumerate() {
+            let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
+            let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
+            let [name, second] = writer.heading_width(&heading).map(|width| width > room);
+            if name {
+                told.push(format!("the name of run `{}` is shortened", names[at]));
+            }
+            if second {
+                told.push(format!("the description of run `{}` is shortened", names[at]));
+            }
+        }
+        told
+    }
+}
+
+/// What finds no room in the pictures of a scene.
+pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
+    let descriptions: Vec<_> = scene.runs.iter().map(|run| run.model.describe(&scene.body)).collect();
+    let (fonts, look) = (Fonts::new(&scene.view.look.font), &scene.view.look);
+    let words = Words { scene, fonts: &fonts, palette: &look.palette, descriptions: &descriptions };
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let columns = scene.view.columns.unwrap_or(words.panels(&runs));
+    words.left_out(&runs, columns)
+}
+
+/// The panel with the clock, of so many in columns: upper right.
+pub(super) fn clock_panel(panels: usize, columns: usize) -> usize {
+    columns.clamp(1, panels.max(1)) - 1
+}

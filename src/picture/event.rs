@@ -1,0 +1,140 @@
+//! What happens in time series, in words: flags in a chart and in panels stand for it.
+
+use super::number;
+use super::series::Series;
+use crate::sim::snapshot::Diagnostic;
+
+/// The most events of a picture: their numbers have one digit.
+const MOST: usize = 9;
+/// A count that does not change in this last part of the scene has settled.
+const SETTLED: f64 = 0.1;
+/// An extreme value differs from those at the start and at the end by more than this part of all values.
+const EXTREME: f64 = 0.1;
+/// Where this part of all changes happens in the first of these parts of the scene, that part gets a scale of its own, which
+/// ends at a round time.
+const NEARLY_ALL: f64 = 0.95;
+const SHORT: f64 = 0.1;
+
+/// Something that happens to a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Event {
+    pub(super) run: usize,
+    /// When (s).
+    pub(super) time: f64,
+    /// What, with its time and without.
+    pub(super) words: [String; 2],
+}
+
+/// What happens in time series of a diagnostic of a body of a size (m) up to an end (s), in the order of time.
+pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
+    let widest = series
+        .iter()
+        .flat_map(|one| &one.points)
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at[1]), high.max(at[1])]);
+    let value = |value: f64| number::value(diagnostic, value, extent);
+    let event = |one: &Series, time: f64, words: String, joint: &str| Event {
+        run: one.run,
+        time,
+        words: [format!("{words} {joint} {}", number::time(time)), words],
+    };
+    // First events of all runs come before second ones.
+    let mut all: Vec<(usize, Event)> = Vec::new();
+    for one in series {
+        let mut own = Vec::new();
+        let changes: Vec<_> = one.points.windows(2).filter(|two| two[0][1] != two[1][1]).map(|two| two[1]).collect();
+        if one.is_count {
+            let first = changes.first().filter(|_| one.points[0][1] == 0.0);
+            own.extend(first.map(|&[time, _]| event(one, time, "first turned over".to_owned(), "at")));
+            let last = changes.last().filter(|[time, _]| changes.len() > 1 && *time <= (1.0 - SETTLED) * end);
+            let last = last.filter(|_| one.diverged.is_none());
+            own.extend(last.map(|&[time, count]| event(one, time, format!("settles at {count}"), "after")));
+        } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
+            let apart = |value: f64, other: f64| (value - other).abs();
+            let extreme = one.points.iter().max_by(|a, b| apart(a[1], start).total_cmp(&apart(b[1], start)));
+            let stands_out =
+                |value: f64| [start, last].iter().all(|&other| apart(value, other) > EXTREME * (widest[1] - widest[0]));
+            let extreme = extreme.filter(|[_, value]| one.diverged.is_none() && stands_out(*value));
+            own.extend(extreme.map(|&[time, most]| {
+                let which = if most > start { "highest" } else { "lowest" };
+                event(one, time, format!("{which} {}", value(most)), "at")
+            }));
+        }
+        own.extend(one.diverged.map(|time| event(one, time, "diverged".to_owned(), "at")));
+        all.extend(own.into_iter().enumerate());
+    }
+    all.sort_by_key(|&(rank, _)| rank);
+    all.truncate(MOST);
+    let mut events: Vec<_> = all.into_iter().map(|(_, event)| event).collect();
+    events.sort_by(|one, other| one.time.total_cmp(&other.time));
+    events
+}
+
+/// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly everything has happened,
+/// if that is early.
+pub(super) fn split(series: &[Series], end: f64) -> Option<f64> {
+    let steps =
+        series.iter().flat_map(|one| one.points.windows(2).map(|two| (two[1][0], (two[1][1] - two[0][1]).abs())));
+    let mut steps: Vec<_> = steps.filter(|&(_, change)| change > 0.0 && change.is_finite()).collect();
+    steps.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let all: f64 = steps.iter().map(|(_, change)| change).sum();
+    let mut sum = 0.0;
+    let (nearly, _) = steps.iter().find(|(_, change)| {
+        sum += change;
+        sum >= NEARLY_ALL * all
+    })?;
+    let below = number::round_below(*nearly);
+    let after = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]
+        .map(|times| times * below)
+        .into_iter()
+        .find(|round| round > nearly)?;
+    (*nearly <= SHORT * end && after < 0.5 * end).then_some(after)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::LineStyle;
+
+    fn series(run: usize, is_count: bool, points: &[[f64; 2]]) -> Series {
+        let style = LineStyle { colour: [0; 3], dash: &[] };
+        Series { run, name: String::new(), style, is_count, points: points.to_vec(), diverged: None }
+    }
+
+    fn words(diagnostic: Diagnostic, series: &[Series]) -> Vec<String> {
+        events(diagnostic, series, 0.3, 3.0).into_iter().map(|event| event.words[0].clone()).collect()
+    }
+
+    #[test]
+    fn counts_begin_and_settle() {
+        let springs = series(1, true, &[[0.0, 0.0], [0.02, 3.0], [0.03, 9.0], [0.085, 8.0], [0.1, 9.0], [3.0, 9.0]]);
+        let shape = series(0, true, &[[0.0, 0.0], [3.0, 0.0]]);
+        let told = words(Diagnostic::TurnedOver, &[shape, springs.clone()]);
+        assert_eq!(told, ["first turned over at 20 ms", "settles at 9 after 100 ms"]);
+        // Who still changes at the end has not settled, and who never changes has no story.
+        let restless = series(0, true, &[[0.0, 0.0], [1.0, 1.0], [2.9, 2.0]]);
+        assert_eq!(words(Diagnostic::TurnedOver, &[restless]), ["first turned over at 1.00 s"]);
+        let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();
+        assert_eq!(words(Diagnostic::TurnedOver, &many), vec!["first turned over at 20 ms"; MOST]);
+    }
+
+    #[test]
+    fn values_have_extremes_that_stand_out() {
+        let error = series(0, false, &[[0.0, 0.0], [0.05, 0.102], [1.0, 0.01], [3.0, 0.005]]);
+        assert_eq!(words(Diagnostic::ShapeError, &[error]), ["highest 102 mm at 50 ms"]);
+        let volume = series(0, false, &[[0.0, 1.0], [0.05, 0.6], [3.0, 1.0]]);
+        assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.60 at 50 ms"]);
+        let rising = series(0, false, &[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
+        let blown = Series { diverged: Some(0.971), ..rising.clone() };
+        assert_eq!(words(Diagnostic::Kinetic, &[rising, blown]), ["diverged at 971 ms"]);
+    }
+
+    #[test]
+    fn time_has_two_scales_where_all_happens_early() {
+        let early = series(0, true, &[[0.0, 0.0], [0.02, 3.0], [0.085, 9.0], [3.0, 9.0]]);
+        assert_eq!(split(std::slice::from_ref(&early), 3.0), Some(0.1));
+        assert_eq!(split(std::slice::from_ref(&early), 0.5), None);
+        let late = series(1, true, &[[0.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+        assert_eq!(split(&[early, late], 3.0), None);
+        assert_eq!(split(&[series(0, true, &[[0.0, 0.0], [3.0, 0.0]])], 3.0), None);
+    }
+}

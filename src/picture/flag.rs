@@ -1,0 +1,93 @@
+//! Flags above charts: letters or numbers in rings, with lines down to what they stand for.
+
+use super::caption::Writer;
+use super::chart::dot;
+use super::ends::spread;
+use super::layout::Scale;
+use super::narrow::narrow;
+use super::text::Weight;
+use super::{Colour, Curve};
+
+/// Radius of a ring, thickness of its rim, size of the letter in it, free beside this, and between rings (px in the
+/// reference picture).
+const RING: f64 = 10.0;
+const RIM: f64 = 1.3;
+const LETTER: f64 = 14.0;
+const BESIDE_LETTER: f64 = 4.0;
+const RINGS_APART: f64 = 3.0;
+/// The part of the margin into which crowded rings reach at each end at the most.
+const BEYOND: f64 = 0.35;
+/// How far above the charts the lines become upright, their width (px in the reference picture), and their opacity.
+const UPRIGHT_ABOVE: f64 = 9.0;
+const LINE: f64 = 1.1;
+const LINE_ALPHA: f64 = 0.62;
+
+/// A letter or a number at a place in a chart.
+#[derive(Clone, Debug)]
+pub(super) struct Flag {
+    /// Where it points to (px from the left).
+    pub(super) at: f64,
+    pub(super) text: String,
+    /// The colour of its line and its rim.
+    pub(super) colour: Colour,
+}
+
+/// Draws flags, sorted by their places: rings whose middles are at a height, side by side within a span, and lines through
+/// all charts from their top to their bottom (px).
+pub(super) fn draw(
+    writer: &mut Writer<'_>,
+    flags: &[Flag],
+    middle: f64,
+    [left, right]: [f64; 2],
+    [top, bottom]: [f64; 2],
+) {
+    let (scale, fonts, palette) = (writer.scale, writer.fonts, writer.palette);
+    let top = top - UPRIGHT_ABOVE * scale.type_unit();
+    let wide = |text: &str| fonts.width(text, Weight::SemiBold, LETTER * scale.type_unit());
+    let widest = flags.iter().map(|flag| wide(&flag.text)).fold(0.0, f64::max);
+    let radius = (RING * scale.type_unit()).max(0.5 * widest + BESIDE_LETTER * scale.type_unit());
+    let apart = 2.0 * radius + RINGS_APART * scale.type_unit();
+    // The outermost ones reach into the margins, but not to the picture's sides.
+    let span = right - left + 2.0 * radius.min(BEYOND * scale.margin());
+    // Many rings become smaller as long as their letters can be read, and are then left out.
+    let smaller = (span / (apart * flags.len().max(1) as f64)).min(1.0);
+    let letter = LETTER * scale.type_unit() * smaller;
+    let with_rings = Scale::legible(letter);
+    let places: Vec<_> = flags.iter().map(|flag| flag.at.floor() + 0.5).collect();
+    let rings = spread(&places, apart * smaller, [left, right]);
+    for ((flag, &x), &ring) in flags.iter().zip(&places).zip(&rings) {
+        let from = if with_rings { [ring, middle] } else { [x, top] };
+        let is_straight = (ring - x).abs() < 0.75 || !with_rings;
+        let points: &[_] = if is_straight { &[[x, from[1]], [x, bottom]] } else { &[from, [x, top], [x, bottom]] };
+        writer.curves.push(Curve {
+            points: points.iter().map(|point| point.map(narrow)).collect(),
+            width: narrow(LINE * scale.line()),
+            dash: Vec::new(),
+            colour: flag.colour,
+            alpha: narrow(LINE_ALPHA),
+        });
+    }
+    if !with_rings {
+        return;
+    }
+    for ((flag, &x), &ring_at) in flags.iter().zip(&places).zip(&rings) {
+        let at = [if (ring_at - x).abs() < 0.75 { x } else { ring_at }, middle];
+        ring(writer, at, [radius * smaller, letter], [flag.colour, palette.background, palette.text], &flag.text);
+    }
+}
+
+/// A ring with a letter of a size in it, around a place (px): the colours of its rim, of its ground and of the letter.
+pub(super) fn ring(
+    writer: &mut Writer<'_>,
+    at: [f64; 2],
+    [radius, size]: [f64; 2],
+    [rim, ground, letter]: [Colour; 3],
+    text: &str,
+) {
+    let thickness = RIM * writer.scale.line();
+    for (radius, colour) in [(radius, rim), (radius - thickness, ground)] {
+        writer.curves.push(dot(at, radius, colour));
+    }
+    let left = at[0] - 0.5 * writer.fonts.width(text, Weight::SemiBold, size);
+    writer.left(text, Weight::SemiBold, size, letter, left, at[1] + 0.36 * size);
+}

@@ -1,0 +1,135 @@
+//! The chart below the panels of a frame: the time series of all runs over the whole scene, numbered flags for what
+//! happens in them, and the present moment. Only that moment moves; all else is composed once.
+
+use super::caption::Writer;
+use super::chart::{BELOW, NUMBERS};
+use super::ends::Ends;
+use super::event::{self, Event};
+use super::flag::{self, Flag};
+use super::layout::{LEAST_CHART, Rectangle, Scale};
+use super::narrow::narrow;
+use super::strip::{Parts, Strip};
+use super::text::TextRun;
+use super::{Colour, Curve, Mark};
+use crate::history::History;
+use crate::scene::Scene;
+use crate::sim::snapshot::{Diagnostic, Frame, Status};
+
+/// From the top of the room to the middle of the rings, and to the chart (px in the reference picture).
+const RINGS: f64 = 11.0;
+const ABOVE: f64 = 33.0;
+/// The narrowest chart (px), and the parts of the room that its name and the names at the ends of curves take at most.
+const LEAST_WIDTH: f64 = 40.0;
+const NAME: f64 = 0.3;
+const NAMES: f64 = 0.22;
+/// How far above the chart these names begin at most (px in the reference picture).
+const NAMES_ABOVE: f64 = 8.0;
+/// Radius of the circles around present values and width of their line (px in the reference picture), and their corners.
+const CIRCLE: [f64; 2] = [4.5, 1.6];
+const CORNERS: usize = 24;
+
+/// The chart of a scene.
+#[derive(Debug)]
+pub(super) struct Timeline {
+    strip: Strip,
+    events: Vec<Event>,
+    /// Where it is drawn; `None` if it could not be read.
+    parts: Option<Parts>,
+    /// What does not move.
+    marks: Vec<Mark>,
+    curves: Vec<Curve>,
+    words: Vec<TextRun>,
+}
+
+impl Timeline {
+    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px).
+    pub(super) fn new(
+        diagnostic: Diagnostic,
+        history: &History,
+        scene: &Scene,
+        mut writer: Writer<'_>,
+        room: Option<Rectangle>,
+    ) -> Self {
+        let strip = Strip::new(diagnostic, history, scene, writer.palette, str::to_owned);
+        let events = event::events(diagnostic, &strip.series, scene.body.extent(), history.end);
+        let room = room.filter(|_| history.end > 0.0);
+        let parts = room.and_then(|room| still(&strip, &events, &mut writer, room.map(f64::from), history.end));
+        let Writer { marks, curves, words, .. } = writer;
+        Self { strip, events, parts, marks, curves, words }
+    }
+
+    /// Draws it with the present moment: a line behind the curves, and circles around the values, which hide nothing.
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
+        writer.marks.extend(&self.marks);
+        writer.words.extend_from_slice(&self.words);
+        if let Some(parts) = &self.parts {
+            let (chart, now) = parts.place(frame.time);
+            writer.curves.push(chart.moment(now, writer.palette.text));
+        }
+        writer.curves.extend_from_slice(&self.curves);
+        let Some(parts) = &self.parts else { return };
+        for run in frame.runs.iter().filter(|run| run.snapshot.status == Status::Ok) {
+            let (chart, x) = parts.place(run.snapshot.time);
+            let one = self.strip.series.iter().find(|one| one.run == run.run && !one.points.is_empty());
+            let Some((one, values)) = one.zip(self.strip.values_in(chart)) else { continue };
+            let y = chart.y(&values, self.strip.diagnostic.of(&run.snapshot.diagnostics));
+            if (chart.top - 1.0..=chart.bottom + 1.0).contains(&y) {
+                writer.curves.push(circle([x, y], chart.thickness(), one.style.colour));
+            }
+        }
+    }
+
+    /// What happens to a run, each with its number.
+    pub(super) fn events_of(&self, run: usize) -> impl Iterator<Item = (usize, &Event)> {
+        (1..).zip(&self.events).filter(move |(_, event)| event.run == run && self.parts.is_some())
+    }
+}
+
+/// Draws what does not move into a room (px), for a scene up to an end (s); returns where the chart stands, if there is
+/// room for it.
+fn still(
+    strip: &Strip,
+    events: &[Event],
+    writer: &mut Writer<'_>,
+    [left, top, width, height]: [f64; 4],
+    end: f64,
+) -> Option<Parts> {
+    let (fonts, scale) = (writer.fonts, writer.scale);
+    let unit = scale.type_unit();
+    let chart = [(top + ABOVE * unit).round(), (top + height - BELOW * unit).round()];
+    let names_room = [NAMES * width, chart[1] - chart[0] + (NAMES_ABOVE + BELOW) * unit];
+    let names = Ends::new(fonts, &strip.series, unit, names_room);
+    let [name, numbers] = [strip.name_width(fonts, scale), strip.numbers_width(fonts, unit)];
+    let has_name = name <= NAME * width;
+    let first = (left + numbers + if has_name { name } else { 0.0 }).round();
+    let last = (left + width - names.as_ref().map_or(0.0, |names| names.width)).round();
+    if last - first < LEAST_WIDTH || chart[1] - chart[0] < LEAST_CHART || !Scale::legible(NUMBERS * unit) {
+        return None;
+    }
+    let parts = Parts::new(scale, [first, last], chart, [0.0, end], event::split(&strip.series, end));
+    let flags = (1..).zip(events).map(|(number, event)| Flag {
+        at: parts.place(event.time).1,
+        text: number.to_string(),
+        colour: strip
+            .series
+            .iter()
+            .find(|one| one.run == event.run)
+            .map_or(writer.palette.axis, |one| one.style.colour),
+    });
+    flag::draw(writer, &flags.collect::<Vec<_>>(), top + RINGS * unit, [first, last], chart);
+    strip.draw(writer, &parts, true, names.as_ref(), [chart[0] - NAMES_ABOVE * unit, chart[1] + BELOW * unit]);
+    if has_name {
+        strip.write_name(writer, [left, 0.5 * (chart[0] + chart[1])]);
+    }
+    Some(parts)
+}
+
+/// A circle around a place (px).
+fn circle([x, y]: [f64; 2], thickness: f64, colour: Colour) -> Curve {
+    let corner = |at: usize| {
+        let (sine, cosine) = libm::sincos(std::f64::consts::TAU * at as f64 / CORNERS as f64);
+        [x + CIRCLE[0] * thickness * cosine, y + CIRCLE[0] * thickness * sine].map(narrow)
+    };
+    let points = (0..=CORNERS).map(corner).collect();
+    Curve { points, width: narrow(CIRCLE[1] * thickness), dash: Vec::new(), colour, alpha: 1.0 }
+}
