@@ -448,5 +448,16 @@ fn every_choice_of_the_scene_format_is_in_the_suites() {
         model(1, "springs"),
         ["edges", "edges+one-diagonal", "edges+face-diagonals", "edges+body-diagonals", "all"]
     );
-    assert_eq!(names(&run["integrator"]), ["semi-implicit-euler", "explicit-euler", "velocity-verlet"]);
+    assert_eq!(
+        names(&run["integrator"]),
+        [
+            "semi-implicit-euler",
+            "explicit-euler",
+            "velocity-verlet",
+            "pefrl",
+            "forest-ruth",
+            "blanes-moan",
+            "runge-kutta"
+        ]
+    );
 }

@@ -52,6 +52,7 @@ fn outline(panel: &Panel) -> Option<[f32; 4]> {
 /// width, or as much as the height of its body permits.
 #[test]
 fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
+    let mut wrong = Vec::new();
     // Obstacles along a course are shown from a camera that stands still.
     for scene in shipped().iter().map(|path| load(path)).filter(|scene| scene.name != "obstacles") {
         let name = &scene.name;
@@ -71,11 +72,15 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
                 smallest = smallest.min((right - left) * (bottom - top) / (width * height));
             }
         }
-        println!("{name}: width at most {widest:.3}, height at most {highest:.3}, area at least {smallest:.3}");
-        // Seen in perspective, what counts as 45 % may be a little less.
-        assert!((0.43..=0.70).contains(&widest) || highest > 0.5, "{name}: {widest} {highest}");
-        assert!(smallest > 0.015, "{name}: {smallest}");
+        let found =
+            format!("{name}: width at most {widest:.3}, height at most {highest:.3}, area at least {smallest:.3}");
+        println!("{found}");
+        // A tall body fills its panel before it is as wide.
+        if !((0.45..=0.70).contains(&widest) || highest > 0.5) || smallest < 0.015 {
+            wrong.push(found);
+        }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]

@@ -176,6 +176,7 @@ fn seen(panel: &Panel, at: [f32; 3]) -> [f32; 2] {
 fn paths_end_where_bodies_are_and_begin_where_they_started() {
     let (mut scene, _) = fig4b(0);
     scene.duration = 0.2;
+    (scene.view.camera.follow, scene.view.camera.distance) = (false, 2.0 * scene.view.camera.distance);
     scene.view.paths = vec![Traced::Centre, Traced::Node(63)];
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = [0, 3, 9].map(|index| runner.frame(index));

@@ -218,7 +218,7 @@ fn every_line_becomes_thicker_and_no_word_larger() {
 fn the_line_of_the_floor_in_the_plane_becomes_thicker() {
     for (line_scale, expected) in [(1.0, 2.0), (2.0, 3.0), (4.0, 6.0)] {
         let [_, picture] = thin_and_thick(include_str!("../../scenes/fig4a.toml"), 87, line_scale);
-        let floors = some(&picture, |mark| mark.shape == MarkShape::Smooth);
+        let floors = some(&picture, |mark| mark.shape == MarkShape::Smooth && mark.along == Mark::UPRIGHT);
         // With a border of half a pixel on both sides.
         assert!(!floors.is_empty() && floors.iter().all(|mark| mark.rectangle[3] == expected + 1.0), "{floors:?}");
     }

@@ -2,6 +2,7 @@
 
 use super::{fig4b, frame, parse};
 use localshape::colour::contrast;
+use localshape::history::History;
 use localshape::look::{ColourMap, Palette, Theme};
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
@@ -402,13 +403,16 @@ fn an_element_without_faces_is_drawn_from_its_middle() {
 /// Of the only turned-over triangle of Fig. 4(a) nothing is hidden: its sign stands beside the body and points to it.
 #[test]
 fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
-    let text = include_str!("../../scenes/fig4a.toml");
-    let scene = Scene::parse(text, "fig4a.toml", &Limits::default()).expect("the shipped scene is sound");
+    let text = include_str!("../../scenes/fig4a.toml")
+        .replace("[view]", "[view]\ncamera = { target = [0, 0.75], distance = 13.5 }");
+    let scene = Scene::parse(&text, "fig4a.toml", &Limits::default()).expect("the shipped scene is sound");
     let mut runner = Runner::new(&scene, &[1]);
+    let mut composer = Composer::new(&scene);
+    composer.set_history(&History::new(&scene, &[1]));
     for index in [89, 120, 300] {
         let frame = runner.frame(index);
         assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 1, "this run is known for it");
-        let picture = compose(&scene, &frame);
+        let picture = composer.compose(&frame);
         let panel = &picture.panels[0];
         let pixel = |at: [f32; 3]| {
             let clip = panel.sight.clip * glam::Vec3::from(at).extend(1.0);
