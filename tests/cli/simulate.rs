@@ -268,13 +268,14 @@ fn everything_in_the_files_is_documented() {
     arrays.dedup();
     assert_eq!(told, arrays);
 
-    // A run that diverges has more keys, and so have times with pictures.
+    // A run that diverges has more keys, and so have pictures, and bodies that leave their panels.
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
     place.run("simulate wild.toml").good();
     let mut run = place.json("output/wild/run.json");
     let spent = Some(Spent::default());
     let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
     run["times"] = serde_json::to_value(times).unwrap();
+    run["runs"][0]["cut"] = [3].into();
     let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
     found.sort();
     found.dedup();

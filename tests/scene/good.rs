@@ -300,7 +300,7 @@ fn a_summary_says_what_a_scene_holds() {
   run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
   obstacle  floor at 0 m along (0, 1, 0), e = 0.5, μ = 0.3
-  picture   1280 × 800 px, light, 2 panels, seen from 31° right and 17° up, following the body
+  picture   1280 × 840 px, light, 2 panels, seen from 31° right and 17° up, following the body
   digest    {}",
             summary.digest
         )
