@@ -41,7 +41,7 @@
 //! [`Scene::load`](scene::Scene::load) reads the same from a file. Models have the parameters of scene files: the shape model
 //! ([`shape_based::Parameters`](sim::model::shape_based::Parameters)) `damping` or `damping_ratio`, `damping_of`, and the
 //! solver of its rotations, such as `rotation: Some(RotationReading::Arctangent)` with `passes: Some(2)` for the paper's.
-//! [`RunBuilder`](scene::RunBuilder) sets time step and integrator of a run, [`View`](look::View) what pictures show.
+//! [`RunBuilder`] sets time step and integrator of a run, [`View`](look::View) what pictures show.
 //!
 //! # Modules
 //!

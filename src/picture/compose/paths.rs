@@ -79,7 +79,7 @@ impl Draft<'_> {
             return;
         }
         let palette = &self.composer.palette;
-        let present = present(&points.samples, &self.run.snapshot, 0.5 / self.scene.frames_per_second);
+        let present = present(&points.samples, self.run.snapshot, 0.5 / self.scene.frames_per_second);
         for &(time, at) in points.samples.iter().take_while(|(time, _)| *time <= present.1) {
             let Some(pixel) = self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel)) else { continue };
             let is_now = Some(time) == present.0;

@@ -27,7 +27,7 @@ pub(in crate::sim) static PEFRL: Composition =
     Composition { drifts: &[XI, CHI, 1.0 - 2.0 * (CHI + XI)], kicks: &[0.5 - LAMBDA, LAMBDA], evaluations: 4 };
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
-const CHI: f64 = -0.066_264_582_669_818_49;
+const CHI: f64 = -0.066_264_582_669_818_5;
 
 /// S. Blanes, P. Moan, Journal of Computational and Applied Mathematics 142, 313 (2002), table 3: SRKN14a, of order 6.
 pub(in crate::sim) static BLANES_MOAN: Composition = Composition {

@@ -142,6 +142,9 @@ impl ElasticModel for ShapeBased {
 
     fn describe(&self, body: &Body) -> String {
         let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
+        if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
+            text.push_str(" of deformation");
+        }
         text.push_str(match self.rotation {
             // In the plane there is only one method.
             _ if body.dimension == Dimension::Plane => "",
@@ -151,9 +154,6 @@ impl ElasticModel for ShapeBased {
             RotationReading::Symmetric => ", symmetric Eq. (15)",
             RotationReading::Exact => ", exact rotations",
         });
-        if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
-            text.push_str(" of deformation");
-        }
         text
     }
 
