@@ -139,8 +139,13 @@ impl Writer<'_> {
             let left = left + self.fonts.width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        let second = self.fonts.shortened(&heading.second, Weight::Regular, caption, free[1]);
-        self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+        // Parts are left out from the end on: what is left out of the middle of a number makes another one.
+        let fits = |text: &str| self.fonts.width(text, Weight::Regular, caption) <= free[1];
+        let mut second = &*heading.second;
+        while !fits(second) {
+            second = second.rsplit_once(", ").map_or("", |(first, _)| first);
+        }
+        self.left(second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
     /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is

@@ -65,8 +65,8 @@ pub(super) struct Located<'a> {
 }
 
 impl Locator {
-    /// For a scene and the paths of its runs.
-    pub(super) fn new(scene: &Scene, tracking: &Tracking) -> Self {
+    /// For a scene and the paths of its runs; `None` if no place of a body is known.
+    pub(super) fn new(scene: &Scene, tracking: &Tracking) -> Option<Self> {
         let right = match scene.body.dimension {
             Dimension::Space => axes(scene.view.camera.azimuth, 0.0)[0],
             Dimension::Plane => DVec3::X,
@@ -75,6 +75,9 @@ impl Locator {
         let centres = tracking.paths.iter().flat_map(|path| &path.centres).map(|&centre| seen(centre));
         let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = centres.fold(none, |(low, high), at| (low.min(at), high.max(at)));
+        if !(low.is_finite() && high.is_finite()) {
+            return None;
+        }
         let pad = 0.6 * tracking.widest;
         let (mut low, high) = (low - pad, high + pad);
         let middle = scene.initial.position.first().copied().unwrap_or_default();
@@ -87,7 +90,7 @@ impl Locator {
         for end in floor.into_iter().flatten() {
             low.y = low.y.min(end.y - 0.1 * tracking.widest);
         }
-        Self { right, low, high, floor }
+        Some(Self { right, low, high, floor })
     }
 
     /// Where it stands in a panel (px: left, top, width and height); `None` where it would be too small.

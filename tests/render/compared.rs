@@ -260,3 +260,11 @@ fn bodies_of_bars_have_ghosts() {
     let count = picture.curves.iter().filter(is_ghost).count();
     assert!((5..=10).contains(&count), "{count}");
 }
+
+/// The panel of a difference shows no run of its own.
+#[test]
+fn what_finds_no_room_is_known_beside_a_difference() {
+    let (mut scene, _) = fig4b(0);
+    scene.view.difference = Some(Difference { runs: [0, 1], after_fit: false });
+    assert_eq!(localshape::picture::left_out(&scene), Vec::<String>::new());
+}

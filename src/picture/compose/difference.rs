@@ -15,7 +15,7 @@ use crate::picture::text::Weight;
 use crate::picture::{Curve, Framing, Mark, Panel};
 use crate::sim::apart;
 use crate::sim::field::Field;
-use crate::sim::snapshot::{Frame, RunFrame, Status};
+use crate::sim::snapshot::{Frame, RunFrame};
 use glam::DVec3;
 
 /// The height of the chart with its name and its times and the room below it, and the largest part of the panel that it takes
@@ -35,9 +35,6 @@ const LEAST: [f64; 2] = [14.0, 40.0];
 
 /// The chart is no smaller than this part of the reference, so that its numbers stay legible.
 const LEAST_STRIP_UNIT: f64 = 0.5;
-
-/// The room of the panel, and that below it for a chart, if there is any.
-type Place = (Rectangle, Option<Rectangle>);
 
 /// The largest distance over the time of a scene.
 #[derive(Debug)]
@@ -79,7 +76,8 @@ impl Composer<'_> {
         let [one, other] = difference.runs.map(|run| frame.runs.iter().find(|shown| shown.run == run));
         let (one, other) = (one?, other?);
         let body = &*self.scene.body;
-        let is_whole = |run: &RunFrame| run.snapshot.status == Status::Ok && run.snapshot.position.len() == body.len();
+        // A run that diverges is shown as it fitted last, at another time.
+        let is_whole = |run: &RunFrame| run.last_fit.is_none() && run.snapshot.position.len() == body.len();
         let [here, there] = [one, other].map(|run| &run.snapshot.position[..]);
         let outlined = match is_whole(one) && is_whole(other) {
             true if difference.after_fit => apart::fitted(body.dimension, there, here),
@@ -105,12 +103,12 @@ impl Composer<'_> {
     }
 
     /// The part of a panel's room for the body, and that for the chart, if there is one.
-    fn rooms(&self, (viewport, strip): Place, scale: Scale) -> (Rectangle, Option<Rectangle>) {
-        let [left, top, width, height] = viewport;
+    pub(super) fn rooms(&self, panel: Rectangle, scale: Scale) -> (Rectangle, Option<Rectangle>) {
+        let [left, top, width, height] = panel;
         let unit = scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
         let taken = ((STRIP + BELOW_STRIP) * unit).round() as u32;
-        if strip.is_some() || f64::from(taken) > MOST * f64::from(height) {
-            return (viewport, strip);
+        if f64::from(taken) > MOST * f64::from(height) {
+            return (panel, None);
         }
         let margin = scale.margin().min(f64::from(width) / 2.0).round() as u32;
         let strip = [left + margin, top + height - taken, width - 2 * margin, (STRIP * unit).round() as u32];
@@ -121,14 +119,14 @@ impl Composer<'_> {
     pub(super) fn write_difference(
         &self,
         compared: &Compared<'_>,
-        place: Place,
+        panel: Rectangle,
         at: usize,
         time: Option<f64>,
         writer: &mut Writer<'_>,
     ) {
         let view = &self.scene.view;
         let labels = view.labels;
-        let (viewport, strip) = self.rooms(place, writer.scale);
+        let (viewport, strip) = self.rooms(panel, writer.scale);
         let taken = if time.is_some() { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
         let [one, other] = [compared.one.run, compared.other].map(|run| &self.scene.runs[run].name[..]);
         let is_fitted = view.difference.is_some_and(|difference| difference.after_fit);
@@ -157,15 +155,13 @@ impl Composer<'_> {
     pub(super) fn draw_difference(
         &self,
         compared: &Compared<'_>,
-        place: Place,
+        panel: Rectangle,
         framing: &Framing,
         scale: Scale,
         [under, above]: [&mut Vec<Mark>; 2],
         curves: &mut Vec<Curve>,
     ) -> Panel {
-        // The body is as large as in all panels, however much room the chart takes.
-        let mut draft = Draft::new(self, place.0, compared.one, framing, scale);
-        draft.viewport = self.rooms(place, scale).0;
+        let mut draft = Draft::new(self, self.rooms(panel, scale).0, compared.one, framing, scale);
         draft.colour_by(&self.distance_scale(), &compared.distances);
         let colour = self.scene.runs[compared.other].line(&self.palette).colour;
         draft.outline(&compared.outlined, colour, draft.between_words(), curves);

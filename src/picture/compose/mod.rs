@@ -196,7 +196,7 @@ impl<'a> Composer<'a> {
     pub fn set_history(&mut self, history: &History) {
         let scene = self.scene;
         self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
-        self.locator = self.tracking.as_ref().map(|tracking| Locator::new(scene, tracking));
+        self.locator = self.tracking.as_ref().and_then(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
         history.series.iter().for_each(|series| self.reach.merge(&series.reach));
         self.course = scene.view.difference.map(|_| difference::Course::new(history, self.extent));
@@ -229,7 +229,12 @@ impl<'a> Composer<'a> {
         let columns = self.columns(&runs);
         let Around { layout, title, caption, legend, clock } = self.words().around(&runs, columns);
         let scale = layout.scale;
-        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
+        // The chart of a difference takes room from its body, which is as large as the others.
+        let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
+        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
+        let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
+        let shot = largest(layout.panels.first().copied(), most);
+        let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
         let places = layout.panels.iter().zip(&frame.runs);
         let framings: Vec<_> = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale))).collect();
         let mut writer = self.writer(scale);
@@ -237,7 +242,7 @@ impl<'a> Composer<'a> {
         let hairlines = std::mem::take(&mut writer.marks);
         let with_clock = clock == Clock::InPanel;
         self.write(frame, &layout, columns, framings.first(), with_clock, &mut writer);
-        let place = layout.panels.get(runs.len()).map(|&panel| (panel, None));
+        let place = layout.panels.get(runs.len()).copied();
         let compared = compared.as_ref().zip(place);
         if let Some((compared, place)) = compared {
             let has_clock =
@@ -269,7 +274,8 @@ impl<'a> Composer<'a> {
             }
         }
         if let Some((compared, place)) = compared {
-            let framing = self.framing(shot.as_ref(), compared.one, (place.0, scale));
+            let room = self.rooms(place, scale).0;
+            let framing = self.framing(shot_of_difference.as_ref(), compared.one, (room, scale));
             let marks = [&mut under, &mut marks];
             panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
         }
@@ -290,7 +296,7 @@ impl<'a> Composer<'a> {
         let pixels = |columns: usize| {
             let layout = words.around(runs, columns).layout;
             let viewport = *layout.panels.first()?;
-            let shot = self.shot(viewport, layout.scale).map(|shot| shot.pixels);
+            let shot = self.shot(viewport, layout.scale, f64::INFINITY).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))
         };
@@ -308,10 +314,10 @@ impl<'a> Composer<'a> {
         view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
-    /// How a camera that follows sees a panel.
-    fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
+    /// How a camera that follows sees a panel, with `most` pixels for a metre.
+    fn shot(&self, viewport: Rectangle, scale: Scale, most: f64) -> Option<Shot> {
         let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
-        Some(self.tracking.as_ref()?.shot(self.scene, viewport, scale, taken))
+        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), taken, most))
     }
 
     /// What the camera of a run looks at in a panel.

@@ -193,9 +193,8 @@ impl<'a> Words<'a> {
         let [title, caption] = self.lines(layout.around);
         tell(!view.title.is_empty() && around.title != title, "the title is cut off");
         tell(!view.caption.is_empty() && around.caption != caption, "the caption is cut off");
-        let wants_key =
-            view.legend && (view.visible.displacements || view.colour.is_some() || view.spring_strain.is_some());
-        tell(wants_key && around.legend.is_none(), "the key of colours and arrows is left out");
+        let wants_key = self.legend(layout.around).is_some();
+        tell(wants_key && around.legend.is_none(), "the key of colours, lines and arrows is left out");
         tell(view.strip.is_some() && layout.chart.is_none(), "the chart is left out");
         tell(around.clock == Clock::Above(None), "the clock is left out");
         let Some(panel) = layout.panels.first() else { return told };
@@ -206,7 +205,7 @@ impl<'a> Words<'a> {
         tell(has(|labels| labels.count || labels.number), "panels have no numbers");
         tell(has(|labels| labels.name), "panels have no names");
         let (names, writer) = (self.names(runs), self.writer(layout.scale));
-        for (at, &panel) in layout.panels.iter().enumerate() {
+        for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
             let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
             let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
             let [name, second] = writer.heading_width(&heading).map(|width| width > room);

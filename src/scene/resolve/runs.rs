@@ -64,7 +64,7 @@ pub(super) fn resolve(
             return None;
         }
         let integrator = run.integrator.unwrap_or(time.integrator);
-        if let Some(reason) = integrator.refusal(model.prepare(&Arc::new(body.body.clone())).as_ref()) {
+        if let Some(reason) = integrator.refusal(|| model.prepare(&Arc::new(body.body.clone()))) {
             let path = match run.integrator {
                 Some(_) => vec![Way::Key("run"), Way::Index(at), Way::Key("integrator")],
                 None => vec![Way::Key("time"), Way::Key("integrator")],

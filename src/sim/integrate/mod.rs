@@ -44,9 +44,12 @@ pub enum Integrator {
 
 impl Integrator {
     /// Why this method cannot advance a model, and which method can; `None` if it can.
-    pub(crate) fn refusal(self, forces: &dyn ForceModel) -> Option<&'static str> {
+    pub(crate) fn refusal(self, forces: impl FnOnce() -> Box<dyn ForceModel>) -> Option<&'static str> {
+        if matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler | Self::VelocityVerlet) {
+            return None;
+        }
+        let forces = forces();
         match self {
-            Self::SemiImplicitEuler | Self::ExplicitEuler | Self::VelocityVerlet => None,
             _ if forces.depends_on_history() => Some(
                 "evaluates forces several times a step, but a fixed number of passes gives forces that depend on the \
                  evaluation before; use `rotation = \"exact\"` without `passes`, or \"velocity-verlet\"",

@@ -131,7 +131,8 @@ impl Grid {
     }
 }
 
-/// The numbers of each node: position, velocity, `1/m`, and with velocity Verlet the acceleration.
+/// The numbers of each node: position, velocity, `1/m`, and with velocity Verlet the acceleration, with compositions the velocity at the
+/// start of the step.
 const VELOCITY: usize = 3;
 const INVERSE_MASS: usize = 6;
 const ACCELERATION: usize = 7;

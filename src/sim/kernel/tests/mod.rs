@@ -193,6 +193,7 @@ pub(super) fn stepped_by_reference(
         Scheme::ExplicitEuler => Integrator::ExplicitEuler,
         Scheme::VelocityVerlet => Integrator::VelocityVerlet,
         Scheme::Composition(_) if scheme == PEFRL => Integrator::Pefrl,
+        Scheme::Composition(_) if scheme == FOREST_RUTH => Integrator::ForestRuth,
         Scheme::Composition(_) => Integrator::BlanesMoan,
     };
     World::new(body, start.clone(), model, around, Stepping { integrator, step, kernel: Kernel::Reference })
@@ -225,4 +226,5 @@ fn distance(a: &State, b: &State) -> f64 {
 pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
 pub(super) const PEFRL: Scheme = Scheme::Composition(&composition::PEFRL);
+const FOREST_RUTH: Scheme = Scheme::Composition(&composition::FOREST_RUTH);
 const BLANES_MOAN: Scheme = Scheme::Composition(&composition::BLANES_MOAN);
