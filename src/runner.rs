@@ -1,5 +1,5 @@
 //! Advances runs of a scene, in parallel, to requested moments: frames, states of a figure, moments of a time series.
-//! All other code simulates through this one.
+//! All other code simulates through this one, which makes it long: runs, their time series and their stored frames share one state.
 
 pub use crate::history::{History, TimeSeries};
 use crate::last_fit::fits;

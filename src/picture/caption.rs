@@ -1,7 +1,5 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
-use super::event::Event;
-use super::flag;
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight, is_invisible};
@@ -17,12 +15,6 @@ const DIVERGED: &str = "diverged";
 const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
-
-/// Radius of the ring of an event, in sizes of its number; between it and its words, and between events (px in the reference
-/// picture).
-const EVENT_RING: f64 = 0.68;
-const EVENT_BESIDE: f64 = 7.0;
-const EVENTS_APART: f64 = 18.0;
 
 /// Size of the title above all panels, in parts of that of names.
 const TITLE: f64 = 1.16;
@@ -48,21 +40,21 @@ pub(super) struct Writer<'a> {
 
 /// The edges of the room for words in a panel (px).
 #[derive(Clone, Copy)]
-struct Room {
-    left: f64,
+pub(super) struct Room {
+    pub(super) left: f64,
     right: f64,
-    top: f64,
+    pub(super) top: f64,
     bottom: f64,
 }
 
 impl Room {
-    fn new(panel: Rectangle, scale: Scale) -> Self {
+    pub(super) fn new(panel: Rectangle, scale: Scale) -> Self {
         let [left, top, width, height] = panel.map(f64::from);
         let margin = scale.margin();
         Self { left: left + margin, right: left + width - margin, top, bottom: top + height }
     }
 
-    fn width(self) -> f64 {
+    pub(super) fn width(self) -> f64 {
         (self.right - self.left).max(0.0)
     }
 }
@@ -146,44 +138,6 @@ impl Writer<'_> {
             second = second.rsplit_once(", ").map_or("", |(first, _)| first);
         }
         self.left(second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
-    }
-
-    /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is
-    /// room for. Rings are filled as soon as it has happened.
-    pub(super) fn events<'e>(
-        &mut self,
-        panel: Rectangle,
-        events: impl Iterator<Item = (usize, &'e Event)>,
-        colour: Colour,
-        now: f64,
-    ) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
-        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
-        let events: Vec<_> = events.collect();
-        let number_size = self.scale.small();
-        let radius = EVENT_RING * number_size;
-        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
-        let wide = |words: &str| {
-            let words = if words.is_empty() { 0.0 } else { beside + self.fonts.width(words, Weight::Regular, size) };
-            2.0 * radius + words
-        };
-        let words = |event: &'e Event, at: usize| event.words.get(at).map_or("", String::as_str);
-        let width = |at: usize| {
-            let widths = events.iter().map(|(_, event)| wide(words(event, at)));
-            widths.sum::<f64>() + apart * events.len().saturating_sub(1) as f64
-        };
-        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()).filter(|_| Scale::legible(size)) else { return };
-        let (mut left, baseline) = (room.left, room.top + lines.events);
-        let palette = self.palette;
-        for (number, event) in &events {
-            let [ground, letter] =
-                if event.time <= now { [colour, palette.background] } else { [palette.background, palette.text] };
-            let middle = [left + radius, baseline - 0.36 * size];
-            flag::ring(self, middle, [radius, number_size], [colour, ground, letter], &number.to_string());
-            let text = words(event, at);
-            self.left(text, Weight::Regular, size, palette.second_text, left + 2.0 * radius + beside, baseline);
-            left += wide(text) + apart;
-        }
     }
 
     /// A sample of the line of a run, from a place on (px).

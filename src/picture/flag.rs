@@ -1,9 +1,10 @@
 //! Flags above charts: letters or numbers in rings, with lines down to what they stand for.
 
-use super::caption::Writer;
+use super::caption::{Room, Writer};
 use super::chart::dot;
 use super::ends::spread;
-use super::layout::Scale;
+use super::event::Event;
+use super::layout::{Baselines, Rectangle, Scale};
 use super::narrow::narrow;
 use super::text::Weight;
 use super::{Colour, Curve};
@@ -21,6 +22,12 @@ const BEYOND: f64 = 0.35;
 const UPRIGHT_ABOVE: f64 = 9.0;
 const LINE: f64 = 1.1;
 const LINE_ALPHA: f64 = 0.62;
+
+/// Radius of the ring of an event, in sizes of its number; between it and its words, and between events (px in the reference
+/// picture).
+const EVENT_RING: f64 = 0.68;
+const EVENT_BESIDE: f64 = 7.0;
+const EVENTS_APART: f64 = 18.0;
 
 /// A letter or a number at a place in a chart.
 #[derive(Clone, Debug)]
@@ -90,4 +97,44 @@ pub(super) fn ring(
     }
     let left = at[0] - 0.5 * writer.fonts.width(text, Weight::SemiBold, size);
     writer.left(text, Weight::SemiBold, size, letter, left, at[1] + 0.36 * size);
+}
+
+impl Writer<'_> {
+    /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is
+    /// room for. Rings are filled as soon as it has happened.
+    pub(super) fn events<'e>(
+        &mut self,
+        panel: Rectangle,
+        events: impl Iterator<Item = (usize, &'e Event)>,
+        colour: Colour,
+        now: f64,
+    ) {
+        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
+        let events: Vec<_> = events.collect();
+        let number_size = self.scale.small();
+        let radius = EVENT_RING * number_size;
+        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let wide = |words: &str| {
+            let words = if words.is_empty() { 0.0 } else { beside + self.fonts.width(words, Weight::Regular, size) };
+            2.0 * radius + words
+        };
+        let words = |event: &'e Event, at: usize| event.words.get(at).map_or("", String::as_str);
+        let width = |at: usize| {
+            let widths = events.iter().map(|(_, event)| wide(words(event, at)));
+            widths.sum::<f64>() + apart * events.len().saturating_sub(1) as f64
+        };
+        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()).filter(|_| Scale::legible(size)) else { return };
+        let (mut left, baseline) = (room.left, room.top + lines.events);
+        let palette = self.palette;
+        for (number, event) in &events {
+            let [ground, letter] =
+                if event.time <= now { [colour, palette.background] } else { [palette.background, palette.text] };
+            let middle = [left + radius, baseline - 0.36 * size];
+            ring(self, middle, [radius, number_size], [colour, ground, letter], &number.to_string());
+            let text = words(event, at);
+            self.left(text, Weight::Regular, size, palette.second_text, left + 2.0 * radius + beside, baseline);
+            left += wide(text) + apart;
+        }
+    }
 }

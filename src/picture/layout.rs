@@ -1,4 +1,5 @@
-//! The layout of a picture: panels and text. It does not depend on the frame, so nothing jumps.
+//! The layout of a picture: panels and text. It does not depend on the frame, so nothing jumps. A long file, with its tests, so
+//! that all distances of the layout stand together.
 //!
 //! ```text
 //! title
